@@ -68,7 +68,7 @@ class AxisGroup::State {
   void take_image(std::span<const std::byte> data);
   void take_layout(std::span<const std::byte> data);
   void take_status(std::span<const std::byte> data);
-  void tell_schema(std::int16_t schema);
+  void report_schema(std::int16_t schema);
   bool publish(command_t& command);
   bool is_stale() const;
 
@@ -89,8 +89,8 @@ class AxisGroup::State {
   NodeHolders holders_;
   bool fresh_ = false;
   bool new_layout_ = false;
-  bool told_stale_ = false;
-  bool told_schema_ = false;
+  bool reported_stale_ = false;
+  bool reported_schema_ = false;
   bool commands_ = false;  // something was sent since the last release
   Clock::time_point arrival_{};
   std::optional<EnvelopeSeal> seal_;  // empty if there is no key
@@ -144,14 +144,14 @@ void AxisGroup::State::take_image(std::span<const std::byte> data) {
   if (part) {
     fresh_ |= input_.take(*part);
   } else if (part.error() == DecodeFault::schema_1) {
-    tell_schema(1);
+    report_schema(1);
   }
 }
 
 void AxisGroup::State::take_layout(std::span<const std::byte> data) {
   const auto part = decode<layout_t>(data);
   if (!part) return;
-  if (part->schema != message_schema) return tell_schema(part->schema);
+  if (part->schema != message_schema) return report_schema(part->schema);
   if (!input_.take(*part)) return;
   new_layout_ = true;
   holders_.clear();
@@ -163,8 +163,8 @@ void AxisGroup::State::take_status(std::span<const std::byte> data) {
   if (fits && part->session == input_.session()) holders_.take(*part);
 }
 
-void AxisGroup::State::tell_schema(std::int16_t schema) {
-  if (std::exchange(told_schema_, true) || events_.size() == most_events) return;
+void AxisGroup::State::report_schema(std::int16_t schema) {
+  if (std::exchange(reported_schema_, true) || events_.size() == most_events) return;
   event_t event{};
   event.schema = message_schema;
   event.kind = "other_schema";
@@ -194,17 +194,17 @@ Input AxisGroup::State::wait(std::chrono::nanoseconds longest) {
     serve();
     if (std::exchange(new_layout_, false)) {
       axes_.set_layout(input_);
-      fresh_ = told_stale_ = false;
+      fresh_ = reported_stale_ = false;
       return Input::restarted;
     }
     if (std::exchange(fresh_, false)) {
       arrival_ = Clock::now();
-      told_stale_ = false;
+      reported_stale_ = false;
       axes_.on_image(input_);
       return Input::fresh;
     }
-    if (!told_stale_ && is_stale()) {
-      told_stale_ = true;
+    if (!reported_stale_ && is_stale()) {
+      reported_stale_ = true;
       return Input::stale;
     }
     const auto left = until - Clock::now();

@@ -20,22 +20,22 @@ void Progress::print(std::string_view text) {
 
 void Progress::states(AxisGroup& group) {
   const AxisControl& axes = group.axes();
-  const bool first = told_.size() != static_cast<std::size_t>(axes.size());
-  told_.resize(static_cast<std::size_t>(axes.size()), State402::not_ready_to_switch_on);
+  const bool first = reported_.size() != static_cast<std::size_t>(axes.size());
+  reported_.resize(static_cast<std::size_t>(axes.size()), State402::not_ready_to_switch_on);
   for (AxisControl::Index i = 0; i < axes.size(); ++i) {
-    State402& told = told_[static_cast<std::size_t>(i)];
+    State402& reported = reported_[static_cast<std::size_t>(i)];
     const State402 state = axes.drive(i).state();
-    if (state == told && !first) continue;
-    told = state;
+    if (state == reported && !first) continue;
+    reported = state;
     say(fmt::format("{:<12} {}  (statusword 0x{:04X})", axes.name(i), name(state),
                     axes.statusword(i)));
   }
   for (const event_t& event : group.take_events()) {
-    if (event.severity > 0 && !told_lately(event)) say(event.text);
+    if (event.severity > 0 && !reported_lately(event)) say(event.text);
   }
 }
 
-bool Progress::told_lately(const event_t& event) {
+bool Progress::reported_lately(const event_t& event) {
   const auto now = Clock::now();
   auto& last = last_of_kind_[{event.node_id, event.kind}];
   const bool lately = last != Clock::time_point{} && now - last < std::chrono::seconds{2};

@@ -30,11 +30,11 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
-  bool told_lately(const event_t& event);
+  bool reported_lately(const event_t& event);
 
   Clock::time_point start_ = Clock::now();
   Clock::time_point next_positions_{};
-  std::vector<State402> told_;
+  std::vector<State402> reported_;
   std::map<std::pair<std::int16_t, std::string>, Clock::time_point> last_of_kind_;
   std::vector<std::string> units_;
 };

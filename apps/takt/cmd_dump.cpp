@@ -195,7 +195,7 @@ class InterfaceNews {
  public:
   explicit InterfaceNews(const std::string& bus) : bus_{bus} {}
 
-  void tell(const PortNews& now) {
+  void announce(const PortNews& now) {
     if (now.interface_down != last_.interface_down) {
       fmt::print(stderr, "takt dump: {} is {}\n", bus_, now.interface_down ? "down" : "up again");
     }
@@ -230,7 +230,7 @@ int dump_bus(const std::string& bus, Printer& printer) {
   InterfaceNews news{bus};
   while (interrupted == 0) {
     const bool received = channel->receive(got, std::chrono::milliseconds{100});
-    news.tell(channel->news());
+    news.announce(channel->news());
     if (!received) {
       std::fflush(stdout);
       continue;

@@ -30,7 +30,7 @@ std::optional<std::string> recoded(const std::string& source) {
 }
 
 /// Prints that the shown difference cannot be applied with `patch`.
-void tell_unpatchable(const Options& options) {
+void report_unpatchable(const Options& options) {
   std::cerr << options.file << ": the file is UTF-16 and becomes UTF-8; the difference shows only "
             << "the text and can't be applied with patch; "
             << (options.out.empty() ? "-o writes the mended file\n" : "the output is complete\n");
@@ -50,7 +50,7 @@ int run(const Options& options) {
   const auto text = recoded(*source);
   diff << unified_diff(text.value_or(*source), fixed.text, options.file, name,
                        [](std::string_view line) { return line.starts_with('['); });
-  if (text) tell_unpatchable(options);
+  if (text) report_unpatchable(options);
   std::cerr << options.file << ": " << fixed.fixed.size()
             << (fixed.fixed.size() == 1 ? " finding mended, " : " findings mended, ")
             << fixed.left.size() << " left\n";

@@ -36,7 +36,7 @@ std::optional<NodeId> find_node(const BusPlan& plan, const std::string& text) {
 }
 
 /// Prints the findings on stderr. Returns false if the file is invalid.
-bool told_good(const LoadedNetwork& network, bool quiet) {
+bool reported_good(const LoadedNetwork& network, bool quiet) {
   const bool bad = has_error(network.findings);
   for (const Finding& finding : network.findings) {
     if (finding.severity == Severity::note && (quiet || bad)) continue;
@@ -64,7 +64,7 @@ int diff(const PlanOptions& options) {
   const LoadedNetwork before = load_network(options.file);
   const LoadedNetwork after = load_network(options.other);
   std::optional<NodeId> node;
-  if (!told_good(before, true) || !told_good(after, true)) return invalid_file;
+  if (!reported_good(before, true) || !reported_good(after, true)) return invalid_file;
   if (!chosen_node(options, before.plan, node)) return invalid_file;
   const PlanSide first{before.plan, options.file};
   const PlanSide second{after.plan, options.other};
@@ -105,7 +105,7 @@ void print_device_diffs_json(const DeviceDataPlans& plans, const std::vector<Nod
 /// Prints what each entry of the device data changes in its nodes.
 int diff_devices(const PlanOptions& options) {
   const LoadedNetwork with = load_network(options.file);
-  if (!told_good(with, true)) return invalid_file;
+  if (!reported_good(with, true)) return invalid_file;
   const LoadedNetwork without = load_network(options.file, DeviceDataUse::ignored);
   std::optional<NodeId> only;
   if (!chosen_node(options, with.plan, only)) return invalid_file;
@@ -130,7 +130,7 @@ int print(const PlanOptions& options) {
   if (!options.other.empty()) return diff(options);
   if (options.devices) return diff_devices(options);
   const LoadedNetwork network = load_network(options.file);
-  if (!told_good(network, options.quiet)) return invalid_file;
+  if (!reported_good(network, options.quiet)) return invalid_file;
   PlanPrint what{.node = {}, .realtime = network.realtime, .lcm = network.lcm};
   if (!chosen_node(options, network.plan, what.node)) return invalid_file;
   if (options.json) {

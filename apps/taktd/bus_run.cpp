@@ -88,11 +88,11 @@ void BusRun::watch(std::vector<pollfd>& descriptors) const {
 }
 
 void BusRun::hear_intruders() {
-  DiagnosticSocket* const ear = bus_->diagnostics();
-  if (ear == nullptr || front_.options.observe) return;
-  ear->poll();
+  DiagnosticSocket* const listener = bus_->diagnostics();
+  if (listener == nullptr || front_.options.observe) return;
+  listener->poll();
   Event event;
-  while (ear->take(event)) bridge_->tell(event);
+  while (listener->take(event)) bridge_->announce(event);
 }
 
 void BusRun::watch_lateness() {
@@ -112,7 +112,7 @@ void BusRun::watch_lateness() {
 /// try will not ask the node in another way. A node that was ready before is booted again by its
 /// plan, while the other nodes go on.
 void BusRun::on_notice(const Notice& notice) {
-  front_.reporter.tell(network_.plan, notice);
+  front_.reporter.announce(network_.plan, notice);
   recorder_.on_fault(notice);
   if (notice.kind == name(EventKind::stopping)) unconfirmed_.clear();
   if (notice.kind == name(EventKind::axis_not_stopped)) {
@@ -130,12 +130,12 @@ void BusRun::on_notice(const Notice& notice) {
 }
 
 void BusRun::on_refused_envelope(const std::string& sentence) {
-  bridge_->tell(Notice{.when = front_.clocks.now(),
-                       .cycle = 0,
-                       .node = 0,
-                       .kind = "envelope_refused",
-                       .weight = Weight::warning,
-                       .text = sentence});
+  bridge_->announce(Notice{.when = front_.clocks.now(),
+                           .cycle = 0,
+                           .node = 0,
+                           .kind = "envelope_refused",
+                           .weight = Weight::warning,
+                           .text = sentence});
 }
 
 void BusRun::stop(Exit reason, const std::string& why) {
@@ -175,8 +175,8 @@ bool BusRun::complete() {
   } while (bridge_->owes_news());
   judge_stop();
   const bool recorded = recorder_.finish(exit_ == Exit::good ? "" : why_, last_recording);
-  say(Weight::note, run_summary(*master_, *bridge_, front_.reporter.told(Weight::error),
-                                front_.reporter.told(Weight::warning)));
+  say(Weight::note, run_summary(*master_, *bridge_, front_.reporter.reported(Weight::error),
+                                front_.reporter.reported(Weight::warning)));
   return recorded;
 }
 

@@ -128,20 +128,22 @@ std::optional<Exit> BusRun::look_for_master() {
 /// Listens for another master on the bus and on LCM. Commands that arrive meanwhile are dropped:
 /// their senders cannot yet have heard from this master.
 void BusRun::listen(OtherMaster& other) {
-  DiagnosticSocket* const ear = bus_->diagnostics();
+  DiagnosticSocket* const listener = bus_->diagnostics();
   const std::string status = Channels{network_.plan.name}.status;
   const Time begin = front_.clocks.now();
   Time until = begin + lcm_patience;
-  const Time frames_until = ear != nullptr ? begin + other.listening_time() : begin;
+  const Time frames_until = listener != nullptr ? begin + other.listening_time() : begin;
   bool lcm_is_there = false;
   std::vector<pollfd> descriptors;
   for (Time now = begin; now < std::max(frames_until, until); now = front_.clocks.now()) {
     if (other.refusal() || StopSignal::count() > 0) return;
     descriptors.clear();
-    if (ear != nullptr) descriptors.push_back({.fd = ear->fd(), .events = POLLIN, .revents = 0});
+    if (listener != nullptr)
+      descriptors.push_back({.fd = listener->fd(), .events = POLLIN, .revents = 0});
     link_->watch(descriptors);
     front_.wait.wait(descriptors, never, std::min(std::max(frames_until, until), now + look));
-    if (ear != nullptr) ear->poll([&](const StampedFrame& heard) { other.on_frame(heard.frame); });
+    if (listener != nullptr)
+      listener->poll([&](const StampedFrame& heard) { other.on_frame(heard.frame); });
     link_->serve([&](std::string_view channel, Bytes data) {
       if (channel != status) return;
       if (const auto message = decode<status_t>(data)) other.on_status(*message, realtime_now());

@@ -77,10 +77,10 @@ void Recorder::on_written(const std::string& text, const std::string& file) {
   if (bridge_ == nullptr) {
     say_(weight, text);
   } else {
-    bridge_->tell(Notice{.when = monotonic_now(),
-                         .kind = file.empty() ? "not_recorded" : "recorded",
-                         .weight = weight,
-                         .text = text});
+    bridge_->announce(Notice{.when = monotonic_now(),
+                             .kind = file.empty() ? "not_recorded" : "recorded",
+                             .weight = weight,
+                             .text = text});
   }
   answer_all(!file.empty(), file.empty() ? text : file);
 }

@@ -14,19 +14,19 @@ bool Reporter::open_events(const std::string& path) {
 
 void Reporter::say(Weight weight, const std::string& sentence) { log_.say(weight, sentence); }
 
-void Reporter::tell(const BusPlan& plan, const Notice& notice) {
-  ++told_[static_cast<std::size_t>(notice.weight)];
+void Reporter::announce(const BusPlan& plan, const Notice& notice) {
+  ++reported_[static_cast<std::size_t>(notice.weight)];
   say(notice.weight, notice.text);
   if (!events_) return;
-  tell_lost();
+  report_lost();
   write(notice, node_name(plan, notice.node));
-  if (events_->has_thread() || std::exchange(without_thread_told_, true)) return;
+  if (events_->has_thread() || std::exchange(without_thread_reported_, true)) return;
   say(Weight::warning,
       "--events: no thread can be created for this file; its lines wait, and taktd tries again");
 }
 
 /// Reports lost lines on stderr and in the file, at the place of the gap.
-void Reporter::tell_lost() {
+void Reporter::report_lost() {
   const std::uint64_t lost = events_->take_lost();
   if (lost == 0) return;
   const Notice gap{
@@ -34,7 +34,7 @@ void Reporter::tell_lost() {
       .kind = "events_lost",
       .weight = Weight::warning,
       .text = "--events: " + std::to_string(lost) + " lines could not be written and are lost"};
-  ++told_[static_cast<std::size_t>(gap.weight)];
+  ++reported_[static_cast<std::size_t>(gap.weight)];
   say(gap.weight, gap.text);
   write(gap, {});
 }
@@ -44,7 +44,7 @@ void Reporter::finish(Time limit) {
     const bool through = events_->flush(limit);
     if (!through)
       say(Weight::warning, "--events: the file takes no more lines; the last lines are lost");
-    tell_lost();
+    report_lost();
   }
   log_.flush(limit);
 }

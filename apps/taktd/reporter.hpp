@@ -20,7 +20,7 @@ class Reporter {
   bool open_events(const std::string& path);
 
   /// `plan` is the plan of the bus that the notice is about.
-  void tell(const BusPlan& plan, const Notice& notice);
+  void announce(const BusPlan& plan, const Notice& notice);
   /// Writes a sentence of the daemon itself to stderr.
   void say(Weight weight, const std::string& sentence);
 
@@ -28,18 +28,18 @@ class Reporter {
   /// possible.
   void finish(Time limit);
 
-  std::uint64_t told(Weight weight) const noexcept {
-    return told_[static_cast<std::size_t>(weight)];
+  std::uint64_t reported(Weight weight) const noexcept {
+    return reported_[static_cast<std::size_t>(weight)];
   }
 
  private:
   void write(const Notice& notice, std::string_view node);
-  void tell_lost();
+  void report_lost();
 
   ErrorLog log_;
   std::unique_ptr<LineWriter> events_;
-  bool without_thread_told_ = false;
-  std::array<std::uint64_t, 3> told_{};
+  bool without_thread_reported_ = false;
+  std::array<std::uint64_t, 3> reported_{};
 };
 
 }  // namespace takt

@@ -38,7 +38,7 @@ class Combinations {
     std::ranges::stable_sort(found_, {}, [this](const Levels& levels) { return cost(levels); });
     std::vector<Suggestion> out;
     for (const auto& levels : found_) {
-      if (out.size() < most_suggestions) out.push_back(told(levels));
+      if (out.size() < most_suggestions) out.push_back(reported(levels));
     }
     return out;
   }
@@ -155,7 +155,7 @@ class Combinations {
     found_.push_back(levels);
   }
 
-  Suggestion told(const Levels& levels) const {
+  Suggestion reported(const Levels& levels) const {
     Suggestion all{.text = {}, .changes = changes_of(levels)};
     for (std::size_t i = 0; i < levels.size(); ++i) {
       if (levels[i] == 0) continue;

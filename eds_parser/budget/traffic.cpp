@@ -48,7 +48,7 @@ class TrafficCollector {
     std::ranges::stable_sort(out_.frames, {}, rank);
     out_.service_dialogues = services_.dialogues;
     out_.service_round = services_.round;
-    tell_assumptions();
+    report_assumptions();
     return std::move(out_);
   }
 
@@ -295,7 +295,7 @@ class TrafficCollector {
     }
   }
 
-  void tell_assumptions() {
+  void report_assumptions() {
     const auto us = std::chrono::duration_cast<std::chrono::microseconds>(options_.device_time);
     out_.assumptions.push_back("devices have their TPDOs ready " + std::to_string(us.count()) +
                                " us after SYNC (--device-time)");

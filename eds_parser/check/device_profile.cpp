@@ -140,8 +140,9 @@ class ProfileCheck {
   /// Reports an object that several modes demand only once.
   void need_for(const Mode& mode, SourcePos pos) {
     for (const auto& object : mode.objects) {
-      if (has(object.index) || std::ranges::find(told_, object.index) != told_.end()) continue;
-      told_.push_back(object.index);
+      if (has(object.index) || std::ranges::find(reported_, object.index) != reported_.end())
+        continue;
+      reported_.push_back(object.index);
       report_.warning(pos, "profile-object-missing",
                       "CiA 402 requires object " + name_of(object) + " for the mode " +
                           std::string{mode.name} + ", which " +
@@ -166,7 +167,7 @@ class ProfileCheck {
   std::uint16_t base_;
   ObjectKey device_type_;
   Report& report_;
-  std::vector<std::uint16_t> told_;
+  std::vector<std::uint16_t> reported_;
 };
 
 }  // namespace

@@ -21,15 +21,15 @@ SourcePos place_of(const ObjectDictionary& dictionary, std::uint16_t index) {
   return (behind == dictionary.objects.begin() ? behind : behind - 1)->pos;
 }
 
-void tell_different(const ObjectDictionary& dictionary, std::uint8_t sub, std::uint32_t said,
-                    std::string_view key, Report& report) {
+void report_different(const ObjectDictionary& dictionary, std::uint8_t sub, std::uint32_t declared,
+                      std::string_view key, Report& report) {
   const auto* entry = dictionary.find(ObjectKey{0x1018, sub});
   const auto value = number_of(dictionary, {0x1018, sub});
-  if (entry == nullptr || !value || *value == 0 || said == 0 || *value == said) return;
+  if (entry == nullptr || !value || *value == 0 || declared == 0 || *value == declared) return;
   report.warning(entry->value_pos(), "identity-mismatch",
                  section_name({0x1018, sub}) + " says " +
                      hex(static_cast<std::uint32_t>(*value), 8) + ", " + std::string{key} +
-                     " of [DeviceInfo] says " + hex(said, 8) +
+                     " of [DeviceInfo] says " + hex(declared, 8) +
                      "; neither can be trusted as the expected identity");
 }
 
@@ -52,9 +52,9 @@ void check_mandatory(const ObjectDictionary& dictionary, Report& report) {
 
 void check_identity(const ObjectDictionary& dictionary, Report& report) {
   const auto& device = dictionary.device;
-  tell_different(dictionary, 1, device.vendor_number, "VendorNumber", report);
-  tell_different(dictionary, 2, device.product_number, "ProductNumber", report);
-  tell_different(dictionary, 3, device.revision_number, "RevisionNumber", report);
+  report_different(dictionary, 1, device.vendor_number, "VendorNumber", report);
+  report_different(dictionary, 2, device.product_number, "ProductNumber", report);
+  report_different(dictionary, 3, device.revision_number, "RevisionNumber", report);
 }
 
 }  // namespace takt

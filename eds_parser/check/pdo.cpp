@@ -107,12 +107,12 @@ void check_partners(const ObjectDictionary& dictionary, Report& report) {
 void check_number(const ObjectDictionary& dictionary, bool is_tpdo, std::size_t found,
                   Report& report) {
   const auto& device = dictionary.device;
-  const std::size_t said = is_tpdo ? device.nr_tx_pdo : device.nr_rx_pdo;
-  if (said == found || device.pos.line == 0) return;
+  const std::size_t declared = is_tpdo ? device.nr_tx_pdo : device.nr_rx_pdo;
+  if (declared == found || device.pos.line == 0) return;
   const SourcePos pos = is_tpdo ? device.nr_tx_pdo_pos : device.nr_rx_pdo_pos;
   report.warning(pos, "pdo-count",
                  std::string{is_tpdo ? "NrOfTXPDO" : "NrOfRXPDO"} +
-                     (pos == device.pos ? " is missing" : " is " + std::to_string(said)) +
+                     (pos == device.pos ? " is missing" : " is " + std::to_string(declared)) +
                      ", but " + std::to_string(found) +
                      " are described; takt uses the described PDOs");
 }

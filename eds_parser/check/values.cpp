@@ -62,22 +62,22 @@ void check_count(const Object& object, Report& report) {
   for (const auto& sub : object.subs) {
     if (sub.sub != 0xFF) highest = sub.sub;
   }
-  const auto said = integer_of(first.default_value);
-  if (said && *said != highest && report.wants("sub-0-count")) {
+  const auto declared = integer_of(first.default_value);
+  if (declared && *declared != highest && report.wants("sub-0-count")) {
     report.note(first.default_pos, "sub-0-count",
-                section_name({object.index, 0}) + ": DefaultValue is " + std::to_string(*said) +
+                section_name({object.index, 0}) + ": DefaultValue is " + std::to_string(*declared) +
                     ", the highest sub-index described is " + std::to_string(highest));
   }
 }
 
 void check_bit_rate(const ObjectDictionary& dictionary, Report& report) {
   const auto& rates = dictionary.device.baud_rates_kbit;
-  const auto said = dictionary.commissioning.baudrate_kbit;
-  if (said == 0 || rates.empty() || std::ranges::binary_search(rates, said)) return;
+  const auto declared = dictionary.commissioning.baudrate_kbit;
+  if (declared == 0 || rates.empty() || std::ranges::binary_search(rates, declared)) return;
   std::string known;
   for (const auto rate : rates) known += (known.empty() ? "" : ", ") + std::to_string(rate);
   report.warning(dictionary.commissioning.baudrate_pos, "baudrate-unsupported",
-                 "Baudrate is " + std::to_string(said) +
+                 "Baudrate is " + std::to_string(declared) +
                      " kbit/s; according to [DeviceInfo] the device has " + known);
 }
 

@@ -68,13 +68,13 @@ class WidthOfLimits {
   void add(ObjectKey key, const SubObject& sub) {
     if (!has_limits_of_16_bits(sub)) return;
     const std::string_view lost = function_of_high_bits(key);
-    if (!lost.empty() && sub.type == DataType::unsigned32) return tell_lost(key, sub, lost);
+    if (!lost.empty() && sub.type == DataType::unsigned32) return report_lost(key, sub, lost);
     if (count_++ == 0) first_ = sub.pos;
     if (count_ > most_named) return;
     names_ += (names_.empty() ? "" : ", ") + range_text(key, sub);
   }
 
-  void tell_others() {
+  void report_others() {
     if (count_ == 0) return;
     const bool one = count_ == 1;
     const std::string more =
@@ -87,7 +87,7 @@ class WidthOfLimits {
   }
 
  private:
-  void tell_lost(ObjectKey key, const SubObject& sub, std::string_view lost) {
+  void report_lost(ObjectKey key, const SubObject& sub, std::string_view lost) {
     report_.warning(sub.pos, "limits-of-16-bits",
                     section_name(key) + ": UNSIGNED32 with HighLimit " +
                         std::to_string(integer_of(sub.high_limit).value_or(0)) +
@@ -110,7 +110,7 @@ void check_widths(const ObjectDictionary& dictionary, Report& report) {
   for (const auto& object : dictionary.objects) {
     for (const auto& sub : object.subs) widths.add({object.index, sub.sub}, sub);
   }
-  widths.tell_others();
+  widths.report_others();
 }
 
 }  // namespace takt

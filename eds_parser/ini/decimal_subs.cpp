@@ -49,7 +49,7 @@ std::optional<std::uint64_t> default_value(const IniEntries& entries) noexcept {
 struct Subs {
   std::vector<IniSection*> sections;
   std::set<std::uint32_t> numbers;  ///< in decimal, without sub 0
-  std::optional<std::uint64_t> said_highest;
+  std::optional<std::uint64_t> declared_highest;
   bool all_decimal = true;
   bool beyond_ff = false;
 
@@ -58,7 +58,7 @@ struct Subs {
     sections.push_back(&section);
     all_decimal = all_decimal && sub.has_value();
     beyond_ff = beyond_ff || is_beyond_ff(section);
-    if (sub == 0U) said_highest = default_value(file.entries(section));
+    if (sub == 0U) declared_highest = default_value(file.entries(section));
     if (sub.value_or(0) != 0) numbers.insert(*sub);
   }
   bool is_decimal() const noexcept { return all_decimal && (beyond_ff || shows_decimal()); }
@@ -68,7 +68,7 @@ struct Subs {
   /// gap from 9 to 10, or would not end at the number that sub 0 states.
   bool shows_decimal() const noexcept {
     if (numbers.empty() || *numbers.rbegin() < 10) return false;
-    return numbers.size() == *numbers.rbegin() || said_highest == *numbers.rbegin();
+    return numbers.size() == *numbers.rbegin() || declared_highest == *numbers.rbegin();
   }
 };
 

@@ -79,14 +79,14 @@ void ObjectLists::read(ObjectList list, const IniSection& section, const IniEntr
                           "] is neither SupportedObjects nor a decimal number; it was left out");
     }
   }
-  const auto said = count ? small_number(count->value) : std::nullopt;
+  const auto declared = count ? small_number(count->value) : std::nullopt;
   const auto pos = count ? count->pos() : section.pos;
-  if (!said) {
+  if (!declared) {
     report_.warning(pos, "list-count-missing",
                     "[" + to_utf8(section.name) + "] has no SupportedObjects");
-  } else if (*said != found) {
+  } else if (*declared != found) {
     report_.warning(pos, "list-count-wrong",
-                    "SupportedObjects is " + std::to_string(*said) + ", but the list has " +
+                    "SupportedObjects is " + std::to_string(*declared) + ", but the list has " +
                         std::to_string(found) + " entries; all of them were read");
   }
   if (found != 0 && highest > found) {
@@ -152,7 +152,7 @@ void ObjectLists::check_place(ObjectList list, std::uint16_t index, const IniEnt
                       ']');
 }
 
-void ObjectLists::tell_unlisted(const Object& object) const {
+void ObjectLists::report_unlisted(const Object& object) const {
   if (!any_ || membership_[object.index] != ObjectList::unlisted || object.index < 0x1000) return;
   if (!report_.wants("object-not-listed")) return;
   report_.warning(object.pos, "object-not-listed",

@@ -38,7 +38,7 @@ class ObjectLists {
   void read(ObjectList list, const IniSection& section, const IniEntries& entries);
   ObjectList list_of(std::uint16_t index) const noexcept { return membership_[index]; }
   /// Warns if no list names the object.
-  void tell_unlisted(const Object& object) const;
+  void report_unlisted(const Object& object) const;
   bool any() const noexcept { return any_; }
 
  private:

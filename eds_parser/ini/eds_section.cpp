@@ -211,21 +211,21 @@ SectionName classify_section(const IniSection& section) noexcept {
   return name;
 }
 
-void tell_blank_in_name(const IniSection& section, Report& report) {
+void report_blank_in_name(const IniSection& section, Report& report) {
   if (!report.wants("section-name-blank")) return;
   report.warning(section.pos, "section-name-blank",
                  "section " + quoted(section.name) +
                      " has a blank in its name or around it; it was read, other tools lose it");
 }
 
-void tell_lonely_list(const IniSection& list, Report& report) {
+void report_lonely_list(const IniSection& list, Report& report) {
   if (!report.wants("object-section-missing")) return;
   report.warning(list.pos, "object-section-missing",
                  "section " + quoted(list.name) +
                      " belongs to an object that has no section; it was left out");
 }
 
-void tell_unknown_key(const IniEntry& entry, std::string_view section, Report& report) {
+void report_unknown_key(const IniEntry& entry, std::string_view section, Report& report) {
   if (!report.wants("unknown-key")) return;
   report.warning(entry.key_pos(), "unknown-key",
                  "key " + quoted(entry.key) + " of [" + to_utf8(section) +
@@ -234,9 +234,9 @@ void tell_unknown_key(const IniEntry& entry, std::string_view section, Report& r
 
 void check_entry_count(const IniEntry& count, std::size_t found, std::string_view section,
                        Report& report) {
-  const auto said = parse_number(count.value);
-  if (said && said->magnitude == found && !said->negative) return;
-  if (!said && said.error() == NumberFault::empty && found == 0) return;
+  const auto declared = parse_number(count.value);
+  if (declared && declared->magnitude == found && !declared->negative) return;
+  if (!declared && declared.error() == NumberFault::empty && found == 0) return;
   report.warning(count.pos(), "entry-count-wrong",
                  to_utf8(count.key) + " of [" + to_utf8(section) + "] is " + quoted(count.value) +
                      ", but " +
@@ -258,7 +258,7 @@ ObjectFields::ObjectFields(const IniEntries& entries, std::string_view section, 
     const auto keyword = classify_key(spot.key_in(text_));
     if (keyword == Keyword::other_known) continue;
     if (keyword == Keyword::unknown) {
-      tell_unknown_key(spot.entry_in(text_), section, report);
+      report_unknown_key(spot.entry_in(text_), section, report);
       continue;
     }
     auto& first = slots_[static_cast<std::size_t>(keyword)];

@@ -52,11 +52,11 @@ SectionName classify_section(std::string_view name) noexcept;
 SectionName classify_section(const IniSection& section) noexcept;
 
 /// Reports that a name has a blank in it or around it.
-void tell_blank_in_name(const IniSection& section, Report& report);
+void report_blank_in_name(const IniSection& section, Report& report);
 /// Reports that [xxxxName], [xxxxValue] or [xxxxDenotation] has no object to belong to.
-void tell_lonely_list(const IniSection& list, Report& report);
+void report_lonely_list(const IniSection& list, Report& report);
 /// Reports that CiA 306 does not have such a key in `section`.
-void tell_unknown_key(const IniEntry& entry, std::string_view section, Report& report);
+void report_unknown_key(const IniEntry& entry, std::string_view section, Report& report);
 /// Reports that an entry that counts others (`NrOfEntries`, `Lines` ...) differs from the number
 /// `found`.
 void check_entry_count(const IniEntry& count, std::size_t found, std::string_view section,

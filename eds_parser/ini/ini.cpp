@@ -128,7 +128,7 @@ class Reader {
     } else {
       read_other({first, static_cast<std::size_t>(last - first)});
     }
-    if (line.last - line.first > longest_line) tell_long(line);
+    if (line.last - line.first > longest_line) report_long(line);
   }
 
   void read_entry(const char* key, const char* equals, const char* last) {
@@ -152,7 +152,7 @@ class Reader {
     }
   }
 
-  void tell_long(const IniLine& line) {
+  void report_long(const IniLine& line) {
     if (!report_.wants("long-line")) return;
     report_.warning({number_, 1}, "long-line",
                     "line of " + std::to_string(line.last - line.first) +
@@ -239,7 +239,7 @@ std::size_t character_at(std::string_view text, std::size_t at) noexcept {
 
 /// Reports once that texts which are not UTF-8 are read as Windows-1252, because this encoding is
 /// only likely.
-void tell_assumed_encoding(std::string_view text, Report& report) {
+void report_assumed_encoding(std::string_view text, Report& report) {
   if (is_utf8(text)) return;
   SourcePos pos{1, 1};
   std::size_t start = 0;
@@ -282,7 +282,7 @@ IniFile read_ini(std::string_view text, Report& report) {
                 "the file starts with a byte order mark; it was skipped");
     text.remove_prefix(3);
   }
-  tell_assumed_encoding(text, report);
+  report_assumed_encoding(text, report);
   Reader{file, report}.read(text);
   return file;
 }

@@ -36,9 +36,10 @@ void SectionKeys::flag(bool& out, std::string_view key, ValueReader& values) con
   if (entry != nullptr) out = values.read_flag(entry->value, entry->key, entry->pos());
 }
 
-void SectionKeys::tell_unknown(std::string_view section, bool (*reserved)(std::string_view)) const {
+void SectionKeys::report_unknown(std::string_view section,
+                                 bool (*reserved)(std::string_view)) const {
   for (const auto& [entry, asked] : slots_) {
-    if (!asked && !reserved(entry.key)) tell_unknown_key(entry, section, report_);
+    if (!asked && !reserved(entry.key)) report_unknown_key(entry, section, report_);
   }
 }
 

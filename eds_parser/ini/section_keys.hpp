@@ -21,7 +21,7 @@ class SectionKeys {
   std::string text(std::string_view key) const;
   void flag(bool& out, std::string_view key, ValueReader& values) const;
   /// Reports the keys that no call has asked for, except for the `reserved` ones.
-  void tell_unknown(std::string_view section, bool (*reserved)(std::string_view)) const;
+  void report_unknown(std::string_view section, bool (*reserved)(std::string_view)) const;
 
   template <class T>
   void number(T& out, std::string_view key, ValueReader& values) const {

@@ -133,7 +133,7 @@ std::optional<Value> ValueReader::read_integer(std::string_view text, DataType t
     }
     return std::nullopt;
   }
-  if (number->quirks != 0) tell_quirks(number->quirks, text, place);
+  if (number->quirks != 0) report_quirks(number->quirks, text, place);
   if (number->relative() && !node_) return std::nullopt;
   if (!resolve(*number, node_)) {
     exceeds(text, type, place);
@@ -142,13 +142,13 @@ std::optional<Value> ValueReader::read_integer(std::string_view text, DataType t
   const unsigned bits = bit_width(type);
   auto fitted = is_signed(type) ? fit_signed(*number, bits) : fit_unsigned(*number, bits);
   if (!fitted.value) exceeds(text, type, place);
-  if (fitted.wrapped) tell_wrapped(text, type, *fitted.value, place);
+  if (fitted.wrapped) report_wrapped(text, type, *fitted.value, place);
   return fitted.value;
 }
 
 std::optional<Value> ValueReader::read_real(std::string_view text, DataType type,
                                             const ValuePlace& place) {
-  const auto bare = without_told_comment(text, place);
+  const auto bare = without_reported_comment(text, place);
   if (bare.size() > 2 && bare[0] == '0' && fold(bare[1]) == 'x') {
     const auto pattern = parse_number(bare);
     const bool fits =
@@ -172,7 +172,7 @@ std::optional<Value> ValueReader::read_real(std::string_view text, DataType type
   if (!value) unreadable(text, name(type), place);
   if (!value) return std::nullopt;
   if (fold(bare.back()) == 'f' && std::isfinite(*value)) {
-    tell_quirks(static_cast<std::uint16_t>(NumberQuirk::suffix), text, place);
+    report_quirks(static_cast<std::uint16_t>(NumberQuirk::suffix), text, place);
   }
   if (type == DataType::real64 || !std::isfinite(*value)) return *value;
   const auto fitted = fit_real32(*value);
@@ -181,7 +181,7 @@ std::optional<Value> ValueReader::read_real(std::string_view text, DataType type
 }
 
 std::optional<Value> ValueReader::read_bytes(std::string_view text, const ValuePlace& place) {
-  auto digits = without_told_comment(text, place);
+  auto digits = without_reported_comment(text, place);
   // Some tools write an empty value in this way.
   if (digits == "0" || digits == "0x0") return std::nullopt;
   bool odd_form = false;
@@ -224,7 +224,7 @@ std::optional<Value> ValueReader::read_time(std::string_view text, DataType type
   const auto bare = without_comment(text);
   const auto gap = bare.find_first_of(" \t");
   if (gap == std::string_view::npos) return read_integer(text, type, place);
-  without_told_comment(text, place);
+  without_reported_comment(text, place);
   const auto first = parse_number(bare.substr(0, gap));
   const auto second = parse_number(bare.substr(gap));
   const auto in_bits = [](const Expected& number, unsigned bits) {
@@ -268,8 +268,8 @@ std::optional<std::uint32_t> ValueReader::read_count(std::string_view text, std:
                         std::to_string(number->magnitude) + ", as CiA 306 says; drop the zero");
   }
   for (const auto& known : quirk_texts) {
-    const bool told = known.quirk == NumberQuirk::comment || known.quirk == NumberQuirk::octal;
-    if (told || !number->has(known.quirk)) continue;
+    const bool reported = known.quirk == NumberQuirk::comment || known.quirk == NumberQuirk::octal;
+    if (reported || !number->has(known.quirk)) continue;
     report_.warning(pos, known.rule,
                     std::string{key} + ": " + quoted(text) + ": " + std::string{known.message});
   }
@@ -302,8 +302,8 @@ bool ValueReader::flag_of(const ParsedNumber& number, std::string_view text, std
   return set;
 }
 
-void ValueReader::tell_quirks(std::uint16_t quirks, std::string_view text,
-                              const ValuePlace& place) {
+void ValueReader::report_quirks(std::uint16_t quirks, std::string_view text,
+                                const ValuePlace& place) {
   for (const auto& known : quirk_texts) {
     if ((quirks & static_cast<std::uint16_t>(known.quirk)) == 0) continue;
     if (!report_.wants(known.rule)) continue;
@@ -312,10 +312,11 @@ void ValueReader::tell_quirks(std::uint16_t quirks, std::string_view text,
   }
 }
 
-std::string_view ValueReader::without_told_comment(std::string_view text, const ValuePlace& place) {
+std::string_view ValueReader::without_reported_comment(std::string_view text,
+                                                       const ValuePlace& place) {
   const auto bare = without_comment(text);
   if (bare.size() != trim(text).size()) {
-    tell_quirks(static_cast<std::uint16_t>(NumberQuirk::comment), text, place);
+    report_quirks(static_cast<std::uint16_t>(NumberQuirk::comment), text, place);
   }
   return bare;
 }
@@ -326,8 +327,8 @@ void ValueReader::exceeds(std::string_view text, DataType type, const ValuePlace
           "; the value is dropped, not cut to fit");
 }
 
-void ValueReader::tell_wrapped(std::string_view text, DataType type, const Value& value,
-                               const ValuePlace& place) {
+void ValueReader::report_wrapped(std::string_view text, DataType type, const Value& value,
+                                 const ValuePlace& place) {
   const auto start = to_string(place) + ": " + quoted(text);
   if (const auto* number = std::get_if<std::int64_t>(&value)) {
     report_.note(place.pos, "bit-pattern",

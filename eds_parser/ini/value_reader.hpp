@@ -41,12 +41,12 @@ class ValueReader {
   std::optional<Value> read_untyped(std::string_view text);
   bool flag_of(const ParsedNumber& number, std::string_view text, std::string_view key,
                SourcePos pos);
-  void tell_quirks(std::uint16_t quirks, std::string_view text, const ValuePlace& place);
+  void report_quirks(std::uint16_t quirks, std::string_view text, const ValuePlace& place);
   /// Returns the text before a comment, and reports that there is a comment.
-  std::string_view without_told_comment(std::string_view text, const ValuePlace& place);
+  std::string_view without_reported_comment(std::string_view text, const ValuePlace& place);
   void exceeds(std::string_view text, DataType type, const ValuePlace& place);
-  void tell_wrapped(std::string_view text, DataType type, const Value& value,
-                    const ValuePlace& place);
+  void report_wrapped(std::string_view text, DataType type, const Value& value,
+                      const ValuePlace& place);
   void unreadable(std::string_view text, std::string_view wanted, const ValuePlace& place);
 
   Report& report_;

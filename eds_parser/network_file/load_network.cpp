@@ -249,9 +249,10 @@ class Loader {
         // The other findings follow from the errors. Any binary file has hundreds of them.
         return f.severity == Severity::error;
       });
-      const bool told = out_.findings.size() != before;
+      const bool reported = out_.findings.size() != before;
       out_.findings.push_back(
-          {path_.string(), node.dcf.pos, told ? Severity::note : Severity::error, "no-device-file",
+          {path_.string(), node.dcf.pos, reported ? Severity::note : Severity::error,
+           "no-device-file",
            "node `" + node.name + "`: `" + *node.dcf + "` can't be read as an EDS or DCF"});
       return nullptr;
     }
@@ -264,7 +265,7 @@ class Loader {
   /// file. If several nodes share the file, it is reported once, with the findings of the first
   /// node.
   void add_device_finding(const fs::path& path, const EdsFile& file, std::optional<NodeId> id) {
-    if (!told_.insert(path).second) return;
+    if (!reported_.insert(path).second) return;
     const Findings judged = check(file.dictionary);
     const auto count = [&](Severity severity) {
       return std::ranges::count(file.findings, severity, &Finding::severity) +
@@ -323,7 +324,7 @@ class Loader {
   DeviceDataUse use_;
   LoadedNetwork out_;
   std::map<std::pair<fs::path, std::uint8_t>, EdsFile> files_;  // stable addresses
-  std::set<fs::path> told_;
+  std::set<fs::path> reported_;
 };
 
 }  // namespace

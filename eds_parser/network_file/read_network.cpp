@@ -117,12 +117,12 @@ class NetworkReader {
   void drop_repeated(std::size_t first) {
     const auto begin = findings_.begin() + static_cast<std::ptrdiff_t>(first);
     const auto repeated = [&](const Finding& finding) {
-      return told_.contains({finding.pos, finding.rule});
+      return reported_.contains({finding.pos, finding.rule});
     };
     findings_.erase(std::remove_if(begin, findings_.end(), repeated), findings_.end());
     for (auto it = findings_.begin() + static_cast<std::ptrdiff_t>(first); it != findings_.end();
          ++it) {
-      told_.emplace(it->pos, it->rule);
+      reported_.emplace(it->pos, it->rule);
     }
   }
 
@@ -131,7 +131,7 @@ class NetworkReader {
   Findings& findings_;
   NetworkReport report_;
   const std::vector<std::string_view> names_ = section_names();
-  std::set<std::pair<SourcePos, std::string_view>> told_;
+  std::set<std::pair<SourcePos, std::string_view>> reported_;
   bool found_node_ = false;
   bool slipped_ = false;  ///< `nodes` is misspelled, and that is already reported
 };

@@ -216,8 +216,8 @@ std::string axis_name(const NodePlan& node, const AxisPlan& axis) {
          (axis.number == 0 ? "" : " (axis " + std::to_string(axis.number + 1) + ")");
 }
 
-void tell_guess(const NodePlan& node, const AxisPlan& axis, const NodeSpec& spec,
-                NetworkReport& report) {
+void report_guess(const NodePlan& node, const AxisPlan& axis, const NodeSpec& spec,
+                  NetworkReport& report) {
   report.note(spec.pos, "standstill",
               "drive " + axis_name(node, axis) +
                   " has no velocity threshold (606F) and no velocity limit (607F, 6080): the "
@@ -242,7 +242,7 @@ std::vector<AxisPlan> compile_axes(const NodePlan& node, const DeviceTable& devi
     axes.push_back(axis.run());
     axes.back().velocity_unit = unit_of(source, number, 0x606C);
     axes.back().position_unit = unit_of(source, number, 0x6064);
-    if (axis.windows_are_guessed()) tell_guess(node, axes.back(), spec, report);
+    if (axis.windows_are_guessed()) report_guess(node, axes.back(), spec, report);
   }
   return axes;
 }

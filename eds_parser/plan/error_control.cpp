@@ -88,7 +88,7 @@ GuardPlan ErrorControl::guard(const NodeSource& node) {
   return {};
 }
 
-void ErrorControl::tell_unused_retry_factor() const {
+void ErrorControl::report_unused_retry_factor() const {
   if (!spec_.retry_factor.given || *spec_.retry_factor == 0 || uses_retry_factor_) return;
   report_.note(
       spec_.retry_factor.pos, "guarding",
@@ -100,13 +100,13 @@ void ErrorControl::tell_unused_retry_factor() const {
 /// guarding and are not reported.
 void ErrorControl::leave_alone(const NodeSpec& spec, const std::string& why,
                                const std::string& remedy) const {
-  const auto tell = [&](const auto& key, const std::string& word) {
+  const auto announce = [&](const auto& key, const std::string& word) {
     if (!key.given || *key == 0) return;
     report_.note(key.pos, "guarding", why + ": `" + word + "` has no effect" + remedy);
   };
-  tell(spec.guard_time, "guard_time");
-  tell(spec.life_time_factor, "life_time_factor");
-  tell(spec.retry_factor, "retry_factor");
+  announce(spec.guard_time, "guard_time");
+  announce(spec.life_time_factor, "life_time_factor");
+  announce(spec.retry_factor, "retry_factor");
 }
 
 void check_keep_alive(const NodeSpec& spec, const NodePlan& node, NetworkReport& report) {

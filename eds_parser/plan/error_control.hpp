@@ -26,7 +26,7 @@ class ErrorControl {
   /// there is no heartbeat.
   GuardPlan guard(const NodeSource& node);
   /// Reports `retry_factor` of `options` if guard() gave it to no node.
-  void tell_unused_retry_factor() const;
+  void report_unused_retry_factor() const;
 
  private:
   std::uint16_t wanted_producer_ms(const NodeSource& node) const;

@@ -77,7 +77,7 @@ class NetworkCompiler {
     for (const NodePdos& node : nodes_) judge_pdo_times(node, plan().bitrate, report_);
     ask_about_drives(nodes_, report_);
     for (const NodePdos& node : nodes_) add_node(node);
-    error_control_.tell_unused_retry_factor();
+    error_control_.report_unused_retry_factor();
     compile_layout(nodes_, plan(), report_);
     compile_cycle(spec_, nodes_, plan(), report_);
     compile_limits(nodes_, plan(), report_);

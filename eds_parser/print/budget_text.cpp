@@ -218,7 +218,7 @@ class BudgetText {
   template <class Fits>
   void list(Fits fits, std::optional<Time> BudgetRow::* end) {
     std::size_t left_out = 0;
-    std::size_t told = 0;
+    std::size_t reported = 0;
     const bool overloaded = std::ranges::any_of(
         budget_.rows, [&](const BudgetRow& row) { return row.frame.in_cycle && !(row.*end); });
     if (overloaded) {
@@ -227,7 +227,7 @@ class BudgetText {
     }
     for (const auto& row : budget_.rows) {
       if (fits(row) || (overloaded && !(row.*end))) continue;
-      if (told++ < most_told) {
+      if (reported++ < most_reported) {
         out_ << "  " << why_late(row, row.*end) << '\n';
       } else {
         ++left_out;
@@ -248,7 +248,7 @@ class BudgetText {
                        us(row.cycle));
   }
 
-  static constexpr std::size_t most_told = 8;
+  static constexpr std::size_t most_reported = 8;
   static constexpr std::size_t many = 4;
 
   std::ostream& out_;

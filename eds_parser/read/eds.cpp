@@ -78,7 +78,7 @@ class EdsReader {
     }
     const auto same = [this](const ObjectSection& first, const ObjectSection& second) {
       if (first.order != second.order) return false;
-      tell_duplicate(file_.sections[first.section], file_.sections[second.section]);
+      report_duplicate(file_.sections[first.section], file_.sections[second.section]);
       return true;
     };
     objects.erase(std::unique(objects.begin(), objects.end(), same), objects.end());
@@ -97,7 +97,7 @@ class EdsReader {
           section.pos, "section-name-form",
           "section " + quoted(section.name) + ": CiA 306 writes sub-indices without leading zero");
     }
-    if (name.blank || section.padded()) tell_blank_in_name(section, report_);
+    if (name.blank || section.padded()) report_blank_in_name(section, report_);
     switch (name.kind) {
       case SectionKind::object:
       case SectionKind::sub_object:
@@ -123,7 +123,7 @@ class EdsReader {
       case SectionKind::commissioning:
         return keep(outline_.commissioning, section);
       case SectionKind::unknown:
-        return tell_unknown(section);
+        return report_unknown(section);
       case SectionKind::file_info:
         return keep(outline_.file_info, section);
       case SectionKind::comments:
@@ -148,24 +148,24 @@ class EdsReader {
           outline_.modules.emplace_back(name.module, &section);
           return;
         }
-        if (!modules_.add(name, at, report_)) tell_unknown(section);
+        if (!modules_.add(name, at, report_)) report_unknown(section);
         return;
     }
   }
 
   void keep(const IniSection*& slot, const IniSection& section) {
-    if (slot != nullptr) return tell_duplicate(*slot, section);
+    if (slot != nullptr) return report_duplicate(*slot, section);
     slot = &section;
   }
 
-  void tell_duplicate(const IniSection& first, const IniSection& second) {
+  void report_duplicate(const IniSection& first, const IniSection& second) {
     if (!report_.wants("duplicate-section")) return;
     report_.warning(second.pos, "duplicate-section",
                     "section " + quoted(second.name) + " appears again; the first one, line " +
                         std::to_string(first.pos.line) + ", applies");
   }
 
-  void tell_unknown(const IniSection& section) {
+  void report_unknown(const IniSection& section) {
     if (!report_.wants("unknown-section")) return;
     report_.warning(section.pos, "unknown-section",
                     "section " + quoted(section.name) + " is not one of CiA 306; it was left out");
@@ -233,7 +233,7 @@ class EdsReader {
     for (const auto& link : outline_.links) {
       const auto& section = file_.sections[link.section];
       if (!is_described(link.index())) {
-        tell_lonely_list(section, report_);
+        report_lonely_list(section, report_);
         continue;
       }
       auto links = read_links(section, entries(&section), is_described, report_);
@@ -247,7 +247,7 @@ class EdsReader {
     for (std::size_t at = 0; at < outline_.modules.size(); ++at) {
       const auto [number, section] = outline_.modules[at];
       if (!dictionary.modules.empty() && dictionary.modules.back().number == number) {
-        tell_duplicate(*outline_.modules[at - 1].second, *section);
+        report_duplicate(*outline_.modules[at - 1].second, *section);
       } else {
         dictionary.modules.push_back(read_module_info(number, *section, entries(section), report_));
       }
@@ -278,11 +278,11 @@ class EdsReader {
       std::size_t end = at + 1;
       while (end < all.size() && all[end].index() == all[at].index()) ++end;
       if (all[at].is_list()) {
-        tell_lonely_list(file_.sections[all[at].section], report_);
+        report_lonely_list(file_.sections[all[at].section], report_);
       } else {
         auto& object = dictionary.objects.emplace_back(reader.read(all.subspan(at, end - at)));
         object.list = lists.list_of(object.index);
-        lists.tell_unlisted(object);
+        lists.report_unlisted(object);
       }
       at = end;
     }

@@ -53,7 +53,7 @@ class ChannelReader {
     }
     keys_.number(channel.offset, "ppoffset" + number, values_);
     keys_.number(channel.most, "maxcnt" + number, values_);
-    tell_overlap(channel, number);
+    report_overlap(channel, number);
     channels_.push_back(channel);
   }
 
@@ -111,7 +111,7 @@ class ChannelReader {
     return false;
   }
 
-  void tell_overlap(const DynamicChannel& channel, const std::string& number) {
+  void report_overlap(const DynamicChannel& channel, const std::string& number) {
     const auto other = std::ranges::find_if(channels_, [&](const DynamicChannel& seen) {
       return channel.first <= seen.last && seen.first <= channel.last;
     });

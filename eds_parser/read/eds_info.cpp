@@ -69,7 +69,7 @@ void read_file_info(FileInfo& info, const IniEntries& entries, Report& report) {
   info.modification_time = keys.text("modificationtime");
   info.modified_by = keys.text("modifiedby");
   info.last_eds = keys.text("lasteds");
-  keys.tell_unknown("FileInfo", nothing_else);
+  keys.report_unknown("FileInfo", nothing_else);
 }
 
 std::vector<std::string> read_comments(const IniEntries& entries, Report& report) {
@@ -81,7 +81,7 @@ std::vector<std::string> read_comments(const IniEntries& entries, Report& report
     } else if (is_numbered(entry.key, "line")) {
       lines.push_back(to_utf8(entry.value));
     } else {
-      tell_unknown_key(entry, "Comments", report);
+      report_unknown_key(entry, "Comments", report);
     }
   }
   if (count) check_entry_count(*count, lines.size(), "Comments", report);
@@ -91,14 +91,14 @@ std::vector<std::string> read_comments(const IniEntries& entries, Report& report
 VendorTool read_tool(const IniSection& section, const IniEntries& entries, Report& report) {
   const SectionKeys keys{entries, report};
   VendorTool tool{keys.text("name"), keys.text("command")};
-  keys.tell_unknown(section.name, nothing_else);
+  keys.report_unknown(section.name, nothing_else);
   return tool;
 }
 
 void check_tools(const IniEntries& entries, std::size_t found, Report& report) {
   const SectionKeys keys{entries, report};
   if (const auto* count = keys.get("items")) check_entry_count(*count, found, "Tools", report);
-  keys.tell_unknown("Tools", nothing_else);
+  keys.report_unknown("Tools", nothing_else);
 }
 
 ObjectLinks read_links(const IniSection& section, const IniEntries& entries,
@@ -113,7 +113,7 @@ ObjectLinks read_links(const IniSection& section, const IniEntries& entries,
       continue;
     }
     if (!entry_number(entry.key)) {
-      tell_unknown_key(entry, section.name, report);
+      report_unknown_key(entry, section.name, report);
       continue;
     }
     ++found;
@@ -158,7 +158,7 @@ void read_device_info(DeviceInfo& device, const IniSection& section, const IniEn
   pdos(device.nr_tx_pdo, device.nr_tx_pdo_pos, "nroftxpdo");
   keys.flag(device.lss_supported, "lss_supported", values);
   keys.number(device.compact_pdo, "compactpdo", values);
-  keys.tell_unknown("DeviceInfo", is_reserved);
+  keys.report_unknown("DeviceInfo", is_reserved);
   read_baud_rates(device, entries, values);
 }
 
@@ -174,7 +174,7 @@ void read_commissioning(Commissioning& commissioning, const IniEntries& entries,
   keys.flag(commissioning.manager, "canopenmanager", values);
   const auto* rate = keys.get("baudrate");
   const auto* node = keys.get("nodeid");
-  keys.tell_unknown("DeviceComissioning", nothing_else);
+  keys.report_unknown("DeviceComissioning", nothing_else);
   if (const auto* entry = node) {
     const auto id = values.read_count(entry->value, 0xFFFF'FFFF, entry->key, entry->pos());
     if (id) commissioning.node_id = NodeId::from(*id);
@@ -199,7 +199,7 @@ ModuleInfo read_module_info(std::uint16_t number, const IniSection& section,
   const SectionKeys keys{entries, report};
   ModuleInfo info{number, keys.text("productname"), keys.text("productversion"),
                   keys.text("productrevision"), keys.text("ordercode")};
-  keys.tell_unknown(section.name, nothing_else);
+  keys.report_unknown(section.name, nothing_else);
   return info;
 }
 
@@ -208,7 +208,7 @@ void read_dummy_usage(std::array<bool, 8>& usage, const IniEntries& entries, Val
   constexpr std::string_view prefix = "dummy000";
   for (const auto& entry : entries) {
     if (!is_dummy(entry.key)) {
-      tell_unknown_key(entry, "DummyUsage", report);
+      report_unknown_key(entry, "DummyUsage", report);
       continue;
     }
     const int digit = hex_digit(entry.key.back());

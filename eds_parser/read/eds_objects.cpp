@@ -196,14 +196,15 @@ void ObjectReader::check_sub_number(const Object& object, const ObjectFields& fi
                     section_text(section) + " is an ARRAY or RECORD without sub-objects");
     return;
   }
-  const auto said = values_.read_count(fields.text(Keyword::sub_number), 0xFF, "SubNumber", pos);
-  if (!said) {
+  const auto declared =
+      values_.read_count(fields.text(Keyword::sub_number), 0xFF, "SubNumber", pos);
+  if (!declared) {
     report_.warning(pos, "sub-number-missing",
                     section_text(section) + " has no SubNumber; " + std::to_string(found) +
                         " sub-objects were found");
-  } else if (*said != found) {
+  } else if (*declared != found) {
     report_.warning(pos, "sub-number-wrong",
-                    "SubNumber of " + section_text(section) + " is " + std::to_string(*said) +
+                    "SubNumber of " + section_text(section) + " is " + std::to_string(*declared) +
                         ", but there are sections of " + std::to_string(found) +
                         " sub-objects (sub FF not counted); all were read");
   }
@@ -298,15 +299,16 @@ Access ObjectReader::read_access(const ObjectFields& fields, ObjectKey key,
                     to_string(key) + " AccessType: text behind ';' or '#' was read as a comment");
     return *access;
   }
-  const auto tell = [&](std::string_view rule, const std::string& what) {
+  const auto announce = [&](std::string_view rule, const std::string& what) {
     report_.warning(pos, rule, to_string(key) + ": AccessType " + what);
   };
   if (const auto access = access_of_letter(bare)) {
-    tell("access-type-letter", quoted(bare) + " was read as " + std::string{access_name(*access)});
+    announce("access-type-letter",
+             quoted(bare) + " was read as " + std::string{access_name(*access)});
     return *access;
   }
-  if (!bare.empty()) tell("access-type-unknown", quoted(bare) + " is unknown; read as rw");
-  if (bare.empty() && !is_domain) tell("access-type-missing", "is missing; read as rw");
+  if (!bare.empty()) announce("access-type-unknown", quoted(bare) + " is unknown; read as rw");
+  if (bare.empty() && !is_domain) announce("access-type-missing", "is missing; read as rw");
   return Access::rw;
 }
 

@@ -64,7 +64,7 @@ void ModuleLists::check_list(const List& list, const IniEntries& entries, std::s
       continue;
     }
     if (!entry_number(entry.key)) {
-      tell_unknown_key(entry, list.section->name, report);
+      report_unknown_key(entry, list.section->name, report);
       continue;
     }
     ++found;

@@ -85,9 +85,9 @@ void add_sub(Object& object, const SubObject& pattern, unsigned sub) {
   }
   auto& count = object.subs.front();
   if (count.sub != 0) return;
-  const bool told =
+  const bool reported =
       count.default_value && std::holds_alternative<std::uint64_t>(*count.default_value);
-  if (told && std::get<std::uint64_t>(*count.default_value) >= object.subs.back().sub) return;
+  if (reported && std::get<std::uint64_t>(*count.default_value) >= object.subs.back().sub) return;
   count.default_value = std::uint64_t{object.subs.back().sub};
   count.default_text = std::to_string(object.subs.back().sub);
 }
@@ -111,7 +111,7 @@ bool ModuleSections::add(const SectionName& name, std::uint32_t section, Report&
     return false;
   }
   if (object.blank && !file_.sections[section].padded()) {
-    tell_blank_in_name(file_.sections[section], report);
+    report_blank_in_name(file_.sections[section], report);
   }
   lists_.add_object(name.module, part, object.index, file_.sections[section]);
   indices_.insert(object.index);
@@ -130,7 +130,7 @@ void ModuleSections::expand(ObjectDictionary& dictionary, ObjectReader& reader, 
     report.error(connected_->pos, "too-many-sub-objects",
                  "the connected modules need too many sub-objects; the rest was left out");
   }
-  for (const auto& fill : fills_) tell_overlap(fill, dictionary, report);
+  for (const auto& fill : fills_) report_overlap(fill, dictionary, report);
   std::vector<Object> made;
   made.reserve(made_.size());
   for (auto& [index, object] : made_) made.push_back(std::move(object));
@@ -255,7 +255,7 @@ void ModuleSections::add_fixed(std::uint16_t module, const ObjectDictionary& dic
     if (at + 1 < all.size() && all[at + 1].object.index() == index) continue;
     if (group.front().is_list()) {
       const bool lonely = dictionary.find(index) == nullptr && !made_.contains(index);
-      if (lonely) tell_lonely_list(file_.sections[group.front().section], report);
+      if (lonely) report_lonely_list(file_.sections[group.front().section], report);
     } else if (dictionary.find(index) == nullptr && !made_.contains(index)) {
       auto object = reader.read(group);
       object.list =
@@ -285,7 +285,7 @@ bool ModuleSections::extend(const ModuleSection& section, ObjectDictionary& dict
   const auto next_sub = [&] {
     fill.bits_used = 0;
     if (fill.sub == last_sub && extension.last_sub != 0) {
-      tell_overlap(fill, dictionary, report);
+      report_overlap(fill, dictionary, report);
       fill.sub = 0;
       fill.described = described_subs(++fill.index, dictionary);
     }
@@ -341,7 +341,8 @@ unsigned ModuleSections::described_subs(std::uint16_t index, ObjectDictionary& d
 /// Warns if the file describes another number of sub-objects than the modules bring. A DCF may hold
 /// the sub-objects of its modules as sections, which then are the same. If the numbers differ, some
 /// of them were meant as different objects.
-void ModuleSections::tell_overlap(const Fill& fill, ObjectDictionary& dictionary, Report& report) {
+void ModuleSections::report_overlap(const Fill& fill, ObjectDictionary& dictionary,
+                                    Report& report) {
   if (fill.described == 0 || fill.sub == 0 || fill.described == fill.sub) return;
   report.warning(find(fill.index, dictionary)->pos, "module-sub-objects",
                  "object " + hex(fill.index) + " is described up to sub-index " +

@@ -74,7 +74,7 @@ class ModuleSections {
   Object* find(std::uint16_t index, ObjectDictionary& dictionary);
   Fill& fill_of(std::uint16_t index, ObjectDictionary& dictionary);
   unsigned described_subs(std::uint16_t index, ObjectDictionary& dictionary);
-  void tell_overlap(const Fill& fill, ObjectDictionary& dictionary, Report& report);
+  void report_overlap(const Fill& fill, ObjectDictionary& dictionary, Report& report);
 
   const IniFile& file_;
   const IniSection* connected_ = nullptr;

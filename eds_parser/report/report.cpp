@@ -6,7 +6,7 @@ namespace takt {
 
 bool Report::wants(std::string_view rule) const noexcept {
   const auto it = std::ranges::find(counts_, rule, &Count::rule);
-  return it == counts_.end() || it->said < limit_per_rule;
+  return it == counts_.end() || it->declared < limit_per_rule;
 }
 
 void Report::note(SourcePos pos, std::string_view rule, std::string message) {
@@ -30,8 +30,8 @@ Findings Report::take() {
 void Report::add(SourcePos pos, Severity severity, std::string_view rule, std::string message) {
   auto it = std::ranges::find(counts_, rule, &Count::rule);
   if (it == counts_.end()) it = counts_.insert(counts_.end(), Count{rule});
-  if (it->said >= limit_per_rule) return;
-  if (++it->said == limit_per_rule) message += " (further findings of this rule are left out)";
+  if (it->declared >= limit_per_rule) return;
+  if (++it->declared == limit_per_rule) message += " (further findings of this rule are left out)";
   findings_.push_back({file_, pos, severity, rule, std::move(message)});
 }
 

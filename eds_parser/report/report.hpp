@@ -30,7 +30,7 @@ class Report {
  private:
   struct Count {
     std::string_view rule;
-    std::size_t said = 0;
+    std::size_t declared = 0;
   };
 
   void add(SourcePos pos, Severity severity, std::string_view rule, std::string message);

@@ -38,7 +38,7 @@ class Collector {
       : dictionary_{dictionary}, report_{report} {}
 
   std::vector<ConciseEntry> collect() {
-    tell_left_out();
+    report_left_out();
     std::uint16_t last_pdo = 0;
     for (const auto& object : dictionary_.objects) {
       const auto pdo = pdo_of(object.index);
@@ -55,7 +55,7 @@ class Collector {
   }
 
  private:
-  void tell_left_out() {
+  void report_left_out() {
     for (const auto& files : dictionary_.domain_files) {
       if (files.download.empty()) continue;
       report_.warning(files.pos, "download-left-out",
@@ -115,8 +115,8 @@ class Collector {
   void add_mapping(const Object& mapping) {
     const ObjectKey entries{mapping.index, 0};
     const auto* count = dictionary_.find(entries);
-    const auto said = integer_of(dictionary_, entries);
-    const auto number = said ? *said : entries_of(mapping);
+    const auto declared = integer_of(dictionary_, entries);
+    const auto number = declared ? *declared : entries_of(mapping);
     const bool writable =
         count != nullptr && count->access != Access::ro && count->access != Access::constant;
     if (writable) add({mapping.index, 0}, *count, Value{std::uint64_t{0}});

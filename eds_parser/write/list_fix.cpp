@@ -75,8 +75,8 @@ void ListFix::set_count(const IniSection& section, std::size_t number) {
     if (!is_count_key(entry.key)) continue;
     touched_.insert(entry.line);
     const std::string_view bare = without_comment(entry.value);
-    const auto said = parse_number(bare);
-    if (said && said->magnitude == number && said->quirks == 0) return;
+    const auto declared = parse_number(bare);
+    if (declared && declared->magnitude == number && declared->quirks == 0) return;
     if (bare.empty()) {
       const auto at = static_cast<std::size_t>(entry.value.data() - text_.data());
       return edits_.replace(text_.substr(at, 0), std::to_string(number));

@@ -139,13 +139,13 @@ std::expected<void, std::string> write_recording(const std::filesystem::path& st
                                                  const BusPlan& plan, const RecordingHead& head,
                                                  const std::vector<std::uint64_t>& records) {
   const UnravelledTape tape = unravel(records);
-  RecordingHead told = head;
-  told.from_start = !records.empty() && journal::mark_of(records.front()) == Mark::now;
+  RecordingHead reported = head;
+  reported.from_start = !records.empty() && journal::mark_of(records.front()) == Mark::now;
   UnfinishedFiles files{stem};
   files.write(recording_format::journal_ending,
               [&](std::ostream& out) { write_journal(out, tape.words); });
   files.write(recording_format::events_ending,
-              [&](std::ostream& out) { write_events(out, plan, told, tape); });
+              [&](std::ostream& out) { write_events(out, plan, reported, tape); });
   files.write(recording_format::log_ending,
               [&](std::ostream& out) { write_log(out, tape, interface_of(plan)); });
   return files.finish();

@@ -12,10 +12,10 @@ namespace {
 class Replay {
  public:
   Replay(const BusPlan& plan, const LoadedRecording& recording,
-         const std::function<void(const Decision&)>& tell)
+         const std::function<void(const Decision&)>& announce)
       : plan_{plan},
         recording_{recording},
-        tell_{tell},
+        announce_{announce},
         port_{recording.parts, plan.layout.outputs()},
         exchange_{std::make_unique<Exchange>(plan)},
         loop_{plan, port_, {port_, *exchange_}, {.observe = recording.head.observe}} {}
@@ -61,7 +61,7 @@ class Replay {
     std::string event_differs;
     for (Event event; exchange_->events.pop(event);) {
       const Decision decision = to_decision(plan_, event);
-      tell_(decision);
+      announce_(decision);
       if (event_differs.empty()) event_differs = compare(decision);
     }
     if (port_.difference()) {
@@ -92,7 +92,7 @@ class Replay {
 
   const BusPlan& plan_;
   const LoadedRecording& recording_;
-  const std::function<void(const Decision&)>& tell_;
+  const std::function<void(const Decision&)>& announce_;
   ReplayPort port_;
   std::unique_ptr<Exchange> exchange_;
   BusLoop<ReplayPort, ReplayedLink> loop_;
@@ -102,8 +102,8 @@ class Replay {
 }  // namespace
 
 ReplayOutcome replay(const BusPlan& plan, const LoadedRecording& recording,
-                     const std::function<void(const Decision&)>& tell) {
-  return std::make_unique<Replay>(plan, recording, tell)->run();
+                     const std::function<void(const Decision&)>& announce) {
+  return std::make_unique<Replay>(plan, recording, announce)->run();
 }
 
 }  // namespace takt

@@ -19,6 +19,6 @@ struct ReplayOutcome {
 /// is that of the recording, or another one; the first difference then shows the effect of the
 /// change.
 ReplayOutcome replay(const BusPlan& plan, const LoadedRecording& recording,
-                     const std::function<void(const Decision&)>& tell);
+                     const std::function<void(const Decision&)>& announce);
 
 }  // namespace takt

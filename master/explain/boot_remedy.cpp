@@ -275,7 +275,7 @@ std::string against_dead_node(const BootStep& step) {
 }
 
 /// The device has given an answer that tells something about its software.
-bool tells_of_program(const BootFailure& failure) noexcept {
+bool reports_of_program(const BootFailure& failure) noexcept {
   if (failure.letter < 'G' || failure.letter > 'I') return false;
   return failure.fault == SdoFault::none || failure.fault == SdoFault::aborted_by_device ||
          (failure.fault == SdoFault::timeout && failure.letter == 'I');
@@ -330,7 +330,7 @@ std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure&
   if (failure.step >= node.boot_plan.steps.size()) return {};
   const BootStep& step = node.boot_plan.steps[failure.step];
   if (step.action == BootAction::await_alive) return against_dead_node(step);
-  if (tells_of_program(failure)) return against_program(node, step, failure);
+  if (reports_of_program(failure)) return against_program(node, step, failure);
   if (failure.letter == 'L' && failure.running) return against_running_node(node, failure);
   switch (failure.fault) {
     case SdoFault::none:

@@ -39,12 +39,12 @@ Channels::Channels(const std::string& bus)
       transfer_state{channel_name(bus, "TRANSFER_STATE")} {}
 
 Bridge::Bridge(MasterRun& master, Transport& transport, const Clocks& clocks, BridgeOptions options,
-               NoticeSink tell)
+               NoticeSink announce)
     : master_{master},
       transport_{transport},
       clocks_{clocks},
       options_{std::move(options)},
-      tell_{std::move(tell)},
+      announce_{std::move(announce)},
       channels_{master.plan().name},
       image_messages_{master.plan(), options_.session},
       layout_messages_{layout_messages(master.plan(), options_.session)},
@@ -55,7 +55,7 @@ Bridge::Bridge(MasterRun& master, Transport& transport, const Clocks& clocks, Br
                 [this](SignalIndex signal, std::int64_t value, std::uint32_t time_to_live) {
                   outputs_staged_ |= master_.set(signal, value, time_to_live);
                 },
-                [this](const Notice& notice) { this->tell(notice); }},
+                [this](const Notice& notice) { this->announce(notice); }},
       requests_{master.plan(),
                 {.session = options_.session, .observe = options_.observe},
                 [this](const Request& request) { return master_.submit(request); }},
@@ -63,7 +63,7 @@ Bridge::Bridge(MasterRun& master, Transport& transport, const Clocks& clocks, Br
                  {.session = options_.session, .observe = options_.observe},
                  master.transfers(),
                  {.submit = [this](const Request& request) { return master_.submit(request); },
-                  .state = [this](const transfer_state_t& state) { tell_transfer(state); }}},
+                  .state = [this](const transfer_state_t& state) { report_transfer(state); }}},
       outages_{master.plan()},
       emcys_{master.plan().nodes.size()},
       wall_minus_monotonic_{clocks_.wall_offset()},
@@ -88,13 +88,13 @@ void Bridge::notice_gap() {
   if (!gap_.discards_requests(now)) return;
   ++long_gaps_;
   const auto milliseconds = gap_.length() / std::chrono::milliseconds{1};
-  tell({.when = now,
-        .cycle = cycle_at(now),
-        .node = 0,
-        .kind = "front_gap",
-        .weight = Weight::warning,
-        .text = "taktd's front thread did not run for " + std::to_string(milliseconds) +
-                " ms: taktd discards the commands and requests that waited in this time"});
+  announce({.when = now,
+            .cycle = cycle_at(now),
+            .node = 0,
+            .kind = "front_gap",
+            .weight = Weight::warning,
+            .text = "taktd's front thread did not run for " + std::to_string(milliseconds) +
+                    " ms: taktd discards the commands and requests that waited in this time"});
 }
 
 std::uint64_t Bridge::cycle_at(Time now) const noexcept {
@@ -196,7 +196,7 @@ void Bridge::on_message(std::string_view channel, Bytes data) {
 void Bridge::on_typed(std::string_view channel, Bytes data) {
   const auto command = typed_->command(channel, data);
   if (!command) return;
-  if (!*command) return tell_damaged(std::string{channel}, command->error());
+  if (!*command) return report_damaged(std::string{channel}, command->error());
   take_command(**command, typed_->node_of(channel));
 }
 
@@ -220,7 +220,7 @@ bool Bridge::take_at(const command_t& command, Time now, std::optional<std::size
 
 void Bridge::on_command(Bytes data) {
   const auto command = decode<command_t>(data);
-  if (!command) return tell_damaged(channels_.command, command.error());
+  if (!command) return report_damaged(channels_.command, command.error());
   take_command(*command);
 }
 
@@ -251,7 +251,7 @@ bool Bridge::command(const std::string& sender, std::span<const SignalIndex> sig
   return taken;
 }
 
-void Bridge::tell_damaged(const std::string& channel, DecodeFault fault) {
+void Bridge::report_damaged(const std::string& channel, DecodeFault fault) {
   ++damaged_count_;
   const Time now = clocks_.now();
   const auto kept_back = damaged_.allow(channel + std::string{text(fault)}, now);
@@ -259,12 +259,12 @@ void Bridge::tell_damaged(const std::string& channel, DecodeFault fault) {
   std::string sentence = "a message on " + channel + " can't be read: ";
   sentence += fault == DecodeFault::schema_1 ? schema_refusal(1) : std::string{text(fault)};
   if (*kept_back != 0) sentence += " (" + std::to_string(*kept_back) + " more)";
-  tell({.when = now,
-        .cycle = cycle_,
-        .node = 0,
-        .kind = "bad_message",
-        .weight = Weight::warning,
-        .text = std::move(sentence)});
+  announce({.when = now,
+            .cycle = cycle_,
+            .node = 0,
+            .kind = "bad_message",
+            .weight = Weight::warning,
+            .text = std::move(sentence)});
 }
 
 void Bridge::take_events() {
@@ -275,31 +275,31 @@ void Bridge::take_events() {
     if (events_left_) take_event(event);
   } while (events_left_ && budget.is_left());
   for (const Notice& notice : outages_.take_due(clocks_.now())) send(notice);
-  tell_lost_events();
+  report_lost_events();
 }
 
 void Bridge::take_event(const Event& event) {
   remember(event);
   if (guest_ != nullptr) guest_->hear(event);
   emcy_log_.take(event, wall_microseconds(event.when));
-  tell(event);
+  announce(event);
 }
 
 std::uint64_t Bridge::events_lost() const noexcept {
   return master_.event_overruns() + snapshot_.bus.events_lost;
 }
 
-void Bridge::tell_lost_events() {
+void Bridge::report_lost_events() {
   const std::uint64_t lost = events_lost();
-  const std::uint64_t more = lost - std::exchange(events_lost_told_, lost);
+  const std::uint64_t more = lost - std::exchange(events_lost_reported_, lost);
   if (more == 0) return;
-  tell({.when = clocks_.now(),
-        .cycle = cycle_,
-        .node = 0,
-        .kind = "events_lost",
-        .weight = Weight::warning,
-        .text = subject(master_.plan(), 0) + ": " + std::to_string(more) +
-                " events were lost: more events came at once than the queue holds"});
+  announce({.when = clocks_.now(),
+            .cycle = cycle_,
+            .node = 0,
+            .kind = "events_lost",
+            .weight = Weight::warning,
+            .text = subject(master_.plan(), 0) + ": " + std::to_string(more) +
+                    " events were lost: more events came at once than the queue holds"});
 }
 
 /// Adds what only the gateway knows: the limit that the last command had, and its sender.
@@ -311,19 +311,19 @@ Notice Bridge::fallback_notice(Event event) const {
   return notice;
 }
 
-void Bridge::tell(const Event& event) {
+void Bridge::announce(const Event& event) {
   // A new stop removes the axes of an earlier NMT stop.
   if (event.kind == EventKind::stopping) stop_text_.clear();
   if (event.kind == EventKind::axis_not_stopped) {
-    if (std::exchange(stop_told_, event.when) != event.when) stop_text_.clear();
+    if (std::exchange(stop_reported_, event.when) != event.when) stop_text_.clear();
     stop_text_ += (stop_text_.empty() ? "" : "\n") + named_axis_stop_text(master_.plan(), event);
   }
   if (event.kind == EventKind::stopped) {
     for (const Notice& notice : outages_.take_rest(event.when)) send(notice);
   }
   if (!PdoOutages::concerns(event.kind)) {
-    tell(event.kind == EventKind::fallback_begun ? fallback_notice(event)
-                                                 : to_notice(master_.plan(), event));
+    announce(event.kind == EventKind::fallback_begun ? fallback_notice(event)
+                                                     : to_notice(master_.plan(), event));
   } else if (const auto notice = outages_.on_event(event)) {
     send(*notice);
   }
@@ -337,7 +337,7 @@ void Bridge::remember(const Event& event) {
   emcys_.add(master_.plan().index_of(event.node), code);
 }
 
-void Bridge::tell(Notice notice) {
+void Bridge::announce(Notice notice) {
   const auto kept_back = limit_.allow(notice);
   if (!kept_back) return;
   if (*kept_back != 0) {
@@ -355,7 +355,7 @@ void Bridge::send(Notice notice) {
   message.utime = wall_microseconds(notice.when);
   message.session = options_.session;
   publish(channels_.event, message);
-  tell_(notice);
+  announce_(notice);
 }
 
 void Bridge::publish_layout(Time now) {

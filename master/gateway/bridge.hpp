@@ -51,7 +51,7 @@ class Bridge {
  public:
   /// `tell` receives all events and notices of the gateway, right after LCM.
   Bridge(MasterRun& master, Transport& transport, const Clocks& clocks, BridgeOptions options,
-         NoticeSink tell);
+         NoticeSink announce);
 
   /// Registers a guest that receives images, events and the replies to requests with
   /// FrontGuest::mark. The guest must outlive this object.
@@ -76,10 +76,10 @@ class Bridge {
   /// status_t, pdo_status_t, layout_t or timing_t is due.
   Time next_message() const noexcept;
   /// Takes an event of the bus thread or of the diagnostic socket.
-  void tell(const Event& event);
+  void announce(const Event& event);
   /// Takes a notice from elsewhere. Sends it to LCM and to `tell`, unless there are too many of its
   /// kind.
-  void tell(Notice notice);
+  void announce(Notice notice);
 
   /// Begins what `record` requests ask for, and returns why it can't begin. answer() must follow.
   /// Without a handler, the bridge refuses these requests.
@@ -114,7 +114,7 @@ class Bridge {
   void take_event(const Event& event);
   /// Events lost in the bus thread and on the way from it.
   std::uint64_t events_lost() const noexcept;
-  void tell_lost_events();
+  void report_lost_events();
   Notice fallback_notice(Event event) const;
   void remember(const Event& event);
   void take_replies(const FrontBudget& budget);
@@ -131,7 +131,7 @@ class Bridge {
   void refuse(const request_t& request, const std::string& why);
   void answer_history(const request_t& request);
   void on_transfer(Bytes data);
-  void tell_damaged(const std::string& channel, DecodeFault fault);
+  void report_damaged(const std::string& channel, DecodeFault fault);
   /// A message that is published periodically.
   struct PeriodicState {
     Time period;
@@ -146,7 +146,7 @@ class Bridge {
   void publish_pdos(Time now);
   void publish_timing(Time now);
   void answer(reply_t reply);
-  void tell_transfer(transfer_state_t state);
+  void report_transfer(transfer_state_t state);
   std::int64_t wall_microseconds(Time monotonic) const noexcept;
   template <class T>
   void publish(const std::string& channel, const T& message) {
@@ -158,7 +158,7 @@ class Bridge {
   const Clocks& clocks_;
   FrontClock clock_ = [this] { return clocks_.now(); };
   BridgeOptions options_;
-  NoticeSink tell_;
+  NoticeSink announce_;
   FrontGuest* guest_ = nullptr;
   Requests::Begin record_;
   Channels channels_;
@@ -175,7 +175,7 @@ class Bridge {
   NoticeLimit limit_;
   EmcyHistory emcys_;
   std::string stop_text_;  ///< one line for each axis that the newest stop did not confirm
-  Time stop_told_{};       ///< end of that stop
+  Time stop_reported_{};   ///< end of that stop
   std::uint64_t damaged_count_ = 0;
   RateLimit damaged_{std::chrono::seconds{10}};
   std::vector<std::byte> buffer_;
@@ -200,7 +200,7 @@ class Bridge {
   /// gap.
   std::uint64_t first_cycle_ = 0;
   std::uint64_t images_ = 0;
-  std::uint64_t events_lost_told_ = 0;
+  std::uint64_t events_lost_reported_ = 0;
   bool outputs_staged_ = false;
   bool replies_left_ = false;    // the budget of this round ended before the replies
   bool transfers_left_ = false;  // steps of transfers are left over

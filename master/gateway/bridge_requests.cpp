@@ -48,7 +48,7 @@ void Bridge::answer(reply_t reply) {
 
 void Bridge::on_request(Bytes data) {
   const auto request = decode<request_t>(data);
-  if (!request) return tell_damaged(channels_.request, request.error());
+  if (!request) return report_damaged(channels_.request, request.error());
   const Time now = clocks_.now();
   if (requests_.is_echo(*request, now)) return;
   const bool fits = !Requests::oversize(*request);
@@ -127,14 +127,14 @@ void Bridge::answer_history(const request_t& request) {
 
 void Bridge::on_transfer(Bytes data) {
   const auto transfer = decode<transfer_t>(data);
-  if (!transfer) return tell_damaged(channels_.transfer, transfer.error());
+  if (!transfer) return report_damaged(channels_.transfer, transfer.error());
   const Time now = clocks_.now();
   const std::string trouble = age_trouble(transfer->utime, now);
   if (trouble.empty()) return transfers_.take(*transfer, now);
   transfers_.take_old(*transfer, trouble);
 }
 
-void Bridge::tell_transfer(transfer_state_t state) {
+void Bridge::report_transfer(transfer_state_t state) {
   state.utime = wall_microseconds(clocks_.now());
   publish(channels_.transfer_state, state);
 }

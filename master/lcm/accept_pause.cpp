@@ -9,7 +9,7 @@ std::optional<std::string> AcceptPause::failed(int error, Time now) {
   const bool missing = error == EMFILE || error == ENFILE || error == ENOBUFS || error == ENOMEM;
   if (!missing) return std::nullopt;
   until_ = now + length;
-  if (!told_.allow("accept", now)) return std::nullopt;
+  if (!reported_.allow("accept", now)) return std::nullopt;
   const std::string why = std::strerror(error);
   return "new connections wait: " + why +
          (error == EMFILE ? "; end some programs, or raise the limit (ulimit -n, LimitNOFILE=)"

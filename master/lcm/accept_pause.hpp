@@ -22,7 +22,7 @@ class AcceptPause {
 
  private:
   Time until_{};
-  RateLimit told_{sentence_pause};
+  RateLimit reported_{sentence_pause};
 };
 
 }  // namespace takt

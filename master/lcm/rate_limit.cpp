@@ -8,19 +8,19 @@ namespace takt {
 std::optional<std::uint64_t> RateLimit::allow(const std::string& thing, Time now) {
   const auto found = std::ranges::find(entries_, thing, &Entry::thing);
   if (found != entries_.end()) {
-    if (now - found->told < pause_) {
+    if (now - found->reported < pause_) {
       ++found->kept_back;
       return std::nullopt;
     }
-    found->told = now;
+    found->reported = now;
     return std::exchange(found->kept_back, 0);
   }
   if (entries_.size() == capacity_) {
-    const auto oldest = std::ranges::min_element(entries_, {}, &Entry::told);
-    if (now - oldest->told < pause_) return std::nullopt;  // a flood of different texts
+    const auto oldest = std::ranges::min_element(entries_, {}, &Entry::reported);
+    if (now - oldest->reported < pause_) return std::nullopt;  // a flood of different texts
     entries_.erase(oldest);
   }
-  entries_.push_back({.thing = thing, .told = now, .kept_back = 0});
+  entries_.push_back({.thing = thing, .reported = now, .kept_back = 0});
   return 0;
 }
 

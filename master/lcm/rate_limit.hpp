@@ -21,7 +21,7 @@ class RateLimit {
  private:
   struct Entry {
     std::string thing;
-    Time told{};
+    Time reported{};
     std::uint64_t kept_back = 0;
   };
   Time pause_;

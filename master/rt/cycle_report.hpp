@@ -55,7 +55,7 @@ class CycleReport {
   }
   void give(Event& event) noexcept {
     event.cycle = beat_.cycle();
-    front_.tell(event);
+    front_.announce(event);
   }
 
   L& front_;

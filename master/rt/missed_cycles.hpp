@@ -18,7 +18,7 @@ class MissedCycles {
   /// Notes periods that the loop has skipped because it was late.
   void skip(std::uint64_t periods, Time now) noexcept {
     status_.cycles_missed += periods;
-    tell(periods, MissedBecause::late, now);
+    announce(periods, MissedBecause::late, now);
   }
   /// Notes a period in which the SYNC of another device did not come.
   void unheard() noexcept { ++status_.cycles_missed; }
@@ -32,7 +32,7 @@ class MissedCycles {
   /// Reports the held cycles, when the loop sends again.
   void release(Time now) noexcept {
     if (held_ == 0) return;
-    tell(held_, because_, now);
+    announce(held_, because_, now);
     held_ = 0;
   }
   /// Notes whether this thread was late in the newest cycle, before the image was published.
@@ -52,7 +52,7 @@ class MissedCycles {
     if (held_ == 0 && late_cycle_) because_ = MissedBecause::sent_late;
     if (news.bus_off || news.error_passive) because_ = MissedBecause::wire_blocked;
   }
-  void tell(std::uint64_t periods, MissedBecause cause, Time now) noexcept {
+  void announce(std::uint64_t periods, MissedBecause cause, Time now) noexcept {
     events_.push({.when = now,
                   .kind = EventKind::cycles_missed,
                   .detail = static_cast<std::uint32_t>(cause),

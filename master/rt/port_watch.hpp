@@ -21,17 +21,18 @@ class PortWatch {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(seen_, last_full_, full_told_);
+    state(seen_, last_full_, full_reported_);
   }
 
  private:
-  void tell(EventKind kind, Time now, std::int64_t value = 0, std::uint32_t detail = 0) noexcept;
+  void announce(EventKind kind, Time now, std::int64_t value = 0,
+                std::uint32_t detail = 0) noexcept;
   void on_interface(const PortNews& news, Time now) noexcept;
 
   EventQueue& events_;
   PortNews seen_;
   Time last_full_{};
-  bool full_told_ = false;
+  bool full_reported_ = false;
 };
 
 }  // namespace takt

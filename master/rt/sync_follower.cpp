@@ -36,8 +36,8 @@ Time SyncFollower::end_of_wait(Time expected) const noexcept {
   return lost_at > end && lost_at - end <= tolerance_ ? lost_at : end;
 }
 
-void SyncFollower::tell(EventKind kind, Time now, std::int64_t value,
-                        std::uint32_t detail) noexcept {
+void SyncFollower::announce(EventKind kind, Time now, std::int64_t value,
+                            std::uint32_t detail) noexcept {
   events_.push({.when = now, .kind = kind, .detail = detail, .value = value});
 }
 
@@ -58,7 +58,7 @@ bool SyncFollower::too_early(Time interval, Time when) noexcept {
     if (early_ != 0) --early_;
     return false;
   }
-  if (early_ == 0) tell(EventKind::sync_early, when, interval.count());
+  if (early_ == 0) announce(EventKind::sync_early, when, interval.count());
   early_ = calm_after;
   return true;
 }
@@ -70,7 +70,7 @@ void SyncFollower::check_counter(const Frame& frame, Time when) noexcept {
   const bool known = counter_ != 0 && state_ == State::locked;
   const bool in_range = counts && got >= 1 && got <= overflow_;
   const bool good = counts ? in_range && (!known || got == expected) : got < 0;
-  if (!good && !jumped_) tell(EventKind::sync_jump, when, got, counts ? expected : 0U);
+  if (!good && !jumped_) announce(EventKind::sync_jump, when, got, counts ? expected : 0U);
   jumped_ = !good;
   counter_ = in_range ? static_cast<std::uint8_t>(got) : std::uint8_t{0};
 }
@@ -80,13 +80,13 @@ void SyncFollower::measure(Time interval, Time when) noexcept {
   if (std::chrono::abs(off) <= tolerance_) {
     period_ += (interval - period_) / smoothing;
     odd_ = 0;
-    odd_told_ = false;
+    odd_reported_ = false;
     return;
   }
   odd_ = state_ == State::locked ? static_cast<std::uint8_t>(odd_ + 1) : std::uint8_t{0};
   if (odd_ < odd_limit) return;
   odd_ = 0;
-  if (!std::exchange(odd_told_, true)) tell(EventKind::sync_period, when, interval.count());
+  if (!std::exchange(odd_reported_, true)) announce(EventKind::sync_period, when, interval.count());
 }
 
 /// A single late SYNC was delayed somewhere and does not move the beat: its producer continues by
@@ -101,7 +101,7 @@ void SyncFollower::place(Time when) noexcept {
 
 void SyncFollower::lock(Time when) noexcept {
   const Time without = last_ ? when - *last_ : Time{};
-  tell(EventKind::sync_back, when, without.count(), static_cast<std::uint32_t>(reaction_));
+  announce(EventKind::sync_back, when, without.count(), static_cast<std::uint32_t>(reaction_));
   state_ = State::locked;
 }
 
@@ -114,8 +114,8 @@ void SyncFollower::on_silence(Time now, std::span<const NodeStatus> nodes) noexc
   const Time limit = last_ ? timeout_ : std::max<Time>(timeout_, waits::first_sync);
   if (now - (last_ ? *last_ : *idle_since_) < limit) return;
   state_ = State::lost;
-  tell(EventKind::sync_lost, now, last_ ? (now - *last_).count() : 0,
-       static_cast<std::uint32_t>(reaction_));
+  announce(EventKind::sync_lost, now, last_ ? (now - *last_).count() : 0,
+           static_cast<std::uint32_t>(reaction_));
 }
 
 }  // namespace takt

@@ -52,7 +52,8 @@ class SyncFollower {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(state_, arrival_, last_, idle_since_, counter_, jumped_, early_, late_, odd_, odd_told_);
+    state(state_, arrival_, last_, idle_since_, counter_, jumped_, early_, late_, odd_,
+          odd_reported_);
     if (!used_) return;
     state(beat_);
     state.period(period_);
@@ -70,7 +71,7 @@ class SyncFollower {
   void measure(Time interval, Time when) noexcept;
   void place(Time when) noexcept;
   void lock(Time when) noexcept;
-  void tell(EventKind kind, Time now, std::int64_t value, std::uint32_t detail = 0) noexcept;
+  void announce(EventKind kind, Time now, std::int64_t value, std::uint32_t detail = 0) noexcept;
 
   bool used_;
   CobId id_;
@@ -92,7 +93,7 @@ class SyncFollower {
   bool late_ = false;       ///< the newest SYNC was late
   std::uint8_t early_ = 0;  ///< punctual SYNCs until the next early one is reported
   std::uint8_t odd_ = 0;    ///< intervals in a row that differ from the declared period
-  bool odd_told_ = false;
+  bool odd_reported_ = false;
 };
 
 }  // namespace takt

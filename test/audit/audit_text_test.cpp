@@ -18,7 +18,7 @@ std::string text_of(const Audit& audit) {
   return out.str();
 }
 
-TEST(Audit, TellsAMachineBuilderWhatEachDeviceDoes) {
+TEST(Audit, ReportsAMachineBuilderWhatEachDeviceDoes) {
   const auto network = two_nodes({"heartbeat_consumer: false"}, {});
 
   EXPECT_EQ(
@@ -95,10 +95,10 @@ TEST(Audit, NamesWhatWorksWhereTheHeartbeatConsumerHoldsNoNodeId) {
   for (const std::string& line : drive.remedy) {
     EXPECT_EQ(line.find("heartbeat_consumer"), std::string::npos) << line;
   }
-  const bool told = std::ranges::any_of(drive.besides, [](const std::string& text) {
+  const bool reported = std::ranges::any_of(drive.besides, [](const std::string& text) {
     return text.find("does not hold the master's node id and a time") != std::string::npos;
   });
-  EXPECT_TRUE(told);
+  EXPECT_TRUE(reported);
   const bool guards = std::ranges::any_of(drive.remedy, [](const std::string& line) {
     return line.find("life_time_factor: 3") != std::string::npos;
   });
@@ -189,7 +189,7 @@ std::vector<std::byte> bytes(std::initializer_list<int> numbers) {
   return out;
 }
 
-TEST(AskDevices, BelievesTheDeviceAndTellsWhereItDiffers) {
+TEST(AskDevices, BelievesTheDeviceAndReportsWhereItDiffers) {
   const auto network = two_nodes({}, {});
   DeviceValues values{network.plan.nodes[0], network.devices[0]};
   const auto read = [&](NodeId,

@@ -15,7 +15,7 @@ constexpr Time heartbeat = 100ms;  // of the master: the last one is so old at m
 
 class Machine {
  public:
-  explicit Machine(const LoadedNetwork& network) : told_{audit_of(network)}, plant_{network} {}
+  explicit Machine(const LoadedNetwork& network) : reported_{audit_of(network)}, plant_{network} {}
 
   void run_with_outputs() {
     plant_.run(2s);
@@ -33,7 +33,7 @@ class Machine {
   }
   void master_is_dead_for(Time span) { plant_.run_without_master(span); }
 
-  const NodeAudit& told(std::size_t index) const { return told_.nodes[index]; }
+  const NodeAudit& reported(std::size_t index) const { return reported_.nodes[index]; }
   /// A STOPPED device's objects stand still until somebody wakes it.
   void wake(std::uint8_t node) {
     const std::array frames{make_frame(CobId::base(0), {0x80, node})};
@@ -49,19 +49,19 @@ class Machine {
   }
 
  private:
-  Audit told_;
+  Audit reported_;
   Plant plant_;
 };
 
-DeviceState state_of(const NodeAudit& told) {
-  if (!told.notices) return DeviceState::operational;
-  switch (told.state) {
+DeviceState state_of(const NodeAudit& reported) {
+  if (!reported.notices) return DeviceState::operational;
+  switch (reported.state) {
     case ErrorState::preoperational:
       return DeviceState::preoperational;
     case ErrorState::stopped:
       return DeviceState::stopped;
     case ErrorState::operational:
-    case ErrorState::untold:
+    case ErrorState::unspecified:
       break;
   }
   return DeviceState::operational;
@@ -75,33 +75,33 @@ struct Case {
 
 class MasterDies : public testing::TestWithParam<Case> {};
 
-TEST_P(MasterDies, AndTheDriveDoesWhatTheAuditSaid) {
+TEST_P(MasterDies, AndTheDriveDoesWhatTheAuditDeclared) {
   const Case what = GetParam();
   Machine machine{
       two_nodes({"heartbeat_consumer: " + std::string{what.watches ? "true" : "false"},
                  "error_behavior: {1: " + std::to_string(what.error_behaviour) + "}",
                  "sdo: [{index: 0x6007, value: " + std::to_string(what.abort_connection) + "}]"},
                 {})};
-  const NodeAudit& told = machine.told(0);
-  EXPECT_EQ(told.verdict,
+  const NodeAudit& reported = machine.reported(0);
+  EXPECT_EQ(reported.verdict,
             !what.watches || what.abort_connection == 0 ? Failsafe::goes_on : Failsafe::stops);
   machine.run_with_outputs();
 
-  const Time noticed = told.notices.value_or(10s);
+  const Time noticed = reported.notices.value_or(10s);
   machine.master_is_dead_for(noticed - heartbeat - 20ms);
   EXPECT_TRUE(machine.drive_runs()) << "before the time that the audit names";
   EXPECT_EQ(machine.state(5), DeviceState::operational);
   machine.master_is_dead_for(heartbeat + 40ms);
-  EXPECT_EQ(machine.state(5), state_of(told));
+  EXPECT_EQ(machine.state(5), state_of(reported));
   machine.master_is_dead_for(5s);
 
-  const bool goes_on = told.verdict == Failsafe::goes_on;
+  const bool goes_on = reported.verdict == Failsafe::goes_on;
   if (machine.state(5) == DeviceState::stopped) machine.wake(5);
-  EXPECT_EQ(machine.drive_runs(), goes_on) << told.outputs;
+  EXPECT_EQ(machine.drive_runs(), goes_on) << reported.outputs;
   EXPECT_EQ(machine.number(5, {0x606C, 0}) == 0, !goes_on);
 }
 
-TEST_P(MasterDies, AndTheOutputsDoWhatTheAuditSaid) {
+TEST_P(MasterDies, AndTheOutputsDoWhatTheAuditDeclared) {
   const Case what = GetParam();
   const bool keeps_all = what.abort_connection == 0;  // here: the error mode
   const std::string mode = keeps_all ? "0" : what.abort_connection == 1 ? "0x0F" : "0xFF";
@@ -112,26 +112,27 @@ TEST_P(MasterDies, AndTheOutputsDoWhatTheAuditSaid) {
                "}, {index: 0x6207, sub_index: 1, value: 0xA5}, {index: 0x6443, sub_index: 1, "
                "value: " +
                (keeps_all ? "0" : "1") + "}, {index: 0x6444, sub_index: 1, value: 77}]"})};
-  const NodeAudit& told = machine.told(1);
+  const NodeAudit& reported = machine.reported(1);
   machine.run_with_outputs();
 
-  machine.master_is_dead_for(told.notices.value_or(10s) + 20ms);
+  machine.master_is_dead_for(reported.notices.value_or(10s) + 20ms);
 
-  EXPECT_EQ(machine.state(6), state_of(told));
+  EXPECT_EQ(machine.state(6), state_of(reported));
   const std::int64_t digital = machine.number(6, {0x6200, 1});
   const std::int64_t analogue = machine.number(6, {0x6411, 1});
-  switch (told.verdict) {
+  switch (reported.verdict) {
     case Failsafe::stops:
-      EXPECT_EQ(digital, 0xA5) << told.outputs;
+      EXPECT_EQ(digital, 0xA5) << reported.outputs;
       EXPECT_EQ(analogue, 77);
-      EXPECT_NE(told.outputs.find("6200:01 goes to 0xA5"), std::string::npos) << told.outputs;
-      EXPECT_NE(told.outputs.find("6411:01 goes to 77"), std::string::npos) << told.outputs;
+      EXPECT_NE(reported.outputs.find("6200:01 goes to 0xA5"), std::string::npos)
+          << reported.outputs;
+      EXPECT_NE(reported.outputs.find("6411:01 goes to 77"), std::string::npos) << reported.outputs;
       break;
     case Failsafe::goes_on:
-      EXPECT_TRUE(digital == 0xFF || digital == 0xF5) << told.outputs;
-      EXPECT_EQ(digital == 0xF5, what.watches && mode == "0x0F") << told.outputs;
+      EXPECT_TRUE(digital == 0xFF || digital == 0xF5) << reported.outputs;
+      EXPECT_EQ(digital == 0xF5, what.watches && mode == "0x0F") << reported.outputs;
       break;
-    case Failsafe::untold:
+    case Failsafe::unspecified:
       EXPECT_EQ(what.error_behaviour, 1);
       break;
     case Failsafe::harmless:
@@ -159,7 +160,7 @@ struct TerminalCase {
 
 class TerminalsWithoutMaster : public testing::TestWithParam<TerminalCase> {};
 
-TEST_P(TerminalsWithoutMaster, DoWhatTheAuditSaid) {
+TEST_P(TerminalsWithoutMaster, DoWhatTheAuditDeclared) {
   const LoadedNetwork network = network_of(
       std::string{"bus: {name: hall, interface: can0}\nmaster: {"} +
       (GetParam().sync ? "sync_period: 10000, " : "") +
@@ -169,19 +170,19 @@ TEST_P(TerminalsWithoutMaster, DoWhatTheAuditSaid) {
       ", sim: {model: beckhoff}, on_timeout: {fallback: hold, after_cycles: 60000}, rpdo: {1: "
       "{transmission: 255}}, " +
       GetParam().keys + "}\n");
-  const NodeAudit told = audit_of(network).nodes.at(0);
+  const NodeAudit reported = audit_of(network).nodes.at(0);
   Plant plant{network};
   plant.run(3s);
   plant.command(11, 0x6200, 0xFF);
   plant.run(200ms);
   ASSERT_EQ(plant.device(11).objects().number({0x6200, 1}), 0xFF);
 
-  plant.run_without_master(told.notices.value_or(10s) + 20ms);
+  plant.run_without_master(reported.notices.value_or(10s) + 20ms);
 
-  EXPECT_EQ(plant.device(11).state(), state_of(told));
+  EXPECT_EQ(plant.device(11).state(), state_of(reported));
   EXPECT_EQ(plant.device(11).objects().number({0x6200, 1}),
-            told.verdict == Failsafe::stops ? 0 : 0xFF)
-      << told.outputs;
+            reported.verdict == Failsafe::stops ? 0 : 0xFF)
+      << reported.outputs;
 }
 
 const std::string unwatched = "heartbeat_consumer: false";
@@ -195,20 +196,21 @@ INSTANTIATE_TEST_SUITE_P(EveryWay, TerminalsWithoutMaster,
                                          TerminalCase{guarded + ", life_time_factor: 3", true}));
 
 /// The verdicts of the demo networks; families whose outputs are their maker's own promise nothing.
-TEST(FamiliesWithoutMaster, ChangeTheirStateWhenTheAuditSaidSo) {
+TEST(FamiliesWithoutMaster, ChangeTheirStateWhenTheAuditDeclaredSo) {
   for (const char* demo :
        {"lenze8400", "plain301", "astraada_drv28", "beckhoff", "sixteen_nodes"}) {
     const auto network =
         load_network(std::string{TAKT_SOURCE_DIR} + "/share/demo/" + demo + ".yaml");
-    const Audit told = audit_of(network);
+    const Audit reported = audit_of(network);
     Plant plant{network};
     plant.run(10s);
     Time last{};
-    for (const NodeAudit& node : told.nodes) last = std::max(last, node.notices.value_or(Time{}));
+    for (const NodeAudit& node : reported.nodes)
+      last = std::max(last, node.notices.value_or(Time{}));
 
     plant.run_without_master(last + 20ms);
 
-    for (const NodeAudit& node : told.nodes) {
+    for (const NodeAudit& node : reported.nodes) {
       EXPECT_EQ(plant.device(node.id).state(), state_of(node)) << demo << " " << node.name;
     }
   }

@@ -38,7 +38,7 @@ class BlackBoxTest : public testing::Test {
     auto opened = BlackBox::open({.folder = folder / "box", .bytes = 65536, .keep = keep}, plan,
                                  {.bus = "lift"},
                                  [this](const std::string& sentence, const std::string& file) {
-                                   (file.empty() ? failed : said).push_back(sentence);
+                                   (file.empty() ? failed : declared).push_back(sentence);
                                    newest = file;
                                  });
     ASSERT_TRUE(opened) << opened.error();
@@ -54,8 +54,8 @@ class BlackBoxTest : public testing::Test {
   }
   /// The writer is another thread.
   void await_files() {
-    const std::size_t before = said.size() + failed.size();
-    while (said.size() + failed.size() == before) box->serve(now);
+    const std::size_t before = declared.size() + failed.size();
+    while (declared.size() + failed.size() == before) box->serve(now);
   }
   std::set<std::string> files() {
     std::set<std::string> names;
@@ -67,7 +67,7 @@ class BlackBoxTest : public testing::Test {
   Folder folder;
   BusPlan plan;
   std::unique_ptr<BlackBox> box;
-  std::vector<std::string> said;
+  std::vector<std::string> declared;
   std::vector<std::string> failed;
   std::string newest;
   Time now = 100s;
@@ -84,9 +84,9 @@ TEST_F(BlackBoxTest, WritesASecondAfterTheFault) {
   await_files();
 
   EXPECT_EQ(files().size(), 3U);
-  ASSERT_EQ(said.size(), 1U);
-  EXPECT_NE(said[0].find("(node 5 is hot)"), std::string::npos) << said[0];
-  EXPECT_NE(said[0].find("box/lift-"), std::string::npos) << said[0];
+  ASSERT_EQ(declared.size(), 1U);
+  EXPECT_NE(declared[0].find("(node 5 is hot)"), std::string::npos) << declared[0];
+  EXPECT_NE(declared[0].find("box/lift-"), std::string::npos) << declared[0];
 }
 
 TEST_F(BlackBoxTest, WritesOneKindOfFaultOfANodeOnceInFiveMinutes) {
@@ -109,10 +109,10 @@ TEST_F(BlackBoxTest, KeepsTenSecondsBetweenTwoRecordings) {
   await_files();
   box->on_request("asked for", now);
   pass(9s);
-  EXPECT_EQ(said.size(), 1U);
+  EXPECT_EQ(declared.size(), 1U);
   pass(1200ms);
   await_files();
-  EXPECT_EQ(said.size(), 2U);
+  EXPECT_EQ(declared.size(), 2U);
 }
 
 TEST_F(BlackBoxTest, RemovesTheOldestRecordingsOfItsBusOnly) {
@@ -158,14 +158,14 @@ TEST_F(BlackBoxTest, WritesTheEndOfARunThatFailed) {
   EXPECT_EQ(files().size(), 3U);
 }
 
-TEST_F(BlackBoxTest, TellsWhoAskedAndWhichFileItIs) {
+TEST_F(BlackBoxTest, ReportsWhoAskedAndWhichFileItIs) {
   open();
   box->on_request("asked for by takt-77", now);
   pass(200ms);
   await_files();
 
-  ASSERT_EQ(said.size(), 1U);
-  EXPECT_NE(said[0].find("(asked for by takt-77)"), std::string::npos) << said[0];
+  ASSERT_EQ(declared.size(), 1U);
+  EXPECT_NE(declared[0].find("(asked for by takt-77)"), std::string::npos) << declared[0];
   EXPECT_TRUE(std::filesystem::exists(newest)) << newest;
 }
 
@@ -183,8 +183,8 @@ TEST_F(BlackBoxTest, WritesWhileTheBusThreadRunsOnWhenNobodyWaitsForIt) {
 
   EXPECT_TRUE(written);
   EXPECT_EQ(files().size(), 3U);
-  ASSERT_EQ(said.size(), 1U);
-  EXPECT_NE(said[0].find("(stopped at once)"), std::string::npos) << said[0];
+  ASSERT_EQ(declared.size(), 1U);
+  EXPECT_NE(declared[0].find("(stopped at once)"), std::string::npos) << declared[0];
 }
 
 TEST_F(BlackBoxTest, DoesNotWaitForABusThreadThatBeginsNoCycleAnyMore) {
@@ -220,7 +220,7 @@ TEST_F(BlackBoxTest, LosesNoRecordingToAFullDiskAndLeavesNoHalfOne) {
     await_files();
   }
 
-  EXPECT_TRUE(said.empty());
+  EXPECT_TRUE(declared.empty());
   ASSERT_EQ(failed.size(), 1U);
   EXPECT_NE(failed[0].find("can't be written: File too large"), std::string::npos) << failed[0];
   EXPECT_EQ(files(), std::set<std::string>{"lift-20200101T000000.log"});

@@ -62,7 +62,7 @@ TEST(BootSweep, CoversMostOfWhatABootTouches) {
   EXPECT_GE(objects_of(valve(everything)).size(), 15u);
 }
 
-TEST(BootSweep, ARefusalAtAnyStepIsToldWithObjectAbortAndRemedy) {
+TEST(BootSweep, ARefusalAtAnyStepIsReportedWithObjectAbortAndRemedy) {
   for (const ObjectKey object : objects_of(valve(everything))) {
     const std::string text = report(refuse_object, object, 0x0800'0000);
     EXPECT_NE(text.find(to_string(object)), std::string::npos) << to_string(object) << "\n" << text;
@@ -72,7 +72,7 @@ TEST(BootSweep, ARefusalAtAnyStepIsToldWithObjectAbortAndRemedy) {
   }
 }
 
-TEST(BootSweep, SilenceAtAnyStepIsToldWithObjectAndRemedy) {
+TEST(BootSweep, SilenceAtAnyStepIsReportedWithObjectAndRemedy) {
   for (const ObjectKey object : objects_of(valve(everything))) {
     const std::string text = report(mute_sdo, object);
     EXPECT_NE(text.find(to_string(object)), std::string::npos) << to_string(object) << "\n" << text;
@@ -110,17 +110,17 @@ TEST(BootSweep, SilenceIsNeverTakenForADifference) {
   }
 }
 
-TEST(BootSweep, ARefusedWriteAtAnyStepIsToldUnlessNothingHasToBeWritten) {
-  int told = 0;
+TEST(BootSweep, ARefusedWriteAtAnyStepIsReportedUnlessNothingHasToBeWritten) {
+  int reported = 0;
   for (const ObjectKey object : objects_of(valve(everything))) {
     const std::string text = report(refuse_write, object, 0x0800'0021);
     if (text.empty()) continue;  // the boot only reads this object
-    ++told;
+    ++reported;
     EXPECT_NE(text.find(to_string(object)), std::string::npos) << to_string(object) << "\n" << text;
     EXPECT_NE(text.find("abort 0800 0021"), std::string::npos) << text;
     EXPECT_NE(text.find("\n  try       "), std::string::npos) << text;
   }
-  EXPECT_GE(told, 8);
+  EXPECT_GE(reported, 8);
 }
 
 TEST(BootSweep, AResetAtAnyMomentOfTheBootEndsInAReadyNode) {

@@ -22,7 +22,7 @@ sim::Fault revision(std::uint32_t value) {
   return fault;
 }
 
-TEST(FirmwareOfADevice, ThatIsOlderThanPlannedIsToldWithWhatFollows) {
+TEST(FirmwareOfADevice, ThatIsOlderThanPlannedIsReportedWithWhatFollows) {
   Plant plant{conveyor("16.00.00"), {revision(0x000E'0003)}};
 
   plant.run(5s);
@@ -36,7 +36,7 @@ TEST(FirmwareOfADevice, ThatIsOlderThanPlannedIsToldWithWhatFollows) {
       "check the plan with `takt plan`");
 }
 
-TEST(FirmwareOfADevice, ThatIsNewerIsToldAsWell) {
+TEST(FirmwareOfADevice, ThatIsNewerIsReportedAsWell) {
   Plant plant{conveyor("15.02.00"), {revision(0x0010'0000)}};
 
   plant.run(5s);
@@ -58,7 +58,7 @@ TEST(FirmwareOfADevice, ThatIsAsPlannedIsNotWorthAWord) {
   }
 }
 
-TEST(FirmwareOfADevice, OnWhichNothingDependsIsToldAsThat) {
+TEST(FirmwareOfADevice, OnWhichNothingDependsIsReportedAsThat) {
   Plant plant{conveyor("15.02.00"), {revision(0x000F'0004)}};
 
   plant.run(5s);

@@ -13,9 +13,9 @@ using namespace test;
 constexpr Time cycle = 10ms;
 
 /// Records the frames of one identifier and their times on the wire.
-class Ear final : public sim::BusObserver {
+class Listener final : public sim::BusObserver {
  public:
-  Ear(Plant& plant, std::uint32_t id) : id_{id} { plant.world.observe(this); }
+  Listener(Plant& plant, std::uint32_t id) : id_{id} { plant.world.observe(this); }
   void on_wire(const sim::WireFrame& seen) noexcept override {
     if (seen.frame.id == CobId::base(id_)) heard.push_back(seen);
   }
@@ -61,38 +61,39 @@ Request lss(LssOp op) {
 TEST(KeptWaits, OfAnSdoAnswer) {
   Plant plant{valve("sdo_timeout_ms: 300"), {mute(ObjectKey{0x2000, 0})}};
   plant.run(3s);
-  Ear ear{plant, 0x605};
+  Listener listener{plant, 0x605};
 
   plant.ask({.kind = RequestKind::sdo_upload, .node = 5, .object = {0x2000, 0}});
   plant.run(1s);
 
-  ASSERT_EQ(ear.heard.size(), 2U) << "the request and the abort";
-  EXPECT_EQ(ear.heard[1].frame.data[0], 0x80);
+  ASSERT_EQ(listener.heard.size(), 2U) << "the request and the abort";
+  EXPECT_EQ(listener.heard[1].frame.data[0], 0x80);
   EXPECT_EQ(limit(plant, "sdo_answer"), 300ms);
-  expect_kept(ear.heard[1].end - ear.heard[0].end, 300ms);
+  expect_kept(listener.heard[1].end - listener.heard[0].end, 300ms);
 }
 
 TEST(KeptWaits, OfAnObjectWithATimeOutOfItsOwn) {
   Plant plant{valve(), {mute(ObjectKey{0x1010, 1})}};
   plant.run(3s);
-  Ear ear{plant, 0x605};
+  Listener listener{plant, 0x605};
 
   plant.ask({.kind = RequestKind::sdo_upload, .node = 5, .object = {0x1010, 1}});
   plant.run(7s);
 
-  ASSERT_EQ(ear.heard.size(), 2U);
-  expect_kept(ear.heard[1].end - ear.heard[0].end, limit(plant, "sdo_object"));
+  ASSERT_EQ(listener.heard.size(), 2U);
+  expect_kept(listener.heard[1].end - listener.heard[0].end, limit(plant, "sdo_object"));
 }
 
 TEST(KeptWaits, OfAProbe) {
   Plant plant{valve(), {mute()}};
-  Ear ear{plant, 0x605};
+  Listener listener{plant, 0x605};
   plant.run(3s);
 
-  std::erase_if(ear.heard, [](const sim::WireFrame& seen) { return seen.frame.data[0] != 0x40; });
-  ASSERT_GE(ear.heard.size(), 3U);
+  std::erase_if(listener.heard,
+                [](const sim::WireFrame& seen) { return seen.frame.data[0] != 0x40; });
+  ASSERT_GE(listener.heard.size(), 3U);
   for (std::size_t i = 1; i < 3; ++i) {
-    expect_kept(ear.heard[i].end - ear.heard[i - 1].end, limit(plant, "sdo_probe"));
+    expect_kept(listener.heard[i].end - listener.heard[i - 1].end, limit(plant, "sdo_probe"));
   }
 }
 
@@ -100,16 +101,16 @@ TEST(KeptWaits, OfAClientThatReadsTheMasterAndFallsSilent) {
   Plant plant{valve()};
   sim::RemotePort& tool = plant.world.attach();
   plant.run(3s);
-  Ear ear{plant, 0x5FF};
+  Listener listener{plant, 0x5FF};
 
   const Frame name = make_frame(CobId::base(0x67F), {0x40, 0x08, 0x10, 0, 0, 0, 0, 0});
   tool.send({&name, 1}, plant.world.now());
   plant.run(3s);
 
-  ASSERT_EQ(ear.heard.size(), 2U) << "the beginning of a segmented upload and the abort";
-  EXPECT_EQ(ear.heard[0].frame.data[0], 0x41);
-  EXPECT_EQ(ear.heard[1].frame.data[0], 0x80);
-  expect_kept(ear.heard[1].end - ear.heard[0].end, limit(plant, "sdo_server"));
+  ASSERT_EQ(listener.heard.size(), 2U) << "the beginning of a segmented upload and the abort";
+  EXPECT_EQ(listener.heard[0].frame.data[0], 0x41);
+  EXPECT_EQ(listener.heard[1].frame.data[0], 0x80);
+  expect_kept(listener.heard[1].end - listener.heard[0].end, limit(plant, "sdo_server"));
 }
 
 TEST(KeptWaits, OfAPdoThatIsAskedFor) {
@@ -139,14 +140,14 @@ TEST(KeptWaits, OfLssServices) {
 TEST(KeptWaits, BetweenLooksForANodeWithoutId) {
   Plant plant{valve("lss: true"), {{.kind = sim::FaultKind::power_off, .node = 5_node}}};
   plant.world.attach();  // a node that acknowledges frames
-  Ear ear{plant, 0x7E5};
+  Listener listener{plant, 0x7E5};
   plant.run(6s);
 
-  ASSERT_GE(ear.heard.size(), 6U);
+  ASSERT_GE(listener.heard.size(), 6U);
   const Time waits_for_all = limit(plant, "lss_all");
-  for (std::size_t i = 1; i < ear.heard.size(); ++i) {
+  for (std::size_t i = 1; i < listener.heard.size(); ++i) {
     const bool second = i % 2 == 1;  // each scan asks twice for a device
-    expect_kept(ear.heard[i].end - ear.heard[i - 1].end,
+    expect_kept(listener.heard[i].end - listener.heard[i - 1].end,
                 waits_for_all + (second ? Time{} : limit(plant, "lss_look_again")));
   }
 }

@@ -218,7 +218,7 @@ TEST(KeepAlive, LeavesAnOperationalNodeAsItIs) {
   EXPECT_FALSE(wrote);
 }
 
-TEST(KeepAlive, TellsWhatDiffersAndLeavesItAlone) {
+TEST(KeepAlive, ReportsWhatDiffersAndLeavesItAlone) {
   Plant plant{valve("reset: keep_alive, heartbeat_producer: 100, heartbeat_consumer: false, "
                     "sdo: [{index: 0x2000, value: 7}]"),
               {fault(sim::FaultKind::self_start, 5_node), beating(5_node)}};
@@ -322,7 +322,7 @@ TEST(ConciseDcf, IsWrittenInItsOrder) {
 
 // program download, 0x1F50 .. 0x1F57
 
-TEST(Program, IsLoadedWhereTheVersionDiffersAndTellsItsProgress) {
+TEST(Program, IsLoadedWhereTheVersionDiffersAndReportsItsProgress) {
   Plant plant{valve("software_version: 0x00010001, software_file: program.bin")};
   plant.run(15s);
   EXPECT_EQ(plant.node().boot, BootState::ready);
@@ -332,7 +332,7 @@ TEST(Program, IsLoadedWhereTheVersionDiffersAndTellsItsProgress) {
   EXPECT_NE(plant.text_of(EventKind::program_progress).find(" of 1000 bytes"), std::string::npos);
 }
 
-TEST(Program, TellsItsProgressByTenthsWhereItGoesBySegments) {
+TEST(Program, ReportsItsProgressByTenthsWhereItGoesBySegments) {
   Plant plant{valve("software_version: 0x00010001, software_file: program.bin, sdo_block: never")};
   plant.run(15s);
   EXPECT_EQ(plant.node().boot, BootState::ready);
@@ -348,7 +348,7 @@ TEST(Program, IsNotTouchedWhereTheVersionIsRight) {
 
 // identity of the devices
 
-TEST(Stranger, IsToldOnce) {
+TEST(Stranger, IsReportedOnce) {
   LoadedNetwork network = valve();
   network.devices.push_back(network.devices[0]);
   network.devices.back().node = 9_node;
@@ -360,7 +360,7 @@ TEST(Stranger, IsToldOnce) {
             std::string::npos);
 }
 
-TEST(Replacement, OfADeviceByAnotherOfTheSameKindIsTold) {
+TEST(Replacement, OfADeviceByAnotherOfTheSameKindIsReported) {
   sim::Fault other = fault(sim::FaultKind::override_value, 5_node, 2410ms);
   other.object = ObjectKey{0x1018, 4};
   other.value = {std::byte{78}};

@@ -128,7 +128,7 @@ TEST(BudgetLimits, AnSdoAnswerHasWhatItsRequestLeavesOfTheTimeOut) {
   EXPECT_EQ(row_of(budget, "SDO answers").limit, 500ms - 10ms - 545us);
 }
 
-TEST(BudgetLimits, WhatTaktdRefusesIsSaidInTextAndJson) {
+TEST(BudgetLimits, WhatTaktdRefusesIsDeclaredInTextAndJson) {
   // SYNC 55, four TPDOs 540, four RPDOs 540, and 135 + 20 of quiet: 1290 us.
   const auto plan = hand_made_bus(4, 1ms);
   const auto budget = bus_budget(plan);

@@ -99,7 +99,7 @@ BusPlan with_a_talker(Time inhibit) {
   return plan;
 }
 
-TEST(Suggestions, WhereNoChangeAloneIsEnoughTwoAreTold) {
+TEST(Suggestions, WhereNoChangeAloneIsEnoughTwoAreReported) {
   const auto plan = with_a_talker(1ms);  // 8 x 135 us each ms: no period is enough
   ASSERT_FALSE(bus_budget(plan).fits());
 
@@ -158,8 +158,8 @@ WhatIf read_back(const WhatIf& changes) {
   return out;
 }
 
-TEST(Suggestions, EachThatIsToldMakesItFitAsItIsTyped) {
-  unsigned told = 0;
+TEST(Suggestions, EachThatIsReportedMakesItFitAsItIsTyped) {
+  unsigned reported = 0;
   unsigned combined = 0;
   for (unsigned network = 0; network < 25; ++network) {
     sim::Random random{network};
@@ -170,11 +170,11 @@ TEST(Suggestions, EachThatIsToldMakesItFitAsItIsTyped) {
       const auto other = changed(plan, read_back(suggestion.changes));
       EXPECT_TRUE(bus_budget(*other).fits())
           << "network " << network << ": " << to_string(suggestion.changes);
-      ++told;
+      ++reported;
       combined += suggestion.text.find("; and ") != std::string::npos;
     }
   }
-  EXPECT_GT(told, 20U);
+  EXPECT_GT(reported, 20U);
   EXPECT_GT(combined, 0U);
 }
 

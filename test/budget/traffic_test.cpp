@@ -100,7 +100,7 @@ TEST(BudgetTraffic, EventTimersAloneCanOverfillABus) {
   EXPECT_FALSE(budget.fits());
 }
 
-TEST(BudgetTraffic, TpdosThatTheMasterLeavesAloneAreToldAsNotCounted) {
+TEST(BudgetTraffic, TpdosThatTheMasterLeavesAloneAreReportedAsNotCounted) {
   const Findings findings{
       {"a.yaml", {3, 1}, Severity::note, "pdo-left-out", "TPDO3 of node `a` is valid in a.eds"},
       {"a.yaml", {3, 1}, Severity::note, "pdo-left-out", "RPDO3 of node `a` is valid in a.eds"},

@@ -88,7 +88,7 @@ TEST(SocketCanOnHardware, AFrameCrossesTheWire) {
   EXPECT_EQ(in[0].frame, tpdo);
 }
 
-TEST(SocketCanOnHardware, TheEchoOfSyncTellsWhenItWasOnTheWire) {
+TEST(SocketCanOnHardware, TheEchoOfSyncReportsWhenItWasOnTheWire) {
   SocketCanPort a = open_port("can0");
   const Time before = a.now() - std::chrono::milliseconds{2};
 
@@ -98,7 +98,7 @@ TEST(SocketCanOnHardware, TheEchoOfSyncTellsWhenItWasOnTheWire) {
   EXPECT_LE(a.news().last_sync_echo, a.now());
 }
 
-TEST(SocketCanOnHardware, AFullQueueOfTenIsToldAsNoBuffers) {
+TEST(SocketCanOnHardware, AFullQueueOfTenIsReportedAsNoBuffers) {
   SocketCanPort a = open_port("can0");
   std::array<Frame, 256> burst;
   burst.fill(make_frame(CobId::base(0x205), {1, 2, 3, 4, 5, 6, 7, 8}));

@@ -9,7 +9,7 @@
 namespace takt::test {
 namespace {
 
-TEST(AuditOnTheBus, TellsOfDevicesThatNobodyHasConfigured) {
+TEST(AuditOnTheBus, ReportsOfDevicesThatNobodyHasConfigured) {
   const Folder folder;
   const std::string bus = "unix:" + (folder / "bus").string();
   const std::string network = slow_network(folder.path()).string();

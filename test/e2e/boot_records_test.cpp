@@ -59,7 +59,7 @@ class BootRecords : public testing::Test {
   DaemonProcess daemon_{three_troubles(folder_.path())};
 };
 
-TEST_F(BootRecords, OfAnotherVendorAReadOnlyMappingAndAMuteDeviceAreToldWhole) {
+TEST_F(BootRecords, OfAnotherVendorAReadOnlyMappingAndAMuteDeviceAreReportedWhole) {
   expect_both(1, {"node 1 'shoulder' failed to boot at step ", " (vendor id) after ",
                   "\n  sent      601  40 18 10 01 00 00 00 00   read 1018:01",
                   "\n  received  581  43 18 10 01 CD AB 00 00", "\n  expected  0x00001234",

@@ -131,7 +131,7 @@ TEST_F(Taktd, SurvivesGarbageOnItsChannels) {
   std::vector<std::byte> damaged{encode(huge, buffer).begin(), encode(huge, buffer).end()};
   damaged[damaged.size() - 14] = std::byte{0x7F};  // highest byte of num_values
 
-  const bool told = daemon.work(
+  const bool reported = daemon.work(
       [&] {
         daemon.publish("DEMO_COMMAND", garbage);
         daemon.publish("DEMO_REQUEST", garbage);
@@ -142,7 +142,7 @@ TEST_F(Taktd, SurvivesGarbageOnItsChannels) {
                daemon.events("bad_message", "damaged") >= 1;
       });
 
-  EXPECT_TRUE(told);
+  EXPECT_TRUE(reported);
   const std::int64_t cycle = daemon.bus().cycle();
   EXPECT_TRUE(daemon.hear([&] { return daemon.bus().cycle() > cycle + 20; }));
 }

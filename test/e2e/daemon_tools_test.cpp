@@ -92,7 +92,7 @@ TEST_F(ToolsAndDaemon, NmtStopsAndStartsANodeByItsName) {
   EXPECT_NE(unknown.output.find("nobody"), std::string::npos) << unknown.output;
 }
 
-TEST_F(ToolsAndDaemon, StatusTellsBusAndNodes) {
+TEST_F(ToolsAndDaemon, StatusReportsBusAndNodes) {
   const Ended plain = takt({"status"});
   EXPECT_EQ(plain.exit_code, 0) << plain.output;
   for (const char* text :

@@ -52,7 +52,7 @@ TEST_F(EdsCdcf, HoldsWhatTheDcfSetsAndIsReadAgain) {
   EXPECT_EQ(bytes.size(), 4 + 6 * 7 + 2 + 4 + 1 + 4 + 1 + 4);
 }
 
-TEST_F(EdsCdcf, BytesBehindTheLastEntryAreTold) {
+TEST_F(EdsCdcf, BytesBehindTheLastEntryAreReported) {
   std::ofstream{bin_, std::ios::binary}
       << std::string("\x01\0\0\0\x17\x10\0\x02\0\0\0\x64\0\x18\x10", 15);
 
@@ -72,7 +72,7 @@ TEST_F(EdsCdcf, GoesToStdoutAsWell) {
   EXPECT_EQ(piped.output, std::string("\x01\0\0\0\x17\x10\0\x02\0\0\0\x64\0", 13));
 }
 
-TEST_F(EdsCdcf, TheDifferenceOfAUtf16FileIsSaidToBeForTheEyeOnly) {
+TEST_F(EdsCdcf, TheDifferenceOfAUtf16FileIsDeclaredToBeForTheEyeOnly) {
   const std::string text = "[1017]\nParameterName=x\nDataType=6\nAccessType=rw\nDefaultValue=08\n";
   std::string wide{"\xFF\xFE"};
   for (const char c : text) wide += {c, '\0'};

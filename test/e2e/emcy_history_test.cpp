@@ -29,11 +29,11 @@ TEST(EmcyHistory, IsReadFromTheDaemon) {
   ASSERT_TRUE(daemon.hear([&] { return daemon.bus().status()->nodes[0].emcy_count != 0; }))
       << daemon.log();
 
-  const Ended told = takt({"plain"});
-  EXPECT_EQ(told.exit_code, 0) << told.output;
-  EXPECT_NE(told.output.find("node 5 plain"), std::string::npos) << told.output;
-  EXPECT_NE(told.output.find("0x8240  SYNC of unexpected length"), std::string::npos)
-      << told.output;
+  const Ended reported = takt({"plain"});
+  EXPECT_EQ(reported.exit_code, 0) << reported.output;
+  EXPECT_NE(reported.output.find("node 5 plain"), std::string::npos) << reported.output;
+  EXPECT_NE(reported.output.find("0x8240  SYNC of unexpected length"), std::string::npos)
+      << reported.output;
 
   const auto json = nlohmann::json::parse(takt({"--json"}).output, nullptr, false);
   ASSERT_TRUE(json.is_object());

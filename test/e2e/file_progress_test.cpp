@@ -11,7 +11,7 @@ namespace takt::test {
 namespace {
 
 /// At 125 kbit/s a file of this size takes seconds, so there is progress to report.
-TEST(FileProgress, IsToldOnTheWayAndAtTheEnd) {
+TEST(FileProgress, IsReportedOnTheWayAndAtTheEnd) {
   const Folder folder;
   std::ofstream{folder / "network.yaml"}
       << "bus: {name: e2e, bitrate_kbit: 125}\n"

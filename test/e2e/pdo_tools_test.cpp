@@ -48,7 +48,7 @@ TEST_F(Drv28Daemon, ReadsAndWritesAParameterOverPdo1) {
   EXPECT_NE(again.output.find("\"value\":1"), std::string::npos) << again.output;
 }
 
-TEST_F(Drv28Daemon, TellsTheErrorOfTheDriveInWords) {
+TEST_F(Drv28Daemon, ReportsTheErrorOfTheDriveInWords) {
   const Ended read = takt({"param", "read", "pump", "P99.99"});
   EXPECT_EQ(read.exit_code, 1);
   EXPECT_NE(read.output.find("error 2, no such parameter address"), std::string::npos)

@@ -53,7 +53,7 @@ class FakeSystemd {
   FileDescriptor fd_;
 };
 
-TEST(Service, TellsSystemdThatItIsReadyAliveInTimeAndStopping) {
+TEST(Service, ReportsSystemdThatItIsReadyAliveInTimeAndStopping) {
   constexpr seconds watchdog{4};
   const Folder folder;
   const FakeSystemd systemd{folder / "notify", watchdog};

@@ -25,9 +25,11 @@ bool is_plain(const std::string& text) {
 /// control characters.
 void expect_plain(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                   const std::string& quoted = "[3m") {
-  const Ended told = run(arguments, folder);
-  EXPECT_NE(told.output.find(quoted), std::string::npos) << arguments[1] << ": " << told.output;
-  EXPECT_TRUE(is_plain(told.output)) << arguments[1] << ": " << testing::PrintToString(told.output);
+  const Ended reported = run(arguments, folder);
+  EXPECT_NE(reported.output.find(quoted), std::string::npos)
+      << arguments[1] << ": " << reported.output;
+  EXPECT_TRUE(is_plain(reported.output))
+      << arguments[1] << ": " << testing::PrintToString(reported.output);
 }
 
 /// Returns the EDS of the drive with this text behind a key.
@@ -58,8 +60,9 @@ TEST(StrangeTexts, OfFindingsAboutADeviceFileAreShownWithoutControlCharacters) {
     std::vector<std::string> arguments{TAKT, "eds", verb, file.string()};
     if (verb != "check") arguments.insert(arguments.end(), {"-o", folder / "out"});
     if (verb == "dcf" || verb == "cdcf") arguments.insert(arguments.end(), {"--node", "3"});
-    const Ended told = run(arguments, folder.path());
-    EXPECT_TRUE(is_plain(told.output)) << verb << ": " << testing::PrintToString(told.output);
+    const Ended reported = run(arguments, folder.path());
+    EXPECT_TRUE(is_plain(reported.output))
+        << verb << ": " << testing::PrintToString(reported.output);
   }
   expect_plain({TAKT, "eds", "check", file.string()}, folder.path());
   expect_plain({TAKT, "eds", "check", "--json", file.string()}, folder.path());
@@ -106,8 +109,8 @@ TEST(StrangeTexts, OfAValidNetworkAreShownWithoutControlCharacters) {
 TEST(StrangeTexts, OfATraceAreShownWithoutControlCharacters) {
   const Folder folder;
   const auto file = folder.write("evil.log", "(1.000000) can" + strange + " 080#\n");
-  const Ended told = run({TAKT, "dump", file.string()}, folder.path());
-  EXPECT_TRUE(is_plain(told.output)) << testing::PrintToString(told.output);
+  const Ended reported = run({TAKT, "dump", file.string()}, folder.path());
+  EXPECT_TRUE(is_plain(reported.output)) << testing::PrintToString(reported.output);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST_F(ToolsAlone, SdoReadsAndWritesADeviceWithoutADaemon) {
   EXPECT_EQ(read.output, "123456\n");
 }
 
-TEST_F(ToolsAlone, SdoTellsTheAbortInWordsAndExitsWith1) {
+TEST_F(ToolsAlone, SdoReportsTheAbortInWordsAndExitsWith1) {
   const Ended refused = takt({"sdo", "write", "1", "1000", "u32", "0"});
   const Ended mute = takt({"sdo", "read", "99", "1000", "u32", "--timeout", "50"});
 
@@ -87,7 +87,7 @@ TEST_F(ToolsAlone, NmtStartsAndStopsADeviceWithoutADaemon) {
   EXPECT_TRUE(comes(*channel, heartbeat, 0x04));  // stopped
 }
 
-TEST_F(ToolsAlone, ScanTellsWhoIsThereAndWhichFileFits) {
+TEST_F(ToolsAlone, ScanReportsWhoIsThereAndWhichFileFits) {
   const std::string files = std::string{TAKT_SOURCE_DIR} + "/share/eds";
 
   const Ended ended = takt({"scan", "--eds-dir", files, "--json"});
@@ -131,7 +131,7 @@ TEST(Timing, ShowsTheHistogramsOfTheLastSecond) {
   }
 }
 
-TEST(TwoDevicesOfOneId, AreToldByTheDaemon) {
+TEST(TwoDevicesOfOneId, AreReportedByTheDaemon) {
   Folder folder;
   const std::string bus = "unix:" + (folder / "bus").string();
   const auto network = slow_network(folder.path());
@@ -143,14 +143,14 @@ TEST(TwoDevicesOfOneId, AreToldByTheDaemon) {
 
   // The daemon detects the duplicates by their answers, heartbeats or TPDOs. This may happen before
   // the test receives messages, because such a boot may fail at once.
-  const auto told = [&] {
+  const auto reported = [&] {
     return daemon.events_in_file("duplicate_node") + daemon.events_in_file("duplicate_cob_id") > 0;
   };
-  EXPECT_TRUE(daemon.hear(told)) << daemon.log() << "\nall: " << all.output()
-                                 << "\ntwin: " << twin.output();
+  EXPECT_TRUE(daemon.hear(reported))
+      << daemon.log() << "\nall: " << all.output() << "\ntwin: " << twin.output();
 }
 
-TEST(Programs, TellTheirVersion) {
+TEST(Programs, ReportTheirVersion) {
   const Folder folder;
   for (const char* program : {TAKT, TAKTD}) {
     const Ended ended = run({program, "--version"}, folder.path());

@@ -146,11 +146,11 @@ TEST(TypedChannels, AreAbsentWhereTheNetworkFileSaysSo) {
       slow_network(folder.path(), [](std::string& text) { text += "lcm: {typed: false}\n"; });
   DaemonProcess daemon{network};
   bool typed = false;
-  auto ear = LcmClient::open(daemon.lcm_url(), {"DEMO_SHOULDER_STATE"}).value();
+  auto listener = LcmClient::open(daemon.lcm_url(), {"DEMO_SHOULDER_STATE"}).value();
   ASSERT_TRUE(daemon.work(
       [&] {
-        ear.serve([&](std::string_view, Bytes) { typed = true; },
-                  monotonic_now() + std::chrono::milliseconds{1});
+        listener.serve([&](std::string_view, Bytes) { typed = true; },
+                       monotonic_now() + std::chrono::milliseconds{1});
       },
       [&] { return daemon.all_ready(); }))
       << daemon.log();

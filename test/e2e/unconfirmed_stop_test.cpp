@@ -65,7 +65,7 @@ TEST_F(UnconfirmedStop, IsNoneOfDrivesThatWereNeverEnabled) {
 }
 
 /// The answer to an NMT stop of the master itself comes after the stop of the axes.
-TEST_F(UnconfirmedStop, IsSaidByNmtStopOfTheMaster) {
+TEST_F(UnconfirmedStop, IsDeclaredByNmtStopOfTheMaster) {
   ASSERT_NO_FATAL_FAILURE(lose_enabled_drives());
 
   const Ended stop =

@@ -46,8 +46,8 @@ const GoodRecordings& good() {
 }
 
 void play(const takt::LoadedRecording& recording) {
-  std::uint64_t told = 0;
-  const auto outcome = takt::replay(good().plan(), recording, [&](const auto&) { ++told; });
+  std::uint64_t reported = 0;
+  const auto outcome = takt::replay(good().plan(), recording, [&](const auto&) { ++reported; });
   demand(!outcome.difference || !outcome.difference->empty());
 }
 

@@ -148,13 +148,13 @@ bool lively(const Exchange& exchange) {
 
 /// How often the interface went down and came up, as the loop has told it.
 std::pair<int, int> interface_events(Exchange& exchange) {
-  std::pair<int, int> told{};
+  std::pair<int, int> reported{};
   for (Event event; exchange.events.pop(event);) {
-    told.first += event.kind == EventKind::interface_down;
-    told.second += event.kind == EventKind::interface_up;
+    reported.first += event.kind == EventKind::interface_down;
+    reported.second += event.kind == EventKind::interface_up;
   }
-  std::printf("interface down %d times, up %d times\n", told.first, told.second);
-  return told;
+  std::printf("interface down %d times, up %d times\n", reported.first, reported.second);
+  return reported;
 }
 
 struct Circumstances {
@@ -179,8 +179,8 @@ int prove(const BusPlan& plan, P& master_port, P& device_port, const Circumstanc
   std::thread bus{[&] { run_trapped(*loop, given.allowed, course); }};
   devices.join();
 
-  const bool as_told = interface_events(*exchange) == given.interface_events;
-  const bool good = lively(*exchange) && recorded(journal) && as_told;
+  const bool as_reported = interface_events(*exchange) == given.interface_events;
+  const bool good = lively(*exchange) && recorded(journal) && as_reported;
   std::fflush(stdout);
   std::_Exit(good ? 0 : 1);  // the bus thread sleeps on
 }

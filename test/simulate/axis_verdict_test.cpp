@@ -42,7 +42,7 @@ LoadedNetwork coasting(const test::Folder& folder, std::uint8_t option) {
 
 std::vector<std::string> warnings(const SimulationOutcome& outcome) {
   std::vector<std::string> texts;
-  for (const ToldEvent& event : outcome.events) {
+  for (const ReportedEvent& event : outcome.events) {
     if (event.kind == EventKind::drive_coasts) texts.push_back(event.text);
   }
   return texts;

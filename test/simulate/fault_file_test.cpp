@@ -127,16 +127,16 @@ TEST_F(FaultFileTest, ReadsEveryLineOfItsDescriptionWhichHasEveryKind) {
   const FaultFile file = read(block, 2);
 
   for (const Finding& finding : file.findings) ADD_FAILURE() << to_string(finding);
-  std::set<std::string_view> told;
-  for (const sim::Fault& fault : file.faults) told.insert(sim::name(fault.kind));
+  std::set<std::string_view> reported;
+  for (const sim::Fault& fault : file.faults) reported.insert(sim::name(fault.kind));
   std::size_t kinds = 0;
   for (unsigned kind = 0; sim::name(static_cast<sim::FaultKind>(kind)) != "unknown"; ++kind) {
-    EXPECT_TRUE(told.contains(sim::name(static_cast<sim::FaultKind>(kind))))
+    EXPECT_TRUE(reported.contains(sim::name(static_cast<sim::FaultKind>(kind))))
         << sim::name(static_cast<sim::FaultKind>(kind)) << " is not described";
     ++kinds;
   }
   EXPECT_EQ(kinds, 31u);
-  EXPECT_EQ(told.size(), kinds);
+  EXPECT_EQ(reported.size(), kinds);
   std::set<std::string_view> programs;
   for (const ProgramFault& fault : file.programs) programs.insert(name(fault.kind));
   for (const std::string_view kind : program_fault_names()) {

@@ -16,8 +16,8 @@ using namespace std::chrono_literals;
 class ForgedMessages : public testing::Test {
  protected:
   ForgedMessages() {
-    ear.subscribe(channels.command);
-    ear.subscribe(channels.image);
+    listener.subscribe(channels.command);
+    listener.subscribe(channels.image);
     world.advance_to(1s);
     speak();
   }
@@ -34,7 +34,7 @@ class ForgedMessages : public testing::Test {
     command.sender = "genuine";
     speaker.publish(channels.command, encode(command, buffer));
     pass(1ms);
-    ear.serve([](std::string_view, Bytes) {});
+    listener.serve([](std::string_view, Bytes) {});
   }
   void pass(Time span) {
     world.advance_to(world.now() + span);
@@ -42,7 +42,7 @@ class ForgedMessages : public testing::Test {
   }
   std::vector<std::int64_t> forged_cycles() {
     std::vector<std::int64_t> cycles;
-    ear.serve([&](std::string_view channel, Bytes data) {
+    listener.serve([&](std::string_view channel, Bytes data) {
       if (channel == channels.image) {
         cycles.push_back(decode<image_t>(data)->cycle);
       } else if (const auto command = decode<command_t>(data); command->session == 7) {
@@ -57,7 +57,7 @@ class ForgedMessages : public testing::Test {
   VirtualLcm lcm{world, sim::Random{1}};
   Channels channels{plan.name};
   VirtualEndpoint& speaker = lcm.join(10);
-  VirtualEndpoint& ear = lcm.join(10'000);
+  VirtualEndpoint& listener = lcm.join(10'000);
   Forger forger{plan, lcm, [](SignalIndex, std::int64_t) {}, sim::Random{2}};
   std::vector<std::byte> buffer;
 };

@@ -28,7 +28,7 @@ TEST(OrderedStopOfABus, IsConfirmedWhereEveryDriveStopsAndIsDisabled) {
   EXPECT_TRUE(outcome.unconfirmed.empty());
 }
 
-TEST(OrderedStopOfABus, TellsAtWhichVelocityADriveWasDisabled) {
+TEST(OrderedStopOfABus, ReportsAtWhichVelocityADriveWasDisabled) {
   const test::Folder folder;
   const auto network =
       machine(folder, {.master = ", stop_timeout: 1000", .sdo = "{index: 0x6085, value: 100}"});

@@ -177,7 +177,7 @@ TEST(Simulation, ASlowSyncSlowsNeitherBootNorHeartbeat) {
   }
 }
 
-TEST(Simulation, TellsWhyANodeWithAnotherVendorDoesNotBoot) {
+TEST(Simulation, ReportsWhyANodeWithAnotherVendorDoesNotBoot) {
   SimulationOptions options{.duration = 2s};
   options.faults.push_back({.kind = sim::FaultKind::override_value,
                             .node = 1_node,
@@ -187,7 +187,7 @@ TEST(Simulation, TellsWhyANodeWithAnotherVendorDoesNotBoot) {
   const auto outcome = simulate(demo(), options);
 
   EXPECT_TRUE(outcome.mandatory_failed);
-  EXPECT_TRUE(std::ranges::any_of(outcome.events, [](const ToldEvent& event) {
+  EXPECT_TRUE(std::ranges::any_of(outcome.events, [](const ReportedEvent& event) {
     return event.kind == EventKind::boot_failed && event.text.contains("1018:01");
   }));
 }

@@ -32,11 +32,11 @@ sim::Fault without_power(Time from, Time until) {
 }
 
 long count(const SimulationOutcome& outcome, EventKind kind) {
-  return std::ranges::count(outcome.events, kind, &ToldEvent::kind);
+  return std::ranges::count(outcome.events, kind, &ReportedEvent::kind);
 }
 
 std::string text_of(const SimulationOutcome& outcome, EventKind kind) {
-  const auto found = std::ranges::find(outcome.events, kind, &ToldEvent::kind);
+  const auto found = std::ranges::find(outcome.events, kind, &ReportedEvent::kind);
   return found == outcome.events.end() ? "" : found->text;
 }
 
@@ -100,7 +100,7 @@ TEST_P(Drift, OfTheProducersClockMovesNoOutputAgainstItsSync) {
 
 INSTANTIATE_TEST_SUITE_P(Ppm, Drift, testing::Values(-200, 0, 200));
 
-TEST(SyncSource, TellsALostSyncAndFallsBack) {
+TEST(SyncSource, ReportsALostSyncAndFallsBack) {
   const auto outcome =
       simulate(demo(), {.duration = 8s, .faults = {without_power(5s, 6s)}, .move = true});
 
@@ -154,7 +154,7 @@ TEST(SyncSource, ThatStopsTheNodesStartsThemAgain) {
 
   EXPECT_NE(text_of(outcome, EventKind::sync_lost).find("is stopped"), std::string::npos);
   const auto axis_is = [&](Time from, const std::string& state) {
-    return std::ranges::any_of(outcome.events, [&](const ToldEvent& event) {
+    return std::ranges::any_of(outcome.events, [&](const ReportedEvent& event) {
       return event.kind == EventKind::node_state && event.node == 5 && event.when > from &&
              event.text.find(state) != std::string::npos;
     });
@@ -164,7 +164,7 @@ TEST(SyncSource, ThatStopsTheNodesStartsThemAgain) {
   EXPECT_EQ(outcome.nodes.at(1).status.boot_count, 1u) << "it is started, not booted again";
 }
 
-TEST(SyncSource, ThatIsNeverThereIsTold) {
+TEST(SyncSource, ThatIsNeverThereIsReported) {
   LoadedNetwork network = demo();
   network.plan.cycle.sync_producer.reset();
   for (BootStep& step : network.plan.nodes.at(0).boot_plan.steps) {

@@ -90,10 +90,10 @@ class LimitMeddled : public FrontMeddled {
                ? what
                : "not the judge of limits: " + what;
   }
-  void expect(const std::string& told, const char* output, const char* kind) {
-    EXPECT_TRUE(told.starts_with(output)) << told;
-    EXPECT_NE(told.find(std::string{"breaks the limit of "} + kind + ":"), std::string::npos)
-        << told;
+  void expect(const std::string& reported, const char* output, const char* kind) {
+    EXPECT_TRUE(reported.starts_with(output)) << reported;
+    EXPECT_NE(reported.find(std::string{"breaks the limit of "} + kind + ":"), std::string::npos)
+        << reported;
   }
 };
 
@@ -106,9 +106,9 @@ TEST_F(LimitMeddled, StepsHaveNoLimit) {
 }
 TEST_F(LimitMeddled, PositionsHaveNoLimitOfVelocity) {
   // Two axes have this number; `spun` uses it to limit target velocities.
-  const std::string told = unchecked(0x607A, &OutputLimit::rate);
-  const bool spun = told.starts_with("spun.");
-  expect(told, spun ? "spun.target_position" : "paced.target_position", "velocity");
+  const std::string reported = unchecked(0x607A, &OutputLimit::rate);
+  const bool spun = reported.starts_with("spun.");
+  expect(reported, spun ? "spun.target_position" : "paced.target_position", "velocity");
 }
 TEST_F(LimitMeddled, PositionsHaveNoLimitOfAcceleration) {
   expect(unchecked(0x607A, &OutputLimit::bend), "bent.", "acceleration");

@@ -161,7 +161,7 @@ TEST_F(Meddled, StopTakesLongerThanThePlanAllows) {
   EXPECT_EQ(broken(meddle), "the ordered stop ends in time");
 }
 
-TEST(SoakJobs, TellTheSeedOfAViolationAndOfACrash) {
+TEST(SoakJobs, ReportTheSeedOfAViolationAndOfACrash) {
   const LoadedNetwork network = demo();
   SoakPlan plan{.first = 1, .last = 4, .jobs = 2, .run = {.duration = 500ms}};
   std::vector<SoakReport> reports;

@@ -44,7 +44,7 @@ TEST_F(DiagnosticOnVcan, HearsTheBusThreadAndTheOthersAndAccusesNobody) {
   EXPECT_EQ(socket_.traffic().bits, 50U * (47 + 1) + 50U * (63 + 1));
 }
 
-TEST_F(DiagnosticOnVcan, TellsAnotherProgramThatSendsSyncOrNmt) {
+TEST_F(DiagnosticOnVcan, ReportsAnotherProgramThatSendsSyncOrNmt) {
   Peer other{"vcan0"};
   port_.send({&sync_frame, 1});
   EXPECT_TRUE(events().empty());
@@ -52,11 +52,11 @@ TEST_F(DiagnosticOnVcan, TellsAnotherProgramThatSendsSyncOrNmt) {
   other.send(0x080, {});
   other.send(0x000, {0x81, 0x00});
 
-  const auto told = events();
-  ASSERT_EQ(told.size(), 2U);
-  EXPECT_EQ(told[0].kind, EventKind::foreign_nmt);
-  EXPECT_EQ(told[0].bytes[0], 0x81);
-  EXPECT_EQ(told[1].kind, EventKind::foreign_sync);
+  const auto reported = events();
+  ASSERT_EQ(reported.size(), 2U);
+  EXPECT_EQ(reported[0].kind, EventKind::foreign_nmt);
+  EXPECT_EQ(reported[0].bytes[0], 0x81);
+  EXPECT_EQ(reported[1].kind, EventKind::foreign_sync);
 }
 
 TEST_F(DiagnosticOnVcan, CountsErrorFramesOfAllClasses) {

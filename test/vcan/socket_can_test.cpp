@@ -89,7 +89,7 @@ TEST(SocketCan, SendsABatchInOrder) {
   EXPECT_EQ(peer.receive().can_id, 0x8001'2345U);
 }
 
-TEST(SocketCan, TellsWhenTheOwnSyncWasOnTheWireAndKeepsItBack) {
+TEST(SocketCan, ReportsWhenTheOwnSyncWasOnTheWireAndKeepsItBack) {
   SocketCanPort port = open_port("vcan0");
   const Time before = port.now();
 
@@ -224,7 +224,7 @@ TEST(SocketCan, LeavesFramesOfCanFdAlone) {
   EXPECT_EQ(got[0].frame.length, 1);
 }
 
-TEST(SocketCan, AFullSendQueueIsToldAsNoBuffersWithTheFramesThatWent) {
+TEST(SocketCan, AFullSendQueueIsReportedAsNoBuffersWithTheFramesThatWent) {
   run("ip link add vcan9 type vcan && ip link set vcan9 up");
   run("tc qdisc add dev vcan9 root tbf rate 1kbit burst 16 limit 160");
   SocketCanPort port = open_port("vcan9");
@@ -280,7 +280,7 @@ class SocketCanTrouble : public testing::Test {
   }
 };
 
-TEST_F(SocketCanTrouble, SendingTellsThatTheInterfaceIsDownAndItComesBack) {
+TEST_F(SocketCanTrouble, SendingReportsThatTheInterfaceIsDownAndItComesBack) {
   SocketCanPort port = open_port("vcan8");
   run("ip link set vcan8 down");
 
@@ -293,7 +293,7 @@ TEST_F(SocketCanTrouble, SendingTellsThatTheInterfaceIsDownAndItComesBack) {
   expect_working(port);
 }
 
-TEST_F(SocketCanTrouble, ReceivingTellsThatTheInterfaceIsDownAndItComesBack) {
+TEST_F(SocketCanTrouble, ReceivingReportsThatTheInterfaceIsDownAndItComesBack) {
   SocketCanPort port = open_port("vcan8");
   run("ip link set vcan8 down");
 

@@ -64,15 +64,15 @@ TEST(LimitedMaster, SendsNoJumpOfHalfAMetreAndStopsTheAxisInThatCycle) {
   EXPECT_EQ(frames.back().frame.data[0], 0x02);
   EXPECT_EQ(frames[1].frame.data[0], 0x02);
   ASSERT_EQ(rig.count(EventKind::limit_exceeded), 1);
-  const auto told = std::ranges::find(rig.events, EventKind::limit_exceeded, &Event::kind);
-  EXPECT_EQ(describe(limited_axes(), *told),
+  const auto reported = std::ranges::find(rig.events, EventKind::limit_exceeded, &Event::kind);
+  EXPECT_EQ(describe(limited_axes(), *reported),
             "node 1 'axis1': command 0.51 m to target_position (607A:00) is outside its limits: "
             "step 0.5 m, limit 0.02 m; takt does not send it, and the outputs of the node take "
             "their fallback until a command is within the limits again");
 }
 
 /// A plan with one axis whose limits come only from its device, where the boot reads 607D.
-BusPlan told_in_the_boot() {
+BusPlan reported_in_the_boot() {
   BusPlan plan = test::axes({.nodes = 1, .fallback_cycles = 50});
   const SignalIndex target = 3;
   plan.limits.outputs = {{.signal = target, .range = LimitKind::position, .wraps = true}};
@@ -101,7 +101,7 @@ DeviceTable device_with_range(const BusPlan& plan, std::uint32_t low, std::uint3
 }
 
 TEST(LimitedMaster, SendsNoJumpBeyondALimitThatOnlyTheDeviceKnows) {
-  const BusPlan plan = told_in_the_boot();
+  const BusPlan plan = reported_in_the_boot();
   Rig rig{plan, {.devices = {device_with_range(plan, 0, 300)}}};
   ASSERT_TRUE(rig.boot());
   EXPECT_EQ(rig.count(EventKind::limit_read), 1);
@@ -120,7 +120,7 @@ TEST(LimitedMaster, SendsNoJumpBeyondALimitThatOnlyTheDeviceKnows) {
 }
 
 TEST(LimitedMaster, TakesWhatTheDeviceSaysAfterEachOfItsBoots) {
-  const BusPlan plan = told_in_the_boot();
+  const BusPlan plan = reported_in_the_boot();
   Rig rig{plan, {.devices = {device_with_range(plan, 0, 0)}}};
   ASSERT_TRUE(rig.boot());
   rig.command_all(0x000F, 510, 1000);

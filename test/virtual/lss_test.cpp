@@ -116,7 +116,7 @@ TEST(Lss, NeedsLessThanThreeSecondsForOneDevice) {
   EXPECT_LT(rig.world->now() - before, 3s);
 }
 
-TEST(Lss, TellsNoWrongAddressWhenAnswersAreLost) {
+TEST(Lss, ReportsNoWrongAddressWhenAnswersAreLost) {
   int found = 0;
   int repeated = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -214,14 +214,14 @@ TEST(Lss, LeavesADeviceOfAnotherIdentityAlone) {
   EXPECT_EQ(rig.count(EventKind::lss_assigned), 0);
   EXPECT_FALSE(rig.world->device(rig.master->plan().nodes[0].id)->address());
   ASSERT_EQ(rig.count(EventKind::lss_not_assigned), 1) << "told once";
-  const Event told = *std::ranges::find(rig.events, EventKind::lss_not_assigned, &Event::kind);
-  EXPECT_EQ(describe(rig.master->plan(), told),
+  const Event reported = *std::ranges::find(rig.events, EventKind::lss_not_assigned, &Event::kind);
+  EXPECT_EQ(describe(rig.master->plan(), reported),
             "node 1 'axis1': a device without node id answers LSS, but no such device has vendor "
             "id 0x0000015A, product code 0x0000004D, revision number 0x00000003, which the network "
             "file gives this node: `takt lss find` shows the devices without node id");
 }
 
-TEST(Lss, TellsNothingOfADeviceThatIsSilentToLss) {
+TEST(Lss, ReportsNothingOfADeviceThatIsSilentToLss) {
   BusPlan plan = axes({.nodes = 1});
   give_id_by_lss(plan);
   RigOptions options;
@@ -235,7 +235,7 @@ TEST(Lss, TellsNothingOfADeviceThatIsSilentToLss) {
   EXPECT_EQ(rig.count(EventKind::lss_not_assigned), 0);
 }
 
-TEST(Lss, TellsNothingOfADeviceThatBecomesAnotherNode) {
+TEST(Lss, ReportsNothingOfADeviceThatBecomesAnotherNode) {
   BusPlan plan = axes({.nodes = 2});
   give_id_by_lss(plan);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -328,13 +328,13 @@ TEST(Lss, ADeviceOfAnotherBitRateIsOffTheBus) {
   Rig rig{std::move(plan), std::move(options)};
   rig.run(200);
   const NodeId node = rig.master->plan().nodes[0].id;
-  const auto tell = [&](std::array<std::uint8_t, 8> bytes) {
+  const auto announce = [&](std::array<std::uint8_t, 8> bytes) {
     rig.world->device(node)->on_frame({.id = CobId::base(0x7E5), .length = 8, .data = bytes},
                                       rig.world->now());
   };
-  tell({0x04, 0x01});
-  tell({0x13, 0x00, 0x03});
-  tell({0x15, 0x0A, 0x00});
+  announce({0x04, 0x01});
+  announce({0x13, 0x00, 0x03});
+  announce({0x15, 0x0A, 0x00});
   rig.run(200);
   const std::array<LssCommand, 1> inquire{LssCommand{.op = LssOp::inquire_node_id}};
 

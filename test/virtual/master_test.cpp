@@ -160,7 +160,7 @@ TEST(Master, AfterAStallOf50MsSendsNoBurstOfSyncs) {
   EXPECT_GE(rig.status().cycles_missed, 24U);
 }
 
-TEST(Master, TellsAPdoThatIsMissingAndThatIsBack) {
+TEST(Master, ReportsAPdoThatIsMissingAndThatIsBack) {
   Rig rig{test::axes()};
   ASSERT_TRUE(rig.boot());
   rig.run(20);

@@ -350,7 +350,7 @@ TEST(ManyPdos, All512OfOneSetOfCommandsActWithOneSync) {
   EXPECT_EQ(after_each_sync.back(), 512);
 }
 
-TEST(SynchronousWindow, FramesOfASlowDeviceAreToldAndUsedOrDropped) {
+TEST(SynchronousWindow, FramesOfASlowDeviceAreReportedAndUsedOrDropped) {
   for (const bool drop : {false, true}) {
     BusPlan plan = test::axes({.nodes = 1, .period = 4ms});
     plan.cycle.sync_window = 500us;

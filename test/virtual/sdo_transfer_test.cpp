@@ -248,10 +248,11 @@ TEST_F(SdoTransfers, GoBySegmentsWhereTheDeviceIsMuteForBlocks) {
   expect_downloaded(300);
   expect_uploaded(300);
   ASSERT_EQ(rig->count(EventKind::no_sdo_block), 1);
-  const auto told = std::ranges::find(rig->events, EventKind::no_sdo_block, &Event::kind);
-  EXPECT_NE(describe(quiet_plan(), *told).find("gives no answer to SDO block transfer (2020:00)"),
-            std::string::npos)
-      << describe(quiet_plan(), *told);
+  const auto reported = std::ranges::find(rig->events, EventKind::no_sdo_block, &Event::kind);
+  EXPECT_NE(
+      describe(quiet_plan(), *reported).find("gives no answer to SDO block transfer (2020:00)"),
+      std::string::npos)
+      << describe(quiet_plan(), *reported);
 
   start();
   faults().mute_block = true;

@@ -86,11 +86,11 @@ TEST(BitRateOfTheWholeBus, IsChangedInTwoDelaysOfSilence) {
 
   tool.run({{.op = LssOp::switch_global}});
   for (std::uint32_t node = 1; node <= 3; ++node) {
-    const auto told = tool.run({{.op = LssOp::switch_selective, .numbers = {0x15A, 2, 3, node}},
-                                {.op = LssOp::inquire_node_id},
-                                {.op = LssOp::switch_global}});
-    ASSERT_EQ(told.size(), 3U) << "device " << node << " speaks at the new bit rate";
-    EXPECT_EQ(told[1].numbers[0], node);
+    const auto reported = tool.run({{.op = LssOp::switch_selective, .numbers = {0x15A, 2, 3, node}},
+                                    {.op = LssOp::inquire_node_id},
+                                    {.op = LssOp::switch_global}});
+    ASSERT_EQ(reported.size(), 3U) << "device " << node << " speaks at the new bit rate";
+    EXPECT_EQ(reported[1].numbers[0], node);
   }
 }
 

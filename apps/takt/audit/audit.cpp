@@ -21,7 +21,7 @@ class NodeAuditor {
     out_.how = std::move(supervision.how);
     if (!out_.notices && supervision.by_sync) out_.how = "no SYNC arrives (1006)";
     out_.besides = std::move(supervision.besides);
-    tell_state();
+    report_state();
     judge(out_.drive ? drive_reaction(values_) : output_reaction(plan_, index_, values_));
     if (!node_.boot) out_.besides.emplace_back("takt does not configure this node (boot: false)");
     out_.besides.insert(out_.besides.end(), values_.notes().begin(), values_.notes().end());
@@ -29,7 +29,7 @@ class NodeAuditor {
   }
 
  private:
-  void tell_state() {
+  void report_state() {
     const auto behaviour = values_.get({0x1029, 1});
     const std::string source =
         behaviour ? " (1029:01 = " + std::to_string(*behaviour) + ")" : " (no 1029, so like 0)";
@@ -58,7 +58,7 @@ class NodeAuditor {
   }
 
   void advise_values(const Reaction& reaction) {
-    tell_fixed(reaction.fixed);
+    report_fixed(reaction.fixed);
     if (reaction.remedy.empty()) return;
     if (!node_.boot && out_.remedy.empty()) out_.remedy.emplace_back(boot_line);
     std::string line = "sdo: [";
@@ -68,7 +68,7 @@ class NodeAuditor {
     out_.remedy.push_back(line + "]   # in addition to the present entries");
   }
 
-  void tell_fixed(const std::vector<ObjectKey>& objects) {
+  void report_fixed(const std::vector<ObjectKey>& objects) {
     if (objects.empty()) return;
     std::string names;
     for (const ObjectKey key : objects) names += (names.empty() ? "" : ", ") + to_string(key);
@@ -81,7 +81,7 @@ class NodeAuditor {
   /// every device sees a failure while it stays OPERATIONAL.
   void keep_in_operational(Reaction& reaction) {
     if (out_.state != ErrorState::operational) return;
-    if (reaction.verdict == Failsafe::stops) reaction.verdict = Failsafe::untold;
+    if (reaction.verdict == Failsafe::stops) reaction.verdict = Failsafe::unspecified;
     reaction.text += ", if the device counts this as a failure: see the manual";
     if (values_.takes({0x1029, 1}, 0)) {
       out_.remedy.emplace_back("error_behavior: {1: 0}   # leave OPERATIONAL");

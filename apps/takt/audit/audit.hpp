@@ -12,8 +12,8 @@
 namespace takt {
 
 /// NMT state into which a device changes after a communication error. 0x1029:01, CiA 301, 7.5.2.32.
-/// `untold` stands for a value that the manufacturer defines.
-enum class ErrorState : std::uint8_t { preoperational, operational, stopped, untold };
+/// `unspecified` stands for a value that the manufacturer defines.
+enum class ErrorState : std::uint8_t { preoperational, operational, stopped, unspecified };
 
 /// Result of the audit of one node.
 struct NodeAudit {

@@ -24,7 +24,7 @@ std::string words(const NodeAudit& node) {
       return (node.drive ? "stops" : "its outputs go to their error values") +
              (node.notices ? ", at the latest " + ms_text(*node.notices) + " later"
                            : std::string{});
-    case Failsafe::untold:
+    case Failsafe::unspecified:
       return "notices it; the EDS does not say what the outputs do";
     case Failsafe::goes_on:
       break;

@@ -26,7 +26,8 @@ class Axis {
       : values_{values}, number_{number}, code_{values.option(at(0x6007))} {}
 
   Reaction reaction() const {
-    if (!code_) return {Failsafe::untold, "the drive has no " + name(0x6007) + ": see the manual"};
+    if (!code_)
+      return {Failsafe::unspecified, "the drive has no " + name(0x6007) + ": see the manual"};
     const std::string tail = " (" + name(0x6007) + " = " + std::to_string(*code_) + ")";
     switch (*code_) {
       case 0:
@@ -38,7 +39,7 @@ class Axis {
       case 3:
         return {Failsafe::stops, "quick stop" + tail + braked(values_.option(at(0x605A)), "605A")};
       default:
-        return with_remedy({Failsafe::untold, "as the manufacturer defines" + tail});
+        return with_remedy({Failsafe::unspecified, "as the manufacturer defines" + tail});
     }
   }
 

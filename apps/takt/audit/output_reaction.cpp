@@ -28,7 +28,7 @@ constexpr std::array<OutputKind, 8> kinds{{{0x6200, 0x6206, 0x6207, true, 0xFF},
 struct Fate {
   ObjectKey first;
   std::uint8_t last = 0;
-  Failsafe verdict = Failsafe::untold;
+  Failsafe verdict = Failsafe::unspecified;
   std::string text{};
 };
 

@@ -11,15 +11,15 @@ namespace takt {
 /// Behaviour of a device that no longer receives anything from the master, in the order of
 /// severity.
 enum class Failsafe : std::uint8_t {
-  harmless,  ///< The device has no outputs.
-  stops,     ///< The drive stops, or the outputs take their error values.
-  untold,    ///< The device notices, but only its manual says what its outputs do.
-  goes_on,   ///< The last set-points stay in force.
+  harmless,     ///< The device has no outputs.
+  stops,        ///< The drive stops, or the outputs take their error values.
+  unspecified,  ///< The device notices, but only its manual says what its outputs do.
+  goes_on,      ///< The last set-points stay in force.
 };
 
 /// Reaction of a device that has noticed a failure of the communication.
 struct Reaction {
-  Failsafe verdict = Failsafe::untold;
+  Failsafe verdict = Failsafe::unspecified;
   std::string text{};
   std::vector<std::string> remedy{};  ///< entries of `sdo:` in the network file
   /// Objects that would have to change, but by the EDS take no value that helps.

@@ -264,20 +264,20 @@ class Importer {
   /// Takes the bit rate and the choice of the master from a DCF.
   void take_from(const fs::path& path, unsigned id, ListedNode& node, ImportedKey& row) {
     const EdsFile file = read_eds_file(path, NodeId::from(id));
-    const auto& said = file.dictionary.commissioning;
-    if (said.node_id && said.node_id->value() != id) {
+    const auto& declared = file.dictionary.commissioning;
+    if (declared.node_id && declared.node_id->value() != id) {
       row.fate = KeyFate::suspicious;
-      row.why = "the NodeID of the file is " + std::to_string(said.node_id->value()) +
+      row.why = "the NodeID of the file is " + std::to_string(declared.node_id->value()) +
                 "; takt uses node id " + std::to_string(id) + " of the project";
     }
-    if (said.manager) {
+    if (declared.manager) {
       row.fate = KeyFate::ignored;
       row.why = "CANopenManager=1: this is the master, whose place takt takes";
       master_ = id;
       node.is_present = false;
       return;
     }
-    if (said.baudrate_kbit != 0) bitrates_.insert(said.baudrate_kbit);
+    if (declared.baudrate_kbit != 0) bitrates_.insert(declared.baudrate_kbit);
   }
 
   /// Returns the node-ID of the manager of the project, or else the highest node-ID that no node

@@ -50,8 +50,8 @@ class Unasked {
 
   std::vector<std::string> of_master() const {
     const YamlNode* master = root_.find("master");
-    const bool said = master != nullptr && master->find("heartbeat_producer") != nullptr;
-    if (said || plan_.master_heartbeat == Time{}) return {};
+    const bool declared = master != nullptr && master->find("heartbeat_producer") != nullptr;
+    if (declared || plan_.master_heartbeat == Time{}) return {};
     const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(plan_.master_heartbeat);
     return {"the master: heartbeat every " + std::to_string(ms.count()) +
             " ms; `heartbeat_producer: 0` switches it off"};
@@ -62,14 +62,14 @@ class Unasked {
     const bool writes =
         step.action == BootAction::write || step.action == BootAction::write_if_differs;
     const bool listed = step.purpose.starts_with("sdo:") || step.purpose.starts_with("DCF:");
-    if (key.empty() || !writes || listed || (key != "sdo" && is_said(node.name, key))) return;
+    if (key.empty() || !writes || listed || (key != "sdo" && is_declared(node.name, key))) return;
     const What what{step.object, step.purpose, key};
     auto found = std::ranges::find(groups_, what, &std::pair<What, std::string>::first);
     if (found == groups_.end()) found = groups_.insert(groups_.end(), {what, {}});
     found->second += (found->second.empty() ? "`" : ", `") + node.name + '`';
   }
 
-  bool is_said(const std::string& name, std::string_view key) const {
+  bool is_declared(const std::string& name, std::string_view key) const {
     const YamlNode* nodes = root_.find("nodes");
     const YamlNode* listed = nodes == nullptr ? nullptr : nodes->find(name);
     const YamlNode* node = listed == nullptr ? root_.find(name) : listed;

@@ -61,8 +61,9 @@ std::optional<std::uint8_t> LearnedBus::master() const {
   constexpr std::uint8_t usual = 127;
   std::vector<std::uint8_t> silent;  // nodes that live, but that nobody addresses
   for (const auto& [id, node] : nodes) {
-    const bool told = node.requests != 0 || node.answers != 0 || node.addressed || node.guarded();
-    if (told) continue;
+    const bool reported =
+        node.requests != 0 || node.answers != 0 || node.addressed || node.guarded();
+    if (reported) continue;
     const bool lives =
         node.heartbeats.count() != 0 ||
         (node.booted_up && (node.deaf_to_reset || (id == usual && !sends_as_device(id))));

@@ -45,7 +45,7 @@ class NetworkText {
 
   LearnedNetwork run() {
     find_master();
-    tell_files_of_nobody();
+    report_files_of_nobody();
     for (const LearnedNode* node : devices_) find_file(*node);
     learn_sync();
     learn_time();
@@ -68,7 +68,7 @@ class NetworkText {
   }
 
  private:
-  void tell(Severity severity, std::string_view rule, std::uint32_t line, std::string message) {
+  void announce(Severity severity, std::string_view rule, std::uint32_t line, std::string message) {
     out_.findings.push_back({bus_.file, {line, 0}, severity, rule, std::move(message)});
   }
 
@@ -80,11 +80,12 @@ class NetworkText {
 
   /// Warns of files that the user gave for nodes that do not exist, like `--eds 5=FILE` without a
   /// node 5.
-  void tell_files_of_nobody() {
+  void report_files_of_nobody() {
     for (const std::uint8_t id : files_.assigned()) {
       if (std::ranges::find(devices_, id, &LearnedNode::id) != devices_.end()) continue;
-      tell(Severity::warning, "nobody-there", 0,
-           fmt::format("a device file was given for node {}, which is not in the recording", id));
+      announce(
+          Severity::warning, "nobody-there", 0,
+          fmt::format("a device file was given for node {}, which is not in the recording", id));
     }
   }
 
@@ -114,21 +115,22 @@ class NetworkText {
     if (own) {
       heartbeat_ms_ = heartbeat_of_master(bus_.nodes.at(*own));
     } else {
-      tell(Severity::note, "no-master-id", 0,
-           fmt::format("the recording does not show the node id of the master: takt uses {}",
-                       master_id_));
+      announce(Severity::note, "no-master-id", 0,
+               fmt::format("the recording does not show the node id of the master: takt uses {}",
+                           master_id_));
     }
     if (const auto strangers = bus_.strangers(); !strangers.empty()) {
-      tell(Severity::note, "nobody-there", bus_.nodes.at(strangers.front()).first_line,
-           fmt::format("{} asked by SDO, but sent no frame ({}{}): {} left out",
-                       strangers.size() == 1 ? "1 node id was"
-                                             : fmt::format("{} node ids were", strangers.size()),
-                       fmt::join(strangers | std::views::take(8), ", "),
-                       strangers.size() > 8 ? " ..." : "",
-                       strangers.size() == 1 ? "it is" : "they are"));
+      announce(
+          Severity::note, "nobody-there", bus_.nodes.at(strangers.front()).first_line,
+          fmt::format("{} asked by SDO, but sent no frame ({}{}): {} left out",
+                      strangers.size() == 1 ? "1 node id was"
+                                            : fmt::format("{} node ids were", strangers.size()),
+                      fmt::join(strangers | std::views::take(8), ", "),
+                      strangers.size() > 8 ? " ..." : "",
+                      strangers.size() == 1 ? "it is" : "they are"));
     }
     if (devices_.empty()) {
-      tell(Severity::warning, "no-nodes", 0, "no device answers in this recording");
+      announce(Severity::warning, "no-nodes", 0, "no device answers in this recording");
     }
   }
 
@@ -142,7 +144,7 @@ class NetworkText {
       const fs::path base = options_.folder.empty() ? fs::path{"."} : options_.folder;
       const fs::path near = fs::proximate(match.path, base, error);
       names_[node.id] = (error ? match.path : near).generic_string();
-      tell_match(node, identity, match);
+      report_match(node, identity, match);
       return;
     }
     const std::string name = fmt::format("{}_node_{}.eds", options_.stem, node.id);
@@ -151,10 +153,11 @@ class NetworkText {
     match.dictionary = std::make_shared<const ObjectDictionary>(std::move(made.dictionary));
     names_[node.id] = name;
     out_.made_files[name] = text;
-    tell(Severity::warning, "made-device-file", node.first_line,
-         fmt::format("node {}: no device file fits (vendor 0x{:08X}, product 0x{:08X}); takt made "
-                     "{} from the recording. To use the vendor's file: --eds {}=FILE or --eds-dir",
-                     node.id, identity.vendor_id, identity.product_code, name, node.id));
+    announce(
+        Severity::warning, "made-device-file", node.first_line,
+        fmt::format("node {}: no device file fits (vendor 0x{:08X}, product 0x{:08X}); takt made "
+                    "{} from the recording. To use the vendor's file: --eds {}=FILE or --eds-dir",
+                    node.id, identity.vendor_id, identity.product_code, name, node.id));
   }
 
   /// Returns the unit of the inhibit time in us, by the device data that taktd will apply.
@@ -170,17 +173,17 @@ class NetworkText {
     return data == nullptr ? 100 : data->inhibit.unit_us;
   }
 
-  void tell_match(const LearnedNode& node, const SeenIdentity& identity,
-                  const DeviceFiles::Match& match) {
+  void report_match(const LearnedNode& node, const SeenIdentity& identity,
+                    const DeviceFiles::Match& match) {
     if (match.rivals != 0) {
-      tell(Severity::note, "several-files", node.first_line,
-           fmt::format("node {}: {} other files fit as well as {}", node.id, match.rivals,
-                       match.path.string()));
+      announce(Severity::note, "several-files", node.first_line,
+               fmt::format("node {}: {} other files fit as well as {}", node.id, match.rivals,
+                           match.path.string()));
     }
     if (match.other_revision) {
-      tell(Severity::note, "other-revision", node.first_line,
-           fmt::format("node {}: the device has revision 0x{:08X}, {} has another", node.id,
-                       identity.revision_number, match.path.string()));
+      announce(Severity::note, "other-revision", node.first_line,
+               fmt::format("node {}: the device has revision 0x{:08X}, {} has another", node.id,
+                           identity.revision_number, match.path.string()));
     }
   }
 
@@ -208,10 +211,10 @@ class NetworkText {
     if (seen->second.highest_counter != 0) learn_counter(seen->second.highest_counter, overflows);
   }
 
-  /// Determines the SYNC period. `told` is the value of 0x1006 in us.
-  void learn_period(const LearnedSync& seen, std::optional<std::uint64_t> told) {
-    const bool usable = told && *told >= shortest_sync_us && *told <= longest_sync_us;
-    const auto written = usable ? static_cast<std::int64_t>(*told) : 0;
+  /// Determines the SYNC period. `reported` is the value of 0x1006 in us.
+  void learn_period(const LearnedSync& seen, std::optional<std::uint64_t> reported) {
+    const bool usable = reported && *reported >= shortest_sync_us && *reported <= longest_sync_us;
+    const auto written = usable ? static_cast<std::int64_t>(*reported) : 0;
     if (const auto measured = seen.frames.median()) {
       const bool same = std::abs(written - *measured) * 20 <= *measured;
       sync_.period_us = same ? written : as_configured(*measured);
@@ -222,11 +225,11 @@ class NetworkText {
     const std::string few =
         fmt::format("{} frames of SYNC do not show `sync_period`", seen.frames.count());
     if (sync_.period_us == 0) {
-      tell(Severity::warning, "few-frames", 0, few + ": takt left the key out");
+      announce(Severity::warning, "few-frames", 0, few + ": takt left the key out");
     } else {
-      tell(Severity::note, "few-frames", 0,
-           few + (written != 0 ? ": takt uses the value that was written to 0x1006"
-                               : ": takt uses the shortest time between two frames"));
+      announce(Severity::note, "few-frames", 0,
+               few + (written != 0 ? ": takt uses the value that was written to 0x1006"
+                                   : ": takt uses the shortest time between two frames"));
     }
   }
 
@@ -251,14 +254,14 @@ class NetworkText {
     const std::string count =
         fmt::format("{} frames of TIME do not show `time_period`: ", bus_.time.count());
     if (ms < shortest_time_ms || ms > longest_time_ms) {
-      tell(Severity::warning, "few-frames", 0,
-           count + fmt::format("{} ms is out of range, so takt left the key out", ms));
+      announce(Severity::warning, "few-frames", 0,
+               count + fmt::format("{} ms is out of range, so takt left the key out", ms));
       return;
     }
     time_ms_ = ms;
     if (!period) {
-      tell(Severity::note, "few-frames", 0,
-           count + "takt uses the shortest time between two frames");
+      announce(Severity::note, "few-frames", 0,
+               count + "takt uses the shortest time between two frames");
     }
   }
 
@@ -329,10 +332,10 @@ class NetworkText {
       out_.text += fmt::format("#   and {} more identifiers\n", listed - most_unknown);
     }
     if (listed != 0) {
-      tell(Severity::warning, "unknown-traffic", 0,
-           fmt::format("nothing in the recording explains the frames of {} identifiers; the "
-                       "network file lists these identifiers",
-                       listed));
+      announce(Severity::warning, "unknown-traffic", 0,
+               fmt::format("nothing in the recording explains the frames of {} identifiers; the "
+                           "network file lists these identifiers",
+                           listed));
     }
     if (bus_.time.count() != 0 && time_ms_ == 0) {
       out_.text += fmt::format("# {} frames of TIME (0x100), which do not show `time_period`.\n",

@@ -57,7 +57,7 @@ class NodeText {
     text_ += "    " + fmt::format(format, std::forward<T>(arguments)...) + '\n';
   }
 
-  void tell(Severity severity, std::string_view rule, std::uint32_t at, std::string message) {
+  void announce(Severity severity, std::string_view rule, std::uint32_t at, std::string message) {
     findings_.push_back({bus_.file,
                          {at, 0},
                          severity,
@@ -186,9 +186,10 @@ class NodeText {
       }
     }
     if (unmapped_.empty()) return;
-    tell(Severity::note, "no-mapping", node_.first_line,
-         "the mapping of" + unmapped_ + " is not in the recording: " +
-             (what_.made ? "the vendor's EDS may have it" : "takt uses that of the device file"));
+    announce(
+        Severity::note, "no-mapping", node_.first_line,
+        "the mapping of" + unmapped_ + " is not in the recording: " +
+            (what_.made ? "the vendor's EDS may have it" : "takt uses that of the device file"));
   }
 
   void write_pdo(const LearnedPdo& pdo) {
@@ -279,8 +280,8 @@ class NodeText {
       const std::string why = why_not(write);
       if (!why.empty()) {
         line("  # {{{}}} =={}: {}", object_text(key), bytes_text(write.transfer.value), why);
-        tell(Severity::warning, "not-taken", write.line,
-             fmt::format("{} = {}: {}", to_string(key), bytes_text(write.transfer.value), why));
+        announce(Severity::warning, "not-taken", write.line,
+                 fmt::format("{} = {}: {}", to_string(key), bytes_text(write.transfer.value), why));
         continue;
       }
       const auto value = sdo_value_text(write.transfer.value, described(key)->type);
@@ -334,9 +335,10 @@ class NodeText {
     comment_writes(node_.later, "written while OPERATIONAL, so not part of the boot",
                    [](const LearnedWrite&) { return std::string{}; });
     if (!node_.boots.empty() && !node_.boots.back().started && !node_.boots.back().writes.empty()) {
-      tell(Severity::warning, "not-started", node_.first_line,
-           "the master did not start the node in this recording: the configuration may continue "
-           "after its end");
+      announce(
+          Severity::warning, "not-started", node_.first_line,
+          "the master did not start the node in this recording: the configuration may continue "
+          "after its end");
     }
   }
 
@@ -351,8 +353,8 @@ class NodeText {
            why(write));
     }
     if (writes.size() > most_comments) line("#   and {} more", writes.size() - most_comments);
-    tell(Severity::note, "no-part-of-the-boot", writes.front().line,
-         fmt::format("{} SDO writes {} (comments of the network file)", writes.size(), what));
+    announce(Severity::note, "no-part-of-the-boot", writes.front().line,
+             fmt::format("{} SDO writes {} (comments of the network file)", writes.size(), what));
   }
 
   const NodeToWrite& what_;

@@ -62,8 +62,8 @@ Recording::Recording(std::string file, std::string interface) {
   bus_.interface = std::move(interface);
 }
 
-void Recording::tell(Severity severity, std::string_view rule, std::uint32_t line,
-                     std::string message) {
+void Recording::announce(Severity severity, std::string_view rule, std::uint32_t line,
+                         std::string message) {
   bus_.findings.push_back({bus_.file, {line, 0}, severity, rule, std::move(message)});
 }
 
@@ -72,8 +72,8 @@ void Recording::add(std::string_view text, std::uint32_t line) {
   const auto parsed = lines_.parse(text);
   if (!parsed) {
     if (!is_remark(text) && ++strange_ <= 3) {
-      tell(Severity::warning, "not-candump", line,
-           "not a frame of candump, .trc or .asc, or a CAN FD frame; line left out");
+      announce(Severity::warning, "not-candump", line,
+               "not a frame of candump, .trc or .asc, or a CAN FD frame; line left out");
     }
     return;
   }
@@ -267,30 +267,30 @@ void Recording::other(const Frame& frame) {
 LearnedBus Recording::take() {
   if (!early_.empty()) choose(early_.front().interface);
   if (strange_ > 3) {
-    tell(Severity::warning, "not-candump", 0,
-         std::to_string(strange_) + " lines hold no frame and were left out");
+    announce(Severity::warning, "not-candump", 0,
+             std::to_string(strange_) + " lines hold no frame and were left out");
   }
   if (backward_ >= 4 && backward_ > bus_.frames / 8) {
-    tell(Severity::error, "no-times", 0,
-         "the times go back repeatedly, as time differences do (candump -td), so no period is "
-         "right; record with `candump -L`");
+    announce(Severity::error, "no-times", 0,
+             "the times go back repeatedly, as time differences do (candump -td), so no period is "
+             "right; record with `candump -L`");
   }
   if (foreign_ != 0) {
-    tell(Severity::note, "other-interface", 0,
-         std::to_string(foreign_) + " frames of other interfaces (" + foreign_name_ +
-             ") were left out; --bus " + foreign_name_ + " learns from them");
+    announce(Severity::note, "other-interface", 0,
+             std::to_string(foreign_) + " frames of other interfaces (" + foreign_name_ +
+                 ") were left out; --bus " + foreign_name_ + " learns from them");
   }
   for (const auto& [id, node] : bus_.nodes) {
     if (node.sdo.strays() != 0) {
-      tell(Severity::note, "no-beginning", node.first_line,
-           "node " + std::to_string(id) + ": " + std::to_string(node.sdo.strays()) +
-               " SDO frames of transfers whose beginning is not in the recording");
+      announce(Severity::note, "no-beginning", node.first_line,
+               "node " + std::to_string(id) + ": " + std::to_string(node.sdo.strays()) +
+                   " SDO frames of transfers whose beginning is not in the recording");
     }
     if (node.sdo.cut_off() != 0) {
-      tell(Severity::warning, "cut-off", node.first_line,
-           "node " + std::to_string(id) + ": " + std::to_string(node.sdo.cut_off()) +
-               " SDO transfers were cut off by another request: no answer, lost frames, or two "
-               "clients at once");
+      announce(Severity::warning, "cut-off", node.first_line,
+               "node " + std::to_string(id) + ": " + std::to_string(node.sdo.cut_off()) +
+                   " SDO transfers were cut off by another request: no answer, lost frames, or two "
+                   "clients at once");
     }
   }
   return std::move(bus_);

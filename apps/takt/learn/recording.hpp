@@ -43,7 +43,7 @@ class Recording {
   void other(const Frame& frame);
   LearnedNode& node(std::uint8_t id);
   LearnedBoot& boot(LearnedNode& node);
-  void tell(Severity severity, std::string_view rule, std::uint32_t line, std::string message);
+  void announce(Severity severity, std::string_view rule, std::uint32_t line, std::string message);
 
   LearnedBus bus_;
   std::uint32_t line_ = 0;

@@ -30,7 +30,7 @@ struct EmcyOptions {
   bool follow = false;
 };
 
-struct Told {
+struct Reported {
   std::int16_t node = 0;
   std::string name;
   EmcyRecord record;
@@ -52,31 +52,32 @@ std::string bytes_text(std::span<const std::uint8_t> bytes) {
   return text;
 }
 
-nlohmann::json to_json(const Told& told) {
-  const EmcyRecord& record = told.record;
+nlohmann::json to_json(const Reported& reported) {
+  const EmcyRecord& record = reported.record;
   return {{"utime", record.utime},
-          {"node_id", told.node},
-          {"node", told.name},
+          {"node_id", reported.node},
+          {"node", reported.name},
           {"code", record.code()},
-          {"text", told.words},
+          {"text", reported.words},
           {"error_register", record.error_register()},
           {"error_register_text", error_register_text(record.error_register())},
           {"manufacturer", std::vector<int>{record.bytes.begin() + 3, record.bytes.end()}}};
 }
 
-void print(const Told& told) {
-  const EmcyRecord& record = told.record;
-  std::printf("%s\n", fmt::format("{}  node {} {:<12} 0x{:04X}  {} (register: {}; vendor bytes {})",
-                                  clock_text(record.utime), told.node, printable_text(told.name),
-                                  record.code(), printable_text(told.words),
-                                  error_register_text(record.error_register()),
-                                  bytes_text(std::span{record.bytes}.subspan(3)))
-                          .c_str());
+void print(const Reported& reported) {
+  const EmcyRecord& record = reported.record;
+  std::printf("%s\n",
+              fmt::format("{}  node {} {:<12} 0x{:04X}  {} (register: {}; vendor bytes {})",
+                          clock_text(record.utime), reported.node, printable_text(reported.name),
+                          record.code(), printable_text(reported.words),
+                          error_register_text(record.error_register()),
+                          bytes_text(std::span{record.bytes}.subspan(3)))
+                  .c_str());
 }
 
 /// Returns the EMCY history of all nodes, or of node `only` if it is not 0, in the order of time.
-std::expected<std::vector<Told>, LiveError> history(DaemonClient& daemon, std::int16_t only) {
-  std::vector<Told> all;
+std::expected<std::vector<Reported>, LiveError> history(DaemonClient& daemon, std::int16_t only) {
+  std::vector<Reported> all;
   for (const node_status_t& node : daemon.status().nodes) {
     if (only != 0 && node.node_id != only) continue;
     if (node.emcy_count == 0) continue;
@@ -94,7 +95,7 @@ std::expected<std::vector<Told>, LiveError> history(DaemonClient& daemon, std::i
                      found == own.end() ? std::string{emcy_text(record.code())} : found->second});
     }
   }
-  std::ranges::stable_sort(all, {}, [](const Told& told) { return told.record.utime; });
+  std::ranges::stable_sort(all, {}, [](const Reported& reported) { return reported.record.utime; });
   return all;
 }
 
@@ -137,15 +138,15 @@ int run(const EmcyOptions& options) {
     if (!node) return complain(node.error().sentence, node.error().code);
     only = *node;
   }
-  const auto told = history(*daemon, only);
-  if (!told) return complain(told.error().sentence, told.error().code);
+  const auto reported = history(*daemon, only);
+  if (!reported) return complain(reported.error().sentence, reported.error().code);
   if (options.live.json && !options.follow) {
     nlohmann::json all = nlohmann::json::array();
-    for (const Told& one : *told) all.push_back(to_json(one));
+    for (const Reported& one : *reported) all.push_back(to_json(one));
     const nlohmann::json document{{"bus", daemon->status().bus}, {"emcys", std::move(all)}};
     std::puts(json_text(document, 1).c_str());
   } else if (!options.live.json) {
-    for (const Told& one : *told) print(one);
+    for (const Reported& one : *reported) print(one);
   }
   std::fflush(stdout);
   return options.follow ? follow(options, daemon->status().bus, only) : 0;

@@ -42,9 +42,9 @@ void print(const std::string& bus, const timing_t& timing, const TimingOptions& 
 }
 
 /// Receives the timing messages and the images of one bus.
-class TimingEar {
+class TimingListener {
  public:
-  TimingEar(LcmClient lcm, const std::string& bus)
+  TimingListener(LcmClient lcm, const std::string& bus)
       : lcm_{std::move(lcm)},
         timing_channel_{channel_name(bus, "TIMING")},
         image_channel_{channel_name(bus, "IMAGE")} {}
@@ -90,10 +90,10 @@ int run(const TimingOptions& options) {
   const std::string& bus = daemon->status().bus;
   auto lcm = open_live(options.live, {any_bus("TIMING"), any_bus("IMAGE")});
   if (!lcm) return complain(lcm.error().sentence, lcm.error().code);
-  TimingEar ear{std::move(*lcm), bus};
-  ear.next();  // discards the first message, so that all later rows cover the same second
+  TimingListener listener{std::move(*lcm), bus};
+  listener.next();  // discards the first message, so that all later rows cover the same second
   do {
-    const auto timing = ear.next();
+    const auto timing = listener.next();
     if (interrupted) break;
     if (!timing)
       return complain("the daemon of bus '" + bus + "' sends no timing messages any more", 3);

@@ -87,13 +87,13 @@ LiveError no_bus(const BusViews& views, const LcmClient& lcm, const std::string&
 }
 
 void listen(LcmClient& lcm, BusViews& views, Time until, const std::function<bool()>& enough) {
-  std::string told;
+  std::string reported;
   while (!enough() && monotonic_now() < until) {
     lcm.serve(
         [&](std::string_view channel, std::span<const std::byte> data) {
           const std::string trouble = views.take(channel, data);
-          if (trouble.empty() || trouble == told) return;
-          told = trouble;
+          if (trouble.empty() || trouble == reported) return;
+          reported = trouble;
           std::fprintf(stderr, "takt: %s\n", printable_text(trouble).c_str());
         },
         until);

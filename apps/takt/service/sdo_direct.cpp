@@ -28,13 +28,13 @@ class Drive {
       if (Interrupt::asked()) client_.cancel();
       if (progress) progress(client_.progress(), total != 0 ? total : client_.announced());
       if (!send()) return std::unexpected{LiveError{"a frame could not be sent on " + bus_, 3}};
-      if (const auto result = client_.take_result()) return told(*result);
+      if (const auto result = client_.take_result()) return reported(*result);
       receive();
     }
   }
 
  private:
-  std::expected<std::size_t, LiveError> told(const SdoResult& result) {
+  std::expected<std::size_t, LiveError> reported(const SdoResult& result) {
     send();  // sends the abort or the last confirmation
     if (result.fault == SdoFault::none) return result.size;
     if (Interrupt::asked()) {

@@ -22,18 +22,18 @@ struct Arguments {
   bool json = false;
 };
 
-bool tell(const Findings& findings) {
+bool announce(const Findings& findings) {
   for (const Finding& finding : findings) std::cerr << finding_text(finding) << '\n';
   return has_error(findings);
 }
 
 int run(Arguments& arguments) {
   const LoadedNetwork network = load_network(arguments.network);
-  if (tell(network.findings)) return 2;
+  if (announce(network.findings)) return 2;
   SimulationOptions& options = arguments.simulation;
   if (!arguments.faults.empty()) {
     FaultFile file = read_fault_file(arguments.faults, network.plan, options.applications);
-    if (tell(file.findings)) return 2;
+    if (announce(file.findings)) return 2;
     options.faults = std::move(file.faults);
     options.programs = std::move(file.programs);
   }

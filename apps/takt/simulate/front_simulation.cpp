@@ -55,7 +55,8 @@ class Run {
         troubles_{
             {lcm_, daemon_, applications_, rivals_, forger_}, options.programs, options.faults} {
     world_.observe(&log_);
-    daemon_.hear({.image = {}, .notice = {}, .event = [this](const Event& event) { tell(event); }});
+    daemon_.hear(
+        {.image = {}, .notice = {}, .event = [this](const Event& event) { announce(event); }});
     stage_.add(troubles_);
     stage_.add(daemon_);
     for (const auto& one : applications_) stage_.add(*one);
@@ -124,9 +125,9 @@ class Run {
     return stopped;
   }
 
-  void tell(const Event& event) {
+  void announce(const Event& event) {
     front_.fallbacks += event.kind == EventKind::fallback_begun;
-    ledger_.tell(event);
+    ledger_.announce(event);
   }
 
   /// Adds the counters of the present taktd process to the outcome.

@@ -112,7 +112,7 @@ void print_json(std::ostream& out, const SimulationOutcome& outcome) {
                   {"unconfirmed", outcome.unconfirmed}};
   root["events_total"] = outcome.events_total;
   root["events"] = Json::array();
-  for (const ToldEvent& event : outcome.events) {
+  for (const ReportedEvent& event : outcome.events) {
     root["events"].push_back({{"time_ms", ms(event.when)},
                               {"kind", std::string{name(event.kind)}},
                               {"node", event.node},

@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-constexpr std::size_t told_events = 500;
+constexpr std::size_t reported_events = 500;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void OutcomeLedger::keep_worst_tpdos() {
   }
 }
 
-void OutcomeLedger::tell(const Event& event) {
+void OutcomeLedger::announce(const Event& event) {
   ++outcome_.events_total;
   if (event.kind == EventKind::axis_not_stopped) {
     outcome_.unconfirmed.push_back(named_axis_stop_text(plan_, event));
@@ -41,7 +41,7 @@ void OutcomeLedger::tell(const Event& event) {
     if (event.kind == EventKind::boot_done && !node.first_boot) node.first_boot = event.when;
     node.boot_failures += event.kind == EventKind::boot_failed;
   }
-  if (outcome_.events.size() == told_events) return;
+  if (outcome_.events.size() == reported_events) return;
   outcome_.events.push_back(
       {.when = event.when, .kind = event.kind, .node = event.node, .text = describe(plan_, event)});
 }

@@ -16,7 +16,7 @@ class OutcomeLedger {
  public:
   OutcomeLedger(const BusPlan& plan, const WireStatistics& wire, std::uint64_t seed);
 
-  void tell(const Event& event);
+  void announce(const Event& event);
   /// Keeps the worst TPDO times. To be called before the stop, because its NMT commands delay the
   /// last TPDOs.
   void keep_worst_tpdos();

@@ -77,10 +77,10 @@ void print_front(std::ostream& out, const FrontOutcome& front, std::size_t axes_
 
 void print_stop(std::ostream& out, const SimulationOutcome& outcome) {
   const bool confirmed = outcome.stop == StopResult::confirmed;
-  const char* const said = !outcome.stopped ? "NOT in time"
-                           : confirmed      ? "in order"
-                                            : "NOT confirmed";
-  out << fmt::format("  stop         {}\n", said);
+  const char* const declared = !outcome.stopped ? "NOT in time"
+                               : confirmed      ? "in order"
+                                                : "NOT confirmed";
+  out << fmt::format("  stop         {}\n", declared);
   for (const std::string& axis : outcome.unconfirmed)
     out << fmt::format("               {}\n", axis);
 }

@@ -57,7 +57,7 @@ class Run {
     ImageView image;
     exchange_->images.take_newest(image);
     Event event;
-    while (exchange_->events.pop(event)) ledger_.tell(event);
+    while (exchange_->events.pop(event)) ledger_.announce(event);
   }
 
   const BusPlan& plan_;

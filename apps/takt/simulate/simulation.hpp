@@ -35,7 +35,7 @@ struct SimulationOptions {
 inline constexpr std::size_t most_applications = 6;
 
 /// An event as the simulation reports it.
-struct ToldEvent {
+struct ReportedEvent {
   Time when{};
   EventKind kind = EventKind::node_state;
   std::uint8_t node = 0;
@@ -91,7 +91,7 @@ struct SimulationOutcome {
   std::uint64_t emcy_frames = 0;
   std::uint64_t emcy_after = 0;  ///< part of emcy_frames that came after the end of the master
   std::vector<NodeOutcome> nodes;
-  std::vector<ToldEvent> events;  ///< the first 500 events
+  std::vector<ReportedEvent> events;  ///< the first 500 events
   std::uint64_t events_total = 0;
   std::size_t axes_moved = 0;
   bool move = false;

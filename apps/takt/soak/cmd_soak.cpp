@@ -48,7 +48,7 @@ bool parse_seeds(const std::string& text, SoakPlan& plan) {
   return read.ec == std::errc{} && read.ptr == end && plan.first >= 1 && plan.last >= plan.first;
 }
 
-void tell(const Arguments& arguments, const SoakReport& report) {
+void announce(const Arguments& arguments, const SoakReport& report) {
   const SoakOutcome& outcome = report.outcome;
   std::cout << "seed " << outcome.seed << ": ";
   if (report.signal != 0) {
@@ -109,7 +109,7 @@ int run(Arguments& arguments) {
   double next_word = 10;
   run_jobs(network, plan, [&](const SoakReport& report) {
     add(sum, report);
-    if (report.signal != 0 || report.outcome.violation) tell(arguments, report);
+    if (report.signal != 0 || report.outcome.violation) announce(arguments, report);
     if (elapsed() < next_word) return;
     next_word = elapsed() + 10;
     std::cerr << sum.runs << " of " << plan.last - plan.first + 1 << " seeds\n";

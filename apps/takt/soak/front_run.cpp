@@ -56,9 +56,9 @@ BusPlan daemon_plan(const BusPlan& plan, const FrontMeddle& meddle) {
 }
 
 /// Passes the frames on the wire to the judge and, if requested, to a candump file.
-class Ear final : public sim::BusObserver {
+class Listener final : public sim::BusObserver {
  public:
-  Ear(const BusPlan& plan, const std::string& candump, WireJudge& judge) : judge_{judge} {
+  Listener(const BusPlan& plan, const std::string& candump, WireJudge& judge) : judge_{judge} {
     if (!candump.empty()) log_ = std::make_unique<CandumpLog>(plan, candump + ".front");
   }
   void on_wire(const sim::WireFrame& wire) noexcept override {
@@ -85,7 +85,7 @@ class Run {
                 .power_on_spread = 100ms}},
         wire_{plan_, world_, verdict_},
         stop_{plan_, world_, verdict_},
-        ear_{plan_, options.candump, wire_},
+        listener_{plan_, options.candump, wire_},
         clocks_{world_},
         lcm_{world_, random_.fork(1)},
         port_{world_, port_options(plan_, options), stage_,
@@ -101,9 +101,9 @@ class Run {
                   calm,
                   calm + options.duration,
                   options.verbose} {
-    world_.observe(&ear_);
+    world_.observe(&listener_);
     daemon_.hear({.image = [this](const ImageView& image, Time now) { judge_wait(image, now); },
-                  .notice = [this](const Notice& notice) { tell(notice); },
+                  .notice = [this](const Notice& notice) { announce(notice); },
                   .event = [this](const Event& event) { hear(event); }});
     daemon_.meddle(options_.front.round);
     if (options_.front.command) {
@@ -275,7 +275,7 @@ class Run {
     return false;
   }
 
-  void tell(const Notice& notice) const {
+  void announce(const Notice& notice) const {
     if (!options_.verbose) return;
     std::fprintf(stderr, "%12.3f ms  %s\n", 1e-6 * static_cast<double>(notice.when.count()),
                  notice.text.c_str());
@@ -289,7 +289,7 @@ class Run {
   sim::World world_;
   WireJudge wire_;
   StopJudge stop_;
-  Ear ear_;
+  Listener listener_;
   VirtualClocks clocks_;
   VirtualLcm lcm_;
   Stage stage_;

@@ -125,7 +125,7 @@ struct Worker {
 }  // namespace
 
 void run_jobs(const LoadedNetwork& network, const SoakPlan& plan,
-              const std::function<void(const SoakReport&)>& told) {
+              const std::function<void(const SoakReport&)>& reported) {
   std::array<int, 2> ends{};
   if (::pipe(ends.data()) != 0) throw std::runtime_error{"can't create a pipe for the workers"};
   std::fflush(nullptr);
@@ -142,15 +142,15 @@ void run_jobs(const LoadedNetwork& network, const SoakPlan& plan,
   Record record;
   while (::read(ends[0], &record, sizeof record) == static_cast<ssize_t>(sizeof record)) {
     workers[record.worker].seed = record.begins ? record.seed : 0;
-    if (!record.begins) told({.outcome = record.numbers()});
+    if (!record.begins) reported({.outcome = record.numbers()});
   }
   ::close(ends[0]);
   for (const Worker& worker : workers) {
     int status = 0;
     ::waitpid(worker.pid, &status, 0);
     if (worker.seed != 0) {
-      told({.outcome = {.seed = worker.seed},
-            .signal = WIFSIGNALED(status) ? WTERMSIG(status) : -1});
+      reported({.outcome = {.seed = worker.seed},
+                .signal = WIFSIGNALED(status) ? WTERMSIG(status) : -1});
     }
   }
 }

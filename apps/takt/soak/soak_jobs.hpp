@@ -30,8 +30,8 @@ struct SoakReport {
 };
 
 /// Runs the seeds in separate worker processes, so that a crash can be assigned to its seed. Calls
-/// `told` for each run, in the order in which the runs end.
+/// `reported` for each run, in the order in which the runs end.
 void run_jobs(const LoadedNetwork& network, const SoakPlan& plan,
-              const std::function<void(const SoakReport&)>& told);
+              const std::function<void(const SoakReport&)>& reported);
 
 }  // namespace takt::soak

@@ -28,9 +28,9 @@ constexpr std::size_t memory_slack = 256 * 1024;  // bytes for open requests and
 constexpr std::array<Time, 4> latenesses{0us, 60us, 300us, 2ms};
 
 /// Passes the frames on the wire to the judge and, if requested, to a candump file.
-class Ear final : public sim::BusObserver {
+class Listener final : public sim::BusObserver {
  public:
-  Ear(const BusPlan& plan, const std::string& candump, ImageJudge& judge) : judge_{judge} {
+  Listener(const BusPlan& plan, const std::string& candump, ImageJudge& judge) : judge_{judge} {
     if (!candump.empty()) log_ = std::make_unique<CandumpLog>(plan, candump);
   }
   void on_wire(const sim::WireFrame& wire) noexcept override {
@@ -69,7 +69,7 @@ class Run {
         images_{plan_, verdict_},
         outputs_{plan_, verdict_},
         nodes_{plan_, verdict_},
-        ear_{plan_, options.candump, images_},
+        listener_{plan_, options.candump, images_},
         world_{network.devices, world_options(network, options)},
         sim_port_{world_, port_options(network, options)},
         intruder_{world_, plan_, random_.fork(3)},
@@ -77,7 +77,7 @@ class Run {
         exchange_{std::make_unique<Exchange>(plan_)},
         user_{plan_, *exchange_, outputs_, verdict_, random_.fork(4)},
         loop_{plan_, port_, *exchange_} {
-    world_.observe(&ear_);
+    world_.observe(&listener_);
   }
 
   SoakOutcome run() {
@@ -108,12 +108,12 @@ class Run {
       images_.judge(image);
       user_.on_image(image, now);
     }
-    for (Event event; exchange_->events.pop(event);) tell(event);
+    for (Event event; exchange_->events.pop(event);) announce(event);
     user_.take_replies(now);
     nodes_.judge(status_, now);
   }
 
-  void tell(const Event& event) {
+  void announce(const Event& event) {
     ++events_;
     if (!options_.verbose) return;
     std::fprintf(stderr, "%12.3f ms  %s\n", 1e-6 * static_cast<double>(event.when.count()),
@@ -171,7 +171,7 @@ class Run {
   ImageJudge images_;
   OutputJudge outputs_;
   NodeJudge nodes_;
-  Ear ear_;
+  Listener listener_;
   sim::World world_;
   sim::SimPort sim_port_;
   Intruder intruder_;
@@ -183,7 +183,7 @@ class Run {
   std::uint64_t events_ = 0;
 };
 
-void tell_faults(const BusPlan& plan, const SoakOptions& options) {
+void report_faults(const BusPlan& plan, const SoakOptions& options) {
   for (const sim::Fault& fault : faults_of(plan, options)) {
     std::fprintf(
         stderr, "%12.3f ms  fault until %.3f ms: %s", 1e-6 * static_cast<double>(fault.at.count()),
@@ -197,7 +197,7 @@ void tell_faults(const BusPlan& plan, const SoakOptions& options) {
 }  // namespace
 
 SoakOutcome soak(const LoadedNetwork& network, const SoakOptions& options) {
-  if (options.verbose) tell_faults(network.plan, options);
+  if (options.verbose) report_faults(network.plan, options);
   return std::make_unique<Run>(network, options)->run();
 }
 

@@ -58,7 +58,7 @@ void Troubles::begin(Time now) {
       return stall_process(now);
     case 4:
       daemon_dies_ = cast_.daemon.runs();
-      return tell(now, "the daemon dies", {});
+      return announce(now, "the daemon dies", {});
     case 5:
       return stall_application(now);
     case 6:
@@ -68,22 +68,22 @@ void Troubles::begin(Time now) {
     case 8:
       return slow_down_lcm(now);
     case 9:
-      tell(now, "replay", {});
+      announce(now, "replay", {});
       return cast_.forger.replay(now);
     case 10:
       cast_.clocks.set_wall(std::chrono::days{20454} + some(2s) - 1s);
-      return tell(now, "the wall clock is set", {});
+      return announce(now, "the wall clock is set", {});
     case 11:
       return let_jump(now);
     default:
-      tell(now, "forged messages", {});
+      announce(now, "forged messages", {});
       for (std::uint32_t i = 1 + random_.below(10); i != 0; --i) cast_.forger.act_up(now);
   }
 }
 
 void Troubles::stall_front(Time now) {
   const Time stall = span();
-  tell(now, "the front thread is stalled", stall);
+  announce(now, "the front thread is stalled", stall);
   cast_.daemon.stall(now + stall);
 }
 
@@ -91,7 +91,7 @@ void Troubles::stall_front(Time now) {
 /// an application may die meanwhile.
 void Troubles::stall_process(Time now) {
   const Time stall = span();
-  tell(now, "taktd is stopped", stall);
+  announce(now, "taktd is stopped", stall);
   cast_.world.add({.kind = sim::FaultKind::stall_master, .at = now, .until = now + stall});
   cast_.daemon.stall(now + stall + some(300us));
   if (random_.chance(0.3))
@@ -105,14 +105,14 @@ void Troubles::daemon_died(Time now) {
 
 void Troubles::stall_application(Time now) {
   const Time stall = span();
-  tell(now, "an application is stalled", stall);
+  announce(now, "an application is stalled", stall);
   application().stall(now + stall);
 }
 
 /// Lets an application jump, by little more than its limits permit or by far more.
 void Troubles::let_jump(Time now) {
   const std::int64_t counts = std::int64_t{16} << random_.below(16);
-  tell(now, "an application jumps", {});
+  announce(now, "an application jumps", {});
   application().jump(random_.chance(0.5) ? counts : -counts);
 }
 
@@ -121,7 +121,7 @@ void Troubles::kill_application(Time now) {
   if (!one.runs()) return;
   const Time away = 20ms + span();
   const bool in_order = random_.chance(0.5);
-  tell(now, in_order ? "an application ends" : "an application dies", away);
+  announce(now, in_order ? "an application ends" : "an application dies", away);
   if (in_order) {
     one.end(now);
   } else {
@@ -133,19 +133,19 @@ void Troubles::kill_application(Time now) {
 void Troubles::bring_rival(Time now) {
   if (cast_.rival.runs()) return;
   const Time stay = span();
-  tell(now, "a second program of the same name starts", stay);
+  announce(now, "a second program of the same name starts", stay);
   cast_.rival.start();
   agenda_.add(now + stay, [this] { cast_.rival.kill(); });
 }
 
 void Troubles::slow_down_lcm(Time now) {
   const Time lasts = span();
-  tell(now, "messages are slow", lasts);
+  announce(now, "messages are slow", lasts);
   cast_.lcm.set_delay(1ms + some(300ms));
   agenda_.add(now + lasts, [this] { cast_.lcm.set_delay(VirtualLcm::usual_delay); });
 }
 
-void Troubles::tell(Time now, const char* what, Time span) const {
+void Troubles::announce(Time now, const char* what, Time span) const {
   if (!verbose_) return;
   std::fprintf(stderr, "%12.3f ms  %s", 1e-6 * static_cast<double>(now.count()), what);
   if (span != Time{})

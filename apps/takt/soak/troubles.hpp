@@ -48,7 +48,7 @@ class Troubles final : public Actor {
   void kill_application(Time now);
   void bring_rival(Time now);
   void slow_down_lcm(Time now);
-  void tell(Time now, const char* what, Time span) const;
+  void announce(Time now, const char* what, Time span) const;
   Time some(Time longest);
   Time span();
   VirtualApplication& application();

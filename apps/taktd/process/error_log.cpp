@@ -73,7 +73,7 @@ void ErrorLog::say(Weight weight, const std::string& sentence) {
   }
   log_->log(level_of(weight), "{}", sentence);
   if (writer_.has_thread()) return;
-  if (!std::exchange(without_thread_told_, true)) {
+  if (!std::exchange(without_thread_reported_, true)) {
     log_->warn(
         "no thread can be created for stderr; taktd tries again. Until then taktd writes lines as "
         "fast as stderr takes them, and the other lines wait");

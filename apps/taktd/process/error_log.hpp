@@ -35,7 +35,7 @@ class ErrorLog {
 
   LineWriter writer_;
   std::unique_ptr<spdlog::logger> log_;
-  bool without_thread_told_ = false;
+  bool without_thread_reported_ = false;
 };
 
 }  // namespace takt

@@ -60,7 +60,7 @@ class LimitJudge {
     if (!value || limits.hold(*value) || !limits.mean_something()) return;
     if (integer_of(sub->default_value) == value) return;
     step.purpose += " (outside the limits " + limits.text() + " of the device file)";
-    if (!told_.insert(step.object).second) return;
+    if (!reported_.insert(step.object).second) return;
     report_.warning(pos_of(step.object), "limits",
                     source(*sub, step.object, *value) + label(dictionary_, step.object) + " = " +
                         std::to_string(*value) + " is outside the limits " + limits.text() +
@@ -96,7 +96,7 @@ class LimitJudge {
   const NodeSpec& spec_;
   const ObjectDictionary& dictionary_;
   NetworkReport& report_;
-  std::set<ObjectKey> told_;
+  std::set<ObjectKey> reported_;
 };
 
 }  // namespace

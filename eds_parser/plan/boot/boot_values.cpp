@@ -288,7 +288,7 @@ class ValueSteps {
       wrong_value(sdo, sub, "takes text in quotes");
       return {};
     }
-    tell_quoted(sdo, sub);
+    report_quoted(sdo, sub);
     if (const auto* real = std::get_if<double>(&sdo.value)) {
       const bool too_large = sub.type == DataType::real32 && exceeds_real32(*real);
       if (is_real(sub.type) && !too_large) return to_bytes(Value{*real}, sub.type);
@@ -305,7 +305,7 @@ class ValueSteps {
     return little_endian(*integer, byte_width(sub.type));
   }
 
-  void tell_quoted(const SdoSpec& sdo, const SubObject& sub) {
+  void report_quoted(const SdoSpec& sdo, const SubObject& sub) {
     if (!sdo.quoted || std::holds_alternative<std::string>(sdo.value)) return;
     report_.note(sdo.value_pos, "quoted-number",
                  "`sdo` of node `" + spec_.name + "`: " + label(dictionary_, sdo.object) + " (" +

@@ -6,7 +6,7 @@
 
 namespace takt {
 
-bool AxisLimits::tells(ObjectKey object) const {
+bool AxisLimits::reports(ObjectKey object) const {
   const SubObject* sub = node_.dictionary->find(object);
   if (sub == nullptr || sub->access == Access::wo) return false;
   return bit_width(sub->type) == 32 && !is_real(sub->type);
@@ -37,7 +37,7 @@ void AxisLimits::read_at_boot(LimitLine& entry, SignalIndex signal, DeviceBound 
 /// 607D has the unit of 607A.
 bool AxisLimits::device_position() {
   const ObjectKey low = object(0x607D, 1);
-  if (!tells(low) || !tells(object(0x607D, 2))) return false;
+  if (!reports(low) || !reports(object(0x607D, 2))) return false;
   const Signal& first = table_.signal(positions_[0]);
   LimitLine& entry = device_line(LimitKind::position, low, 1.0);
   entry.scale = first.scale;
@@ -56,7 +56,7 @@ bool AxisLimits::device_velocity() {
   const auto& unit = node_.spec->units.velocity;
   const bool comparable =
       unit && !unit->unit.empty() && !positions_.empty() && follows_position(LimitKind::velocity);
-  if (!tells(most) || (velocities_.empty() && !comparable)) return false;
+  if (!reports(most) || (velocities_.empty() && !comparable)) return false;
   LimitLine& entry = device_line(LimitKind::velocity, most, unit ? *unit->scale : 1.0);
   for (const SignalIndex signal : positions_) {
     if (!comparable) break;
@@ -75,7 +75,7 @@ bool AxisLimits::device_acceleration() {
   const ObjectKey most = object(0x60C5);
   const auto& unit = node_.spec->units.acceleration;
   const auto& speed = node_.spec->units.velocity;
-  if (!unit || unit->unit.empty() || !tells(most)) return false;
+  if (!unit || unit->unit.empty() || !reports(most)) return false;
   const bool of_positions = !positions_.empty() && follows_position(LimitKind::acceleration);
   const bool of_velocities = speed && !velocities_.empty() &&
                              (is_limit_rate(unit->unit, speed->unit, LimitKind::velocity) ||

@@ -138,7 +138,7 @@ bool AxisLimits::follows_position(LimitKind kind) const {
   return is_limit_rate(unit, table_.signal(positions_[0]).unit, kind);
 }
 
-void AxisLimits::tell_other_unit(LimitKind kind, SourcePos pos) {
+void AxisLimits::report_other_unit(LimitKind kind, SourcePos pos) {
   if (node_.spec->units.has_errors) return;
   report_.warning(
       pos, "limits",
@@ -189,7 +189,7 @@ void AxisLimits::velocity(const Sourced<double>& limit) {
   const double seconds = cycle_seconds();
   const bool comparable = follows_position(LimitKind::velocity);
   if (!comparable && has_unit(positions_[0], "velocity", limit.pos)) {
-    tell_other_unit(LimitKind::velocity, limit.pos);
+    report_other_unit(LimitKind::velocity, limit.pos);
   }
   for (const SignalIndex signal : outputs({{0x607A, 0}, {0x60C1, 1}, {0x60B0, 0}})) {
     if (!comparable || !has_unit(signal, "velocity", limit.pos)) continue;
@@ -216,7 +216,7 @@ void AxisLimits::acceleration(const Sourced<double>& limit) {
   const double seconds = cycle_seconds();
   const bool comparable = follows_position(LimitKind::acceleration);
   if (!comparable && has_unit(positions_[0], "acceleration", limit.pos)) {
-    tell_other_unit(LimitKind::acceleration, limit.pos);
+    report_other_unit(LimitKind::acceleration, limit.pos);
   }
   for (const SignalIndex signal : positions_) {
     if (!comparable || !has_unit(signal, "acceleration", limit.pos)) continue;

@@ -41,7 +41,7 @@ class AxisLimits {
   bool device_velocity();
   bool device_acceleration();
   /// Returns true if the object is a readable integer of 32 bits.
-  bool tells(ObjectKey object) const;
+  bool reports(ObjectKey object) const;
   /// Appends the line to which the following limits of the plan belong.
   LimitLine& device_line(LimitKind kind, ObjectKey object, double scale);
   void read_at_boot(LimitLine& entry, SignalIndex signal, DeviceBound bound, double factor);
@@ -67,7 +67,7 @@ class AxisLimits {
   /// Returns true if the unit of `kind` is the unit of positions per second, or per second squared.
   /// Also returns true if the axis has no position output.
   bool follows_position(LimitKind kind) const;
-  void tell_other_unit(LimitKind kind, SourcePos pos);
+  void report_other_unit(LimitKind kind, SourcePos pos);
   LimitLine& line(LimitKind kind, LimitSource source);
   std::string owner() const;
 

@@ -150,7 +150,7 @@ class CobIdAssigner {
     return pdo.is_tpdo && other != nullptr && other->pdo->origin == CobIdOrigin::network_file;
   }
 
-  void tell_clash(const User& user, const User& other, std::uint32_t free) {
+  void report_clash(const User& user, const User& other, std::uint32_t free) {
     report_.error(other.pdo->cob_id_pos, "cob-id-clash",
                   "`cob_id` " + to_string(other.pdo->cob_id) + " of " + other.text() +
                       " is also used by " + user.text() + " in " + user.node->dictionary->file +
@@ -167,7 +167,7 @@ class CobIdAssigner {
     if (free == 0) return none_free(user, pdo);
     const CobId id = CobId::base(free);
     if (is_clash(pdo, other)) {
-      tell_clash(user, *other, free);
+      report_clash(user, *other, free);
       pdo.origin = CobIdOrigin::automatic;
       return take(node, pdo, id);
     }
@@ -212,13 +212,13 @@ class CobIdAssigner {
   void claim_automatic(NodePdos& node, EffectivePdo& pdo) {
     const std::uint32_t id = automatic(node, pdo);
     if (id == 0) return none_free({&pdo, &node.node}, pdo);
-    if (pdo.number <= 4 && id != predefined(pdo, node.node.id)) tell_taken(node, pdo, id);
+    if (pdo.number <= 4 && id != predefined(pdo, node.node.id)) report_taken(node, pdo, id);
     take(node, pdo, CobId::base(id));
   }
 
   /// Reports that a PDO can't have its predefined COB-ID. This is an error if the network file
   /// gives it to two TPDOs: to one by its number, to the other one by `auto`.
-  void tell_taken(const NodePdos& node, EffectivePdo& pdo, std::uint32_t free) {
+  void report_taken(const NodePdos& node, EffectivePdo& pdo, std::uint32_t free) {
     const User user{&pdo, &node.node};
     const CobId own = CobId::base(predefined(pdo, node.node.id));
     const auto other = used_.find(own);

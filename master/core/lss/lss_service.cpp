@@ -120,13 +120,13 @@ bool LssService::only_others_answered(Candidate& candidate) const noexcept {
   return std::exchange(candidate.others_answer, others) && others;
 }
 
-void LssService::tell_failure(Candidate& candidate, Time now) noexcept {
+void LssService::report_failure(Candidate& candidate, Time now) noexcept {
   const LssResult& last = runner_.results().back();
   const std::array<std::uint8_t, 4> why{static_cast<std::uint8_t>(last.op),
                                         static_cast<std::uint8_t>(last.outcome), last.error,
                                         last.specific};
   const auto sum = static_cast<std::uint32_t>(why[0] << 24 | why[1] << 16 | why[2] << 8 | why[3]);
-  if (std::exchange(candidate.told, sum) == sum) return;
+  if (std::exchange(candidate.reported, sum) == sum) return;
   Event event{.when = now,
               .kind = EventKind::lss_not_assigned,
               .node = plan_.nodes[candidate.node].id.value()};
@@ -142,9 +142,9 @@ void LssService::conclude(Candidate& candidate, Time now) noexcept {
   const bool only_others = only_others_answered(candidate);
   if (results.front().outcome == LssOutcome::nobody && !only_others) return;
   if (runner_.done()) {
-    candidate.told = 0;
+    candidate.reported = 0;
   } else {
-    tell_failure(candidate, now);
+    report_failure(candidate, now);
   }
   const bool has_id = results.size() > 1 && results[1].outcome == LssOutcome::done;
   if (!has_id) return;

@@ -39,7 +39,7 @@ class LssService {
     state(runner_);
     state.position(turn_, std::max<std::size_t>(candidates_.size(), 1));
     for (Candidate& candidate : candidates_) {
-      state(candidate.next_look, candidate.told, candidate.others_answer);
+      state(candidate.next_look, candidate.reported, candidate.others_answer);
     }
   }
 
@@ -49,14 +49,14 @@ class LssService {
   struct Candidate {
     std::uint8_t node = 0;  // index into plan.nodes
     Time next_look = never;
-    std::uint32_t told = 0;      // the failure that was reported last
+    std::uint32_t reported = 0;  // the failure that was reported last
     bool others_answer = false;  // other devices without node-ID have answered
   };
 
   void finish(Time now) noexcept;
   void answer() noexcept;
   bool only_others_answered(Candidate& candidate) const noexcept;
-  void tell_failure(Candidate& candidate, Time now) noexcept;
+  void report_failure(Candidate& candidate, Time now) noexcept;
   void conclude(Candidate& candidate, Time now) noexcept;
   bool begin_request() noexcept;
   void begin_search(Time now, std::span<const NodeStatus> nodes) noexcept;

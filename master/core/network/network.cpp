@@ -55,8 +55,8 @@ NodeSession* Network::session(std::uint32_t node) noexcept {
   return &sessions_[index_[node]];
 }
 
-void Network::tell(EventKind kind, Time now, std::int64_t value, std::uint32_t detail,
-                   std::uint8_t node) noexcept {
+void Network::announce(EventKind kind, Time now, std::int64_t value, std::uint32_t detail,
+                       std::uint8_t node) noexcept {
   events_.push({.when = now, .kind = kind, .node = node, .detail = detail, .value = value});
 }
 
@@ -132,7 +132,7 @@ void Network::meet_stranger(const Frame& frame, Time now) noexcept {
   const bool sign_of_life = (frame.id.id() & 0x780U) == 0x700 && frame.length != 0 && node != 0;
   if (!sign_of_life || node == plan_.master_id.value() || strangers_[node]) return;
   strangers_.set(node);
-  tell(EventKind::unlisted_node, now, node, 0);
+  announce(EventKind::unlisted_node, now, node, 0);
 }
 
 void Network::on_time(Time now, Outbox& out) noexcept {

@@ -181,8 +181,8 @@ class Network {
   void on_mandatory_loss(Time now) noexcept;
   void halt_group(std::size_t index) noexcept;
   void meet_stranger(const Frame& frame, Time now) noexcept;
-  void tell(EventKind kind, Time now, std::int64_t value, std::uint32_t detail,
-            std::uint8_t node = 0) noexcept;
+  void announce(EventKind kind, Time now, std::int64_t value, std::uint32_t detail,
+                std::uint8_t node = 0) noexcept;
   NodeSession* emcy_sender(CobId id) noexcept;
   void ask_own_dictionary(const Frame& frame, Time now) noexcept;
   void serve_own_dictionary(Time now, Outbox& out) noexcept;

@@ -17,14 +17,15 @@ bool ends_exchange(NmtCommand command) noexcept {
 void Network::follow_start(Time now) noexcept {
   if (observe_ || stopping_ || boots_given_up_) return;
   if (start_.late(now)) {
-    tell(EventKind::network_late, now, 0, static_cast<std::uint32_t>(start_.missing(statuses_)));
+    announce(EventKind::network_late, now, 0,
+             static_cast<std::uint32_t>(start_.missing(statuses_)));
   }
   if (!start_.update(statuses_)) return;
   const bool bootup_waits = own_state_ == NmtState::bootup && heartbeat_at_ != never;
   if (plan_.start_up.start_master && !bootup_waits) command_master(NmtCommand::start);
   if (plan_.start_up.start_all && plan_.start_nodes) broadcasts_.push({NmtCommand::start, 0});
   for (NodeSession& session : sessions_) session.on_network_start();
-  if (start_.matters()) tell(EventKind::network_ready, now, 0, 0);
+  if (start_.matters()) announce(EventKind::network_ready, now, 0, 0);
 }
 
 /// Reacts to the loss of a node. CiA 302-2, error handling of a running node.
@@ -37,7 +38,8 @@ void Network::on_loss(std::size_t index, Time now) noexcept {
   if (node.on_loss == LossReaction::report) return;
   if (node.on_loss == LossReaction::stop_node) sessions_[index].halt();
   if (node.on_loss == LossReaction::stop_group) halt_group(index);
-  tell(EventKind::loss_reaction, now, static_cast<std::int64_t>(node.on_loss), 0, node.id.value());
+  announce(EventKind::loss_reaction, now, static_cast<std::int64_t>(node.on_loss), 0,
+           node.id.value());
 }
 
 void Network::halt_group(std::size_t index) noexcept {
@@ -55,7 +57,7 @@ void Network::on_mandatory_loss(Time now) noexcept {
   if (stops) {
     for (NodeSession& session : sessions_) session.await_command();
   }
-  tell(EventKind::mandatory_lost, now, stops ? 1 : 0, 0);
+  announce(EventKind::mandatory_lost, now, stops ? 1 : 0, 0);
 }
 
 bool Network::demands_quick_stop(std::size_t node_index) const noexcept {

@@ -23,10 +23,11 @@ void NodeSession::boot(BootRunner::From from, Time now) noexcept {
   guard_.stop();
   state_at_boot_ = status_.nmt;
   twins_.restart();
-  progress_told_ = 0;
+  progress_reported_ = 0;
   emcys_at_boot_ = status_.emcy_count;
   runner_.start(from, now);
-  if (BootRetries::is_reported(retries_.same_failures() + 1)) tell(EventKind::boot_started, now);
+  if (BootRetries::is_reported(retries_.same_failures() + 1))
+    announce(EventKind::boot_started, now);
   advance(now);
 }
 
@@ -34,7 +35,7 @@ void NodeSession::follow_boot(Time now) noexcept {
   runner_.on_time(now, client_);
   status_.boot_step = runner_.step();
   if (runner_.guards()) guard_.start(now);
-  tell_progress(now);
+  report_progress(now);
   if (runner_.failed()) return on_boot_failed(now);
   if (!runner_.done()) return;
   on_boot_done(now);
@@ -50,16 +51,16 @@ void NodeSession::on_boot_done(Time now) noexcept {
   if (runner_.keeps_running()) wanted_ = NmtState::operational;
   retries_.on_success();
   client_.forget_lateness();
-  tell_replaced(now);
-  tell_firmware(now);
-  tell_boot_done(now);
+  report_replaced(now);
+  report_firmware(now);
+  report_boot_done(now);
   const bool with_network = plan_->start_later && network_started_ && !runner_.keeps_running();
   if (plan_->boot && (with_network || (runner_.nmt().taken_out() && !plan_->start_later))) {
     own_command_ = NmtCommand::start;
   }
 }
 
-void NodeSession::tell_boot_done(Time now) noexcept {
+void NodeSession::report_boot_done(Time now) noexcept {
   const bool untouched = runner_.keeps_running() ||
                          (state_at_boot_ == NmtState::operational && !runner_.nmt().reset_sent());
   const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(now - runner_.began());
@@ -75,31 +76,31 @@ void NodeSession::tell_boot_done(Time now) noexcept {
 }
 
 /// Reports the progress of a program download after each tenth.
-void NodeSession::tell_progress(Time now) noexcept {
+void NodeSession::report_progress(Time now) noexcept {
   const std::size_t size = runner_.program_size();
   if (size == 0) return;
   const std::size_t done = client_.progress();
   const auto tenth = static_cast<std::uint32_t>(10 * done / size);
-  if (tenth == progress_told_) return;
-  progress_told_ = tenth;
-  tell(EventKind::program_progress, now, static_cast<std::int64_t>(done),
-       static_cast<std::uint32_t>(size));
+  if (tenth == progress_reported_) return;
+  progress_reported_ = tenth;
+  announce(EventKind::program_progress, now, static_cast<std::int64_t>(done),
+           static_cast<std::uint32_t>(size));
 }
 
-void NodeSession::tell_replaced(Time now) noexcept {
+void NodeSession::report_replaced(Time now) noexcept {
   const auto serial = runner_.serial_number();
   if (serial_number_ && serial && *serial != *serial_number_) {
-    tell(EventKind::node_replaced, now, *serial, *serial_number_);
+    announce(EventKind::node_replaced, now, *serial, *serial_number_);
   }
   if (serial) serial_number_ = serial;
 }
 
-void NodeSession::tell_firmware(Time now) noexcept {
+void NodeSession::report_firmware(Time now) noexcept {
   const auto is = runner_.firmware();
   if (!is || !plan_->firmware) return;
   Firmware assumed = plan_->firmware->assumed;
   if (plan_->firmware->of_revision()) assumed.parts[2] = 0;  // a revision number has only two parts
-  if (*is != assumed) tell(EventKind::firmware_differs, now, is->packed());
+  if (*is != assumed) announce(EventKind::firmware_differs, now, is->packed());
 }
 
 void NodeSession::on_boot_failed(Time now) noexcept {

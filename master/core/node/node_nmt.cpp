@@ -91,7 +91,7 @@ bool NodeSession::exchanges_pdos() const noexcept {
 void NodeSession::assume(NmtState state, Time now) noexcept {
   if (status_.nmt == state) return;
   status_.nmt = state;
-  tell(EventKind::node_state, now, static_cast<std::int64_t>(state));
+  announce(EventKind::node_state, now, static_cast<std::int64_t>(state));
 }
 
 void NodeSession::disarm() noexcept {

@@ -19,8 +19,8 @@ NodeSession::NodeSession(const NodePlan& plan, Managed managed, Shared shared) n
       guard_{plan.guard},
       twins_{plan.heartbeat_period, plan.sdo.channel_of(plan.id).request} {}
 
-void NodeSession::tell(EventKind kind, Time now, std::int64_t value,
-                       std::uint32_t detail) noexcept {
+void NodeSession::announce(EventKind kind, Time now, std::int64_t value,
+                           std::uint32_t detail) noexcept {
   shared_.events.push(
       {.when = now, .kind = kind, .node = plan_->id.value(), .detail = detail, .value = value});
 }
@@ -32,8 +32,8 @@ void NodeSession::start(Time now) noexcept {
 
 void NodeSession::advance(Time now) noexcept {
   if (const auto none = client_.take_no_block()) {
-    tell(EventKind::no_sdo_block, now, none->abort_code,
-         std::uint32_t{none->object.index} << 8U | none->object.sub);
+    announce(EventKind::no_sdo_block, now, none->abort_code,
+             std::uint32_t{none->object.index} << 8U | none->object.sub);
   }
   if (booting()) follow_boot(now);
   if (booting()) return;
@@ -50,7 +50,7 @@ bool NodeSession::withdraw(std::uint64_t id) noexcept {
 }
 
 void NodeSession::on_sdo_answer(const Frame& frame, Time now) noexcept {
-  tell_twin(twins_.on_sdo_answer(frame, now), now);
+  report_twin(twins_.on_sdo_answer(frame, now), now);
   client_.on_frame(frame, now);
   advance(now);
 }
@@ -58,7 +58,7 @@ void NodeSession::on_sdo_answer(const Frame& frame, Time now) noexcept {
 /// Returns false if the message is a guarding answer that counts as not received.
 bool NodeSession::take_guarding_answer(const Heartbeat& sign, Time now) noexcept {
   if (sign.state == NmtState::bootup || guard_.on_answer(sign.toggle, now)) return true;
-  if (guard_.repeated() == 1) tell(EventKind::guarding_toggle, now);
+  if (guard_.repeated() == 1) announce(EventKind::guarding_toggle, now);
   return false;
 }
 
@@ -70,17 +70,17 @@ void NodeSession::on_heartbeat(const Heartbeat& sign, Time now) noexcept {
   const bool against = ends_exchange() && state == NmtState::operational;
   heartbeats_against_ = against ? heartbeats_against_ + 1 : 0;
   if (news == NodeWatch::Sign::new_state) {
-    tell(EventKind::node_state, now, static_cast<std::int64_t>(state));
+    announce(EventKind::node_state, now, static_cast<std::int64_t>(state));
   }
   const bool halted = command_ == Command::application;
   if (watch_.end_silence()) {
     if (halted) return advance(now);
-    if (managed_ == Managed::no) tell(EventKind::heartbeat_back, now);
+    if (managed_ == Managed::no) announce(EventKind::heartbeat_back, now);
     if (status_.boot == BootState::lost) retries_.without_pause(now);
   }
   if (was_absent() && !halted) retries_.without_pause(now);
   if (booting()) runner_.on_heartbeat(state);
-  if (status_.boot == BootState::ready) tell_twin(twins_.on_heartbeat(now), now);
+  if (status_.boot == BootState::ready) report_twin(twins_.on_heartbeat(now), now);
   look_for_fall(state, now);
   advance(now);
 }
@@ -98,8 +98,8 @@ void NodeSession::look_for_fall(NmtState state, Time now) noexcept {
 void NodeSession::on_bootup(Time now) noexcept {
   if (stopping()) return;
   const bool again = managed_ == Managed::yes && status_.boot == BootState::ready;
-  tell(again ? EventKind::bootup_again : EventKind::node_state, now,
-       again && command_ == Command::application ? 1 : 0);
+  announce(again ? EventKind::bootup_again : EventKind::node_state, now,
+           again && command_ == Command::application ? 1 : 0);
   if (managed_ == Managed::no) return;
   if (booting()) {
     guard_.node_was_reset();
@@ -121,8 +121,8 @@ void NodeSession::on_bootup(Time now) noexcept {
   boot(BootRunner::From::bootup, now);
 }
 
-void NodeSession::tell_twin(std::optional<DuplicateSign> sign, Time now) noexcept {
-  if (sign) tell(EventKind::duplicate_node, now, static_cast<std::int64_t>(*sign));
+void NodeSession::report_twin(std::optional<DuplicateSign> sign, Time now) noexcept {
+  if (sign) announce(EventKind::duplicate_node, now, static_cast<std::int64_t>(*sign));
 }
 
 void NodeSession::on_emcy(const Frame& frame, Time now) noexcept {
@@ -135,7 +135,7 @@ void NodeSession::on_emcy(const Frame& frame, Time now) noexcept {
               .kind = EventKind::emcy,
               .node = plan_->id.value(),
               .detail = frame.length,
-              .value = watch_.take_untold_emcys()};
+              .value = watch_.take_unreported_emcys()};
   std::ranges::copy_n(frame.data.begin(), std::min<int>(frame.length, 8), event.bytes.begin());
   shared_.events.push(event);
 }
@@ -153,7 +153,7 @@ void NodeSession::look_for_silence(Time now) noexcept {
 
 void NodeSession::on_silence(EventKind kind, Time silence, Time now) noexcept {
   if (status_.boot == BootState::failed) return;
-  tell(kind, now, silence.count());
+  announce(kind, now, silence.count());
   if (status_.boot == BootState::ready) {
     loss_to_report_ = true;
     boot_later(BootState::lost, BootRunner::From::beginning, now);

@@ -167,7 +167,7 @@ class NodeSession {
   void keep(Archive& state) noexcept {
     state(status_, client_, watch_, guard_, twins_, retries_, command_, network_started_);
     state(wanted_, heartbeats_out_, heartbeats_against_, state_at_boot_, emcys_at_boot_,
-          serial_number_, progress_told_);
+          serial_number_, progress_reported_);
   }
 
  private:
@@ -185,10 +185,10 @@ class NodeSession {
   void on_boot_done(Time now) noexcept;
   void boot_later(BootState state, BootRunner::From from, Time now) noexcept;
   bool was_absent() const noexcept;
-  void tell_boot_done(Time now) noexcept;
-  void tell_progress(Time now) noexcept;
-  void tell_replaced(Time now) noexcept;
-  void tell_firmware(Time now) noexcept;
+  void report_boot_done(Time now) noexcept;
+  void report_progress(Time now) noexcept;
+  void report_replaced(Time now) noexcept;
+  void report_firmware(Time now) noexcept;
   // NMT commands and their consequences (node_nmt.cpp).
   void follow_command(NmtCommand command, Time now) noexcept;
   void assume(NmtState state, Time now) noexcept;
@@ -208,8 +208,9 @@ class NodeSession {
     return wanted_ == NmtState::stopped || wanted_ == NmtState::preoperational;
   }
   void look_for_fall(NmtState state, Time now) noexcept;
-  void tell_twin(std::optional<DuplicateSign> sign, Time now) noexcept;
-  void tell(EventKind kind, Time now, std::int64_t value = 0, std::uint32_t detail = 0) noexcept;
+  void report_twin(std::optional<DuplicateSign> sign, Time now) noexcept;
+  void announce(EventKind kind, Time now, std::int64_t value = 0,
+                std::uint32_t detail = 0) noexcept;
 
   bool booting() const noexcept { return status_.boot == BootState::booting; }
   bool stopping() const noexcept { return command_ == Command::stopping; }
@@ -240,7 +241,7 @@ class NodeSession {
   NmtState state_at_boot_ = NmtState::unknown;
   std::uint32_t emcys_at_boot_ = 0;
   std::optional<std::uint32_t> serial_number_;  // serial number of the device that was booted last
-  std::uint32_t progress_told_ = 0;             // tenths of the program that were reported
+  std::uint32_t progress_reported_ = 0;         // tenths of the program that were reported
   bool loss_to_report_ = false;                 // see take_loss()
   bool network_started_ = false;
 };

@@ -38,10 +38,12 @@ bool NodeWatch::on_emcy(const Emcy& emcy, Time now, NodeStatus& status) noexcept
     emcys_in_window_ = 0;
   }
   if (++emcys_in_window_ <= emcys_per_second) return true;
-  ++untold_emcys_;
+  ++unreported_emcys_;
   return false;
 }
 
-std::uint32_t NodeWatch::take_untold_emcys() noexcept { return std::exchange(untold_emcys_, 0U); }
+std::uint32_t NodeWatch::take_unreported_emcys() noexcept {
+  return std::exchange(unreported_emcys_, 0U);
+}
 
 }  // namespace takt

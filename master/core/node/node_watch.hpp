@@ -44,11 +44,11 @@ class NodeWatch {
   /// in a second.
   bool on_emcy(const Emcy& emcy, Time now, NodeStatus& status) noexcept;
   /// Number of EMCYs that were not reported since the last call.
-  std::uint32_t take_untold_emcys() noexcept;
+  std::uint32_t take_unreported_emcys() noexcept;
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(deadline_, silent_, emcy_window_, emcys_in_window_, untold_emcys_);
+    state(deadline_, silent_, emcy_window_, emcys_in_window_, unreported_emcys_);
   }
 
  private:
@@ -59,7 +59,7 @@ class NodeWatch {
   bool silent_ = false;  // the node was lost, and no heartbeat has come since
   Time emcy_window_{};   // begin of the second in which EMCYs are counted
   std::uint32_t emcys_in_window_ = 0;
-  std::uint32_t untold_emcys_ = 0;
+  std::uint32_t unreported_emcys_ = 0;
 };
 
 }  // namespace takt

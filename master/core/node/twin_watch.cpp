@@ -42,8 +42,8 @@ void TwinWatch::restart() noexcept {
 
 std::optional<DuplicateSign> TwinWatch::once(DuplicateSign sign, Time now) noexcept {
   restart();
-  if (now - told_ < tell_again) return std::nullopt;
-  told_ = now;
+  if (now - reported_ < report_again) return std::nullopt;
+  reported_ = now;
   return sign;
 }
 

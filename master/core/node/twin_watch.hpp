@@ -30,12 +30,12 @@ class TwinWatch {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(window_begin_, heartbeats_, full_windows_, asked_, answered_, block_, told_);
+    state(window_begin_, heartbeats_, full_windows_, asked_, answered_, block_, reported_);
     state(objects_);
   }
 
  private:
-  static constexpr Time tell_again = std::chrono::seconds{10};
+  static constexpr Time report_again = std::chrono::seconds{10};
 
   std::optional<DuplicateSign> once(DuplicateSign sign, Time now) noexcept;
 
@@ -50,7 +50,8 @@ class TwinWatch {
   bool block_ = false;
   // Objects of the newest two requests, which both devices answer.
   std::array<ObjectKey, 2> objects_{};
-  Time told_ = -tell_again;  // initially long ago, so that the first report is possible at once
+  Time reported_ =
+      -report_again;  // initially long ago, so that the first report is possible at once
 };
 
 }  // namespace takt

@@ -43,7 +43,7 @@ void PdoInputs::mark(Row& row, bool stale) noexcept {
   }
 }
 
-void PdoInputs::tell(EventKind kind, const Row& row, Time now, std::uint32_t detail) noexcept {
+void PdoInputs::announce(EventKind kind, const Row& row, Time now, std::uint32_t detail) noexcept {
   events_.push({.when = now,
                 .cycle = cycle_,
                 .kind = kind,
@@ -136,7 +136,7 @@ bool PdoInputs::use_odd_length(std::size_t position, const StampedFrame& stamped
   row.too_long += longer;
   marks_[position].flags |= longer ? PdoMark::too_long : PdoMark::too_short;
   if (!row.odd_length) {
-    tell(EventKind::pdo_length, row, stamped.when, stamped.frame.length);
+    announce(EventKind::pdo_length, row, stamped.when, stamped.frame.length);
     row.odd_length = true;
   }
   return longer;
@@ -150,8 +150,8 @@ bool PdoInputs::use_late(std::size_t position, const StampedFrame& stamped) noex
   marks_[position].flags |= PdoMark::late;
   if (!row.was_late && row.misses == 0) {
     const Time after = stamped.when - (stamped.when < sync_ ? sync_before_ : sync_);
-    tell(EventKind::pdo_late, row, stamped.when,
-         static_cast<std::uint32_t>(std::min<Time::rep>(after.count() / 1000, 0xFFFF'FFFF)));
+    announce(EventKind::pdo_late, row, stamped.when,
+             static_cast<std::uint32_t>(std::min<Time::rep>(after.count() / 1000, 0xFFFF'FFFF)));
   }
   row.was_late = true;
   return !plan_.pdos.tpdos[position].drop_late;
@@ -216,7 +216,7 @@ bool PdoInputs::receive(const StampedFrame& stamped) noexcept {
 void PdoInputs::come_back(Row& row, Time when) noexcept {
   if (row.misses != 0) {
     row.misses = 0;
-    tell(EventKind::pdo_back, row, when);
+    announce(EventKind::pdo_back, row, when);
   }
   if (row.stale) mark(row, false);
 }
@@ -225,7 +225,7 @@ void PdoInputs::miss(std::size_t position, Time now) noexcept {
   Row& row = rows_[position];
   ++row.missing;
   marks_[position].flags |= PdoMark::missing;
-  if (row.misses == 0) tell(EventKind::pdo_missing, row, now);
+  if (row.misses == 0) announce(EventKind::pdo_missing, row, now);
   if (row.misses < 255) ++row.misses;
   if (!row.stale) mark(row, true);
 }

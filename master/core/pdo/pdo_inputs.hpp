@@ -115,8 +115,8 @@ class PdoInputs {
   [[gnu::cold]] void come_back(Row& row, Time when) noexcept;
   void mark(Row& row, bool stale) noexcept;
   void miss(std::size_t position, Time now) noexcept;
-  [[gnu::cold]] void tell(EventKind kind, const Row& row, Time now,
-                          std::uint32_t detail = 0) noexcept;
+  [[gnu::cold]] void announce(EventKind kind, const Row& row, Time now,
+                              std::uint32_t detail = 0) noexcept;
 
   const BusPlan& plan_;
   WorkingImage& image_;

@@ -46,8 +46,8 @@ void PdoOutputs::shut(std::size_t node_index) noexcept {
   }
 }
 
-void PdoOutputs::tell(EventKind kind, std::size_t row, std::int64_t value, OutputMoment moment,
-                      std::uint32_t detail) noexcept {
+void PdoOutputs::announce(EventKind kind, std::size_t row, std::int64_t value, OutputMoment moment,
+                          std::uint32_t detail) noexcept {
   events_.push({.when = moment.now,
                 .cycle = moment.cycle,
                 .kind = kind,
@@ -117,19 +117,19 @@ PdoOutputs::Built PdoOutputs::build(std::size_t position, std::span<const SetPoi
   return built;
 }
 
-void PdoOutputs::tell_changes(std::size_t position, bool lacking, OutputMoment moment) noexcept {
+void PdoOutputs::report_changes(std::size_t position, bool lacking, OutputMoment moment) noexcept {
   Row& row = rows_[position];
   const PdoRow& pdo = plan_.pdos.rpdos[position];
   if (row.fallen != 0) {
-    tell(EventKind::fallback_begun, position, row.first_fallen, moment, row.fallen);
+    announce(EventKind::fallback_begun, position, row.first_fallen, moment, row.fallen);
   }
   if (row.risen != 0) {
-    tell(EventKind::fallback_ended, position, row.first_risen, moment, row.risen);
+    announce(EventKind::fallback_ended, position, row.first_risen, moment, row.risen);
   }
-  if (!lacking || begun_[pdo.node_index] == 0 || row.held_told) return;
+  if (!lacking || begun_[pdo.node_index] == 0 || row.held_reported) return;
   if (++row.partial < partial_limit) return;
-  tell(EventKind::outputs_held, position, pdo.number, moment, awaited_start(pdo));
-  row.held_told = true;
+  announce(EventKind::outputs_held, position, pdo.number, moment, awaited_start(pdo));
+  row.held_reported = true;
 }
 
 /// Times are counted in cycles, so that a late wake-up does not lengthen them. A late wake-up
@@ -155,7 +155,7 @@ bool PdoOutputs::build_all(std::span<const SetPoint> set_points, OutputMoment mo
     const Built built = build(i, set_points, moment);
     row.ready = !built.lacking;
     if (built.lacking || row.fallen != 0 || row.risen != 0) [[unlikely]] {
-      tell_changes(i, built.lacking, moment);
+      report_changes(i, built.lacking, moment);
     }
     row.pending |= built.word != row.word;
     row.word = built.word;

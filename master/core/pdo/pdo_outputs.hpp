@@ -127,7 +127,7 @@ class PdoOutputs {
     bool ever_sent = false;  ///< a frame was sent since open()
     bool pending = false;    ///< a value has changed and is not sent yet
     bool due = false;        ///< the frame is due and is not sent yet
-    bool held_told = false;
+    bool held_reported = false;
     std::uint8_t partial = 0;
     SignalIndex first_fallen = 0;
     SignalIndex first_risen = 0;
@@ -136,7 +136,7 @@ class PdoOutputs {
 
     template <class Archive>
     void keep(Archive& state) noexcept {
-      state(word, last_sent, last_cycle, sent, open, ready, ever_sent, pending, due, held_told,
+      state(word, last_sent, last_cycle, sent, open, ready, ever_sent, pending, due, held_reported,
             partial);
     }
   };
@@ -239,9 +239,9 @@ class PdoOutputs {
   bool build_all(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
   bool due(std::size_t row, OutputMoment moment) const noexcept;
   const Frame& add_frame(std::size_t row) noexcept;
-  void tell_changes(std::size_t row, bool lacking, OutputMoment moment) noexcept;
-  void tell(EventKind kind, std::size_t row, std::int64_t value, OutputMoment moment,
-            std::uint32_t detail = 0) noexcept;
+  void report_changes(std::size_t row, bool lacking, OutputMoment moment) noexcept;
+  void announce(EventKind kind, std::size_t row, std::int64_t value, OutputMoment moment,
+                std::uint32_t detail = 0) noexcept;
   std::size_t output_of(SignalIndex signal) const noexcept { return signal - inputs_count_; }
 
   const BusPlan& plan_;

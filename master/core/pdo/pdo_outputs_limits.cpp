@@ -18,7 +18,7 @@ std::optional<std::uint32_t> value_of(std::span<const LimitReading> readings,
 
 void PdoOutputs::learn(std::size_t node_index, std::span<const LimitReading> readings,
                        OutputMoment moment) noexcept {
-  std::optional<std::uint16_t> told;
+  std::optional<std::uint16_t> reported;
   for (const DeviceLimit& limit : plan_.limits.device) {
     if (limit.node_index != node_index) continue;
     const bool is_range = limit.bound == DeviceBound::range;
@@ -27,8 +27,8 @@ void PdoOutputs::learn(std::size_t node_index, std::span<const LimitReading> rea
     if (!first || !last) continue;
     const auto verdict =
         limits_.narrow(limit, *first, *last) ? LimitVerdict::good : LimitVerdict::implausible;
-    if (told == limit.line) continue;
-    told = limit.line;
+    if (reported == limit.line) continue;
+    reported = limit.line;
     const auto low = static_cast<std::int32_t>(*first);
     events_.push(
         {.when = moment.now,

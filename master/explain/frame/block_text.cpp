@@ -97,13 +97,13 @@ std::string BlockText::confirm(const Frame& frame) {
 }
 
 std::string BlockText::end(const Frame& frame, const std::string& name) {
-  const SdoBlockEnd told = decode_block_end(frame);
-  if (held_) absorb(std::span{held_->data}.first(segment_bytes - told.unused));
+  const SdoBlockEnd reported = decode_block_end(frame);
+  if (held_) absorb(std::span{held_->data}.first(segment_bytes - reported.unused));
   std::string text = fmt::format("end of {} {}", verb(), name);
   if (!crc_used_) return text;
-  text += fmt::format(", CRC {:04X}", told.crc);
+  text += fmt::format(", CRC {:04X}", reported.crc);
   if (gap_) return text + " can't be checked: some segments are not in this recording";
-  if (told.crc != crc_) text += fmt::format(" is wrong, {:04X} would be right", crc_);
+  if (reported.crc != crc_) text += fmt::format(" is wrong, {:04X} would be right", crc_);
   return text;
 }
 

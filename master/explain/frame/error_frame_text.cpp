@@ -99,22 +99,23 @@ std::string protocol_text(std::uint8_t what, std::uint8_t where) {
 
 std::string error_frame_text(std::uint32_t error_class, std::span<const std::uint8_t> data) {
   const auto byte = [&](std::size_t i) { return i < data.size() ? data[i] : std::uint8_t{0}; };
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   if ((error_class & lost_arbitration) != 0) {
-    told.push_back(byte(0) == 0 ? "arbitration lost"
-                                : fmt::format("arbitration lost in bit {}", byte(0)));
+    reported.push_back(byte(0) == 0 ? "arbitration lost"
+                                    : fmt::format("arbitration lost in bit {}", byte(0)));
   }
   if ((error_class & controller) != 0) {
     std::string text = bits_text(byte(1), controller_bits);
-    told.push_back(text.empty() ? "controller fault" : std::move(text));
+    reported.push_back(text.empty() ? "controller fault" : std::move(text));
   }
-  if ((error_class & protocol) != 0) told.push_back(protocol_text(byte(2), byte(3)));
+  if ((error_class & protocol) != 0) reported.push_back(protocol_text(byte(2), byte(3)));
   std::string rest = bits_text(error_class, classes);
-  if (!rest.empty()) told.push_back(std::move(rest));
+  if (!rest.empty()) reported.push_back(std::move(rest));
   if ((error_class & (controller | counters)) != 0) {
-    told.push_back(fmt::format("error counters: transmit {}, receive {}", byte(6), byte(7)));
+    reported.push_back(fmt::format("error counters: transmit {}, receive {}", byte(6), byte(7)));
   }
-  return told.empty() ? "error frame of the controller" : fmt::format("{}", fmt::join(told, "; "));
+  return reported.empty() ? "error frame of the controller"
+                          : fmt::format("{}", fmt::join(reported, "; "));
 }
 
 }  // namespace takt

@@ -109,8 +109,8 @@ std::optional<FrameMeaning> FrameText::broadcast(const Frame& frame) const {
 
 FrameMeaning FrameText::meaning(const Frame& frame) {
   if (auto mapped = planned_pdo(names_, frame)) return std::move(*mapped);
-  if (auto told = broadcast(frame)) return std::move(*told);
-  if (auto told = sdo_.meaning(frame)) return std::move(*told);
+  if (auto reported = broadcast(frame)) return std::move(*reported);
+  if (auto reported = sdo_.meaning(frame)) return std::move(*reported);
   if (const auto sender = names_.emcy_sender(frame.id)) {
     return emergency_meaning(names_, *sender, frame);
   }

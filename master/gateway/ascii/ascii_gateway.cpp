@@ -124,7 +124,7 @@ void AsciiGateway::run(int client, Client& state, const AsciiCommand& command) {
       state.sdo_timeout = std::chrono::milliseconds{command.number};
       return done("OK");
     case AsciiVerb::boot_up_indication:
-      state.tells_bootups = command.number != 0;
+      state.reports_bootups = command.number != 0;
       return done("OK");
     case AsciiVerb::info_version:  // vendor product revision serial class protocol implementation
       return done("0 0 0.0 0 3 3.0 0.1");
@@ -270,9 +270,9 @@ void AsciiGateway::follow_all_nodes(Pending pending, const Reply& reply) {
   submit_lss(client, clients_.at(client), command);
 }
 
-void AsciiGateway::tell_all(const std::string& line, bool bootup) {
+void AsciiGateway::report_all(const std::string& line, bool bootup) {
   for (const auto& [client, state] : clients_) {
-    if (!bootup || state.tells_bootups) ports_.send(client, line);
+    if (!bootup || state.reports_bootups) ports_.send(client, line);
   }
 }
 
@@ -280,13 +280,13 @@ void AsciiGateway::hear(const Event& event) {
   const std::string net = std::to_string(only_net) + " ";
   if (event.node == 0) {
     const std::string text = bus_event(event.kind);
-    if (!text.empty()) tell_all(net + text);
+    if (!text.empty()) report_all(net + text);
     return;
   }
   const std::string from = net + std::to_string(event.node) + " ";
-  if (is_bootup(event)) return tell_all(from + "BOOT_UP", true);
+  if (is_bootup(event)) return report_all(from + "BOOT_UP", true);
   const std::string text = node_event(event);
-  if (!text.empty()) tell_all(from + text);
+  if (!text.empty()) report_all(from + text);
 }
 
 void AsciiGateway::see(const ImageView& image) {

@@ -58,7 +58,7 @@ class AsciiGateway final : public FrontGuest {
   struct Client {
     std::uint32_t node = 0;  // 0 means no default
     Time sdo_timeout{};      // 0 selects the time-out of the node
-    bool tells_bootups = true;
+    bool reports_bootups = true;
     std::size_t pending = 0;
   };
   struct Pending {
@@ -76,7 +76,7 @@ class AsciiGateway final : public FrontGuest {
   Answer read_pdo(std::uint32_t node, const AsciiCommand& command) const;
   void write_pdo(int client, std::uint32_t node, const AsciiCommand& command);
   void follow_all_nodes(Pending pending, const Reply& reply);
-  void tell_all(const std::string& line, bool bootup = false);
+  void report_all(const std::string& line, bool bootup = false);
 
   const BusPlan& plan_;
   AsciiPorts ports_;

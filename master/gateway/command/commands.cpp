@@ -52,11 +52,11 @@ std::string shown(const std::string& sender) {
 }  // namespace
 
 Commands::Commands(const BusPlan& plan, CommandsOptions options, SetOutput set_output,
-                   NoticeSink tell)
+                   NoticeSink announce)
     : plan_{plan},
       options_{options},
       set_output_{std::move(set_output)},
-      tell_{std::move(tell)},
+      announce_{std::move(announce)},
       second_{cycles_in(std::chrono::seconds{1}, plan.cycle.period)},
       leases_{plan.nodes.size(), second_},
       verdicts_(plan.nodes.size()),
@@ -71,19 +71,19 @@ bool Commands::refuse(const Refused& refused, const std::string& why) {
   count(reason);
   const std::string sender = shown(command.sender);
   const std::string thing = sender + '/' + std::to_string(node) + '/' + why.substr(0, 24);
-  const auto kept_back = told_.allow(thing, context.now);
+  const auto kept_back = reported_.allow(thing, context.now);
   if (!kept_back) return false;
   std::string text = "command of '" + sender + "' refused";
   if (node != 0)
     text += " for node " + std::to_string(node) + " (" + std::string{node_name(plan_, node)} + ")";
   text += ": " + why;
   if (*kept_back != 0) text += " (" + std::to_string(*kept_back) + " more since the last message)";
-  tell_({.when = context.now,
-         .cycle = context.cycle,
-         .node = node,
-         .kind = "command_refused",
-         .weight = Weight::warning,
-         .text = std::move(text)});
+  announce_({.when = context.now,
+             .cycle = context.cycle,
+             .node = node,
+             .kind = "command_refused",
+             .weight = Weight::warning,
+             .text = std::move(text)});
   return false;
 }
 
@@ -253,12 +253,12 @@ bool Commands::release(const command_t& command, const CommandContext& context) 
   }
   if (nodes.empty()) return false;
   ++taken_;
-  tell_({.when = context.now,
-         .cycle = context.cycle,
-         .node = 0,
-         .kind = "outputs_released",
-         .weight = Weight::note,
-         .text = "'" + command.sender + "' has released the outputs of " + nodes});
+  announce_({.when = context.now,
+             .cycle = context.cycle,
+             .node = 0,
+             .kind = "outputs_released",
+             .weight = Weight::note,
+             .text = "'" + command.sender + "' has released the outputs of " + nodes});
   return true;
 }
 

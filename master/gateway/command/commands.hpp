@@ -62,7 +62,7 @@ struct CommandContext {
 /// Front thread.
 class Commands {
  public:
-  Commands(const BusPlan& plan, CommandsOptions options, SetOutput set_output, NoticeSink tell);
+  Commands(const BusPlan& plan, CommandsOptions options, SetOutput set_output, NoticeSink announce);
 
   /// Returns true if at least one output was staged.
   bool take(const command_t& command, const CommandContext& context);
@@ -118,10 +118,10 @@ class Commands {
   const BusPlan& plan_;
   CommandsOptions options_;
   SetOutput set_output_;
-  NoticeSink tell_;
+  NoticeSink announce_;
   std::uint32_t second_;  // cycles in one second
   LeaseTable leases_;
-  RateLimit told_{std::chrono::seconds{1}};
+  RateLimit reported_{std::chrono::seconds{1}};
   std::vector<Item> items_;                          // items of the current message
   std::vector<Verdict> verdicts_;                    // per node, for the current message
   std::vector<std::optional<CommandLimit>> limits_;  // by signal: that of the newest command

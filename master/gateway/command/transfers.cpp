@@ -72,7 +72,7 @@ void Transfers::begin(const transfer_t& message, Time now) {
           .request = *request,
           .total = static_cast<std::size_t>(message.total),
           .heard = now,
-          .told = now};
+          .reported = now};
   job->request.id = transfer_mark | next_id_++;
   job->request.transfer = job->buffer;
   job->buffer->data.reserve(job->total);
@@ -212,8 +212,8 @@ void Transfers::watch(Job& job, Time now) {
     if (!job.submitted) forget(job);
     return;
   }
-  if (job.stage != Stage::running || now - job.told < progress_period) return;
-  job.told = now;
+  if (job.stage != Stage::running || now - job.reported < progress_period) return;
+  job.reported = now;
   sinks_.state(state_of(job));
 }
 

@@ -57,8 +57,8 @@ class Transfers {
     std::size_t part_end = 0;
     std::uint32_t abort_code = 0;
     std::string text{};
-    Time heard{};  // time of the last message of the sender
-    Time told{};   // time of the last report of progress
+    Time heard{};     // time of the last message of the sender
+    Time reported{};  // time of the last report of progress
   };
 
   Job* find(const transfer_t& message);

@@ -16,8 +16,8 @@ constexpr std::size_t most_lines = 8;
 
 /// Returns the time of the next sum. The sums of all PDOs fall due together, so that many can share
 /// a line.
-Time next_sum(Time now, Time told) {
-  return std::chrono::ceil<std::chrono::seconds>(std::max(now, told + pause));
+Time next_sum(Time now, Time reported) {
+  return std::chrono::ceil<std::chrono::seconds>(std::max(now, reported + pause));
 }
 
 std::string how_often(std::uint64_t count) {
@@ -43,7 +43,7 @@ std::optional<Notice> PdoOutages::on_event(const Event& event) {
   outage.last = event.when;
   outage.cycle = event.cycle;
   if (first || (outage.back_at_once && !outage.missing)) {
-    if (first) outage.told = event.when;
+    if (first) outage.reported = event.when;
     outage.back_at_once = outage.missing;
     return to_notice(plan_, event);
   }
@@ -51,7 +51,7 @@ std::optional<Notice> PdoOutages::on_event(const Event& event) {
   outage.missed += outage.missing;
   if (outage.due == never) {
     outage.since = event.when;
-    outage.due = next_sum(event.when, outage.told);
+    outage.due = next_sum(event.when, outage.reported);
     next_look_ = std::min(next_look_, outage.due);
   }
   return std::nullopt;
@@ -68,7 +68,7 @@ std::vector<Notice> PdoOutages::take_due(Time now) {
       next_look_ = std::min(next_look_, row.second.due);
     }
   }
-  return tell(due, now);
+  return announce(due, now);
 }
 
 std::vector<Notice> PdoOutages::take_rest(Time now) {
@@ -77,10 +77,10 @@ std::vector<Notice> PdoOutages::take_rest(Time now) {
   for (Row& row : outages_) {
     if (row.second.due != never) rest.push_back(&row);
   }
-  return tell(rest, now);
+  return announce(rest, now);
 }
 
-std::vector<Notice> PdoOutages::tell(const std::vector<Row*>& rows, Time now) {
+std::vector<Notice> PdoOutages::announce(const std::vector<Row*>& rows, Time now) {
   std::vector<Notice> notices;
   if (rows.size() > most_lines) {
     notices.push_back(many(rows, now));
@@ -89,7 +89,7 @@ std::vector<Notice> PdoOutages::tell(const std::vector<Row*>& rows, Time now) {
   }
   for (Row* row : rows) {
     Outage& outage = row->second;
-    outage.told = outage.due;
+    outage.reported = outage.due;
     outage.due = never;
     outage.missed = 0;
   }

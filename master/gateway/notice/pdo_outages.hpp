@@ -35,7 +35,7 @@ class PdoOutages {
 
   struct Outage {
     Time last = -calm;  ///< time of the newest event
-    Time told{};        ///< time of the last report before the next sum
+    Time reported{};    ///< time of the last report before the next sum
     Time since{};       ///< begin of the time that `missed` covers
     Time due = never;   ///< time of the next sum
     std::uint64_t cycle = 0;
@@ -51,7 +51,7 @@ class PdoOutages {
   };
   using Row = std::map<Pdo, Outage>::value_type;
 
-  std::vector<Notice> tell(const std::vector<Row*>& rows, Time now);
+  std::vector<Notice> announce(const std::vector<Row*>& rows, Time now);
   Notice one(const Row& row, Time now) const;
   Notice many(const std::vector<Row*>& rows, Time now) const;
 

@@ -181,11 +181,11 @@ std::optional<std::expected<void, std::string>> WatchedKeyFile::reread() {
   if (::lstat(path_.c_str(), &now) != 0) now = {};
   const bool same = same_file(now, seen_);
   if (!keys_.empty() && same && !retries_) return std::nullopt;
-  const bool told = same && retries_;
+  const bool reported = same && retries_;
   seen_ = now;
   const auto text = read_key_file(path_);
   retries_ = !text && text.error().passing;
-  if (retries_ && told) return std::nullopt;
+  if (retries_ && reported) return std::nullopt;
   if (!text) return std::unexpected{text.error().sentence};
   auto keys = parse_keys(path_, *text);
   if (!keys) return std::unexpected{keys.error()};

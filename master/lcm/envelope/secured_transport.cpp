@@ -100,7 +100,7 @@ bool SecuredTransport::is_echo(Bytes envelope, Time now) {
 }
 
 void SecuredTransport::refuse(const std::string& what) {
-  const auto kept_back = told_.allow(what, clocks_.now());
+  const auto kept_back = reported_.allow(what, clocks_.now());
   if (!kept_back) return;
   options_.say(*kept_back == 0
                    ? what

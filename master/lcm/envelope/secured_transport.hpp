@@ -56,7 +56,7 @@ class SecuredTransport final : public Transport {
   std::string signed_channel_;
   std::optional<EnvelopeSeal> seal_;  // empty if nothing is signed
   EnvelopeGuard guard_;
-  RateLimit told_{std::chrono::seconds{1}};
+  RateLimit reported_{std::chrono::seconds{1}};
   Time next_look_{};
   struct Opened {
     Octets mac;

@@ -53,7 +53,7 @@ void LcmLink::try_again() {
 }
 
 void LcmLink::warn_once(const std::string& sentence) {
-  if (std::exchange(told_, sentence) != sentence) say_(Weight::warning, sentence);
+  if (std::exchange(reported_, sentence) != sentence) say_(Weight::warning, sentence);
 }
 
 std::expected<std::unique_ptr<TcpqBroker>, int> LcmLink::listen(std::uint16_t port) {

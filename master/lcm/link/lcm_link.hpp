@@ -64,7 +64,7 @@ class LcmLink final : public Transport {
   LcmUrl url_;
   Hub hub_;
   Say say_;
-  std::string told_;  // the newest sentence that each retry would repeat
+  std::string reported_;  // the newest sentence that each retry would repeat
   std::vector<std::string> patterns_;
   std::unique_ptr<Transport> main_;      // the transport that the URL names
   std::unique_ptr<Transport> fallback_;  // the hub in use while the URL cannot be used

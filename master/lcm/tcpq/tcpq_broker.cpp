@@ -53,7 +53,7 @@ void TcpqBroker::relay(const tcpq::Message& message) {
 
 void TcpqBroker::close(Client& client, const std::string& why) {
   client.connection.close();
-  const auto kept_back = told_.allow(why.substr(0, 40), options_.clock());
+  const auto kept_back = reported_.allow(why.substr(0, 40), options_.clock());
   if (!kept_back) return;
   std::string sentence = "LCM hub: a connection was closed: " + why;
   if (*kept_back != 0)
@@ -94,7 +94,7 @@ bool TcpqBroker::make_room(Time now) {
     displaced_ = now;
     close(*idle, full + ", and this one had sent nothing for 10 s");
   } else {
-    if (told_.allow(full, options_.clock())) {
+    if (reported_.allow(full, options_.clock())) {
       options_.say("LCM hub: a new connection was refused: " + full);
     }
     return false;

@@ -90,7 +90,7 @@ class TcpqBroker final : public Transport {
   Time displaced_ = -displacing_pause;            // when a connection that had asked last gave way
   bool drained_ = true;  // the newest round has read everything from all clients
   ChannelPatterns own_;
-  RateLimit told_{std::chrono::seconds{10}};
+  RateLimit reported_{std::chrono::seconds{10}};
   AcceptPause accept_pause_;
 };
 

@@ -11,7 +11,7 @@ constexpr std::uint32_t window_syncs = 32;
 constexpr std::uint8_t unasked_limit = 3;
 constexpr int most_asked = 8;  // limits the credit of a node that never answers
 constexpr std::size_t max_events = 64;
-constexpr Time tell_again = std::chrono::seconds{10};
+constexpr Time report_again = std::chrono::seconds{10};
 constexpr Time adjust_every = std::chrono::seconds{1};
 constexpr std::uint8_t sdo_abort = 0x80;
 
@@ -49,7 +49,7 @@ void IntruderWatch::on_frame(const StampedFrame& stamped, Origin origin) {
 
 void IntruderWatch::watch_own(Own& own, const StampedFrame& frame, Origin origin) {
   if (origin == Origin::wire) {
-    tell(own.kind, own.id, 0, frame.frame, frame.when);
+    announce(own.kind, own.id, 0, frame.frame, frame.when);
     return;
   }
   ++own.seen;
@@ -61,7 +61,7 @@ void IntruderWatch::watch_sync_interval(Time now) {
   syncs_ = 0;
   for (Cyclic& row : cyclic_) {
     const std::uint32_t due = window_syncs / row.every + 2;
-    if (row.seen > due + due / 2) tell(EventKind::duplicate_cob_id, row.id, row.node, {}, now);
+    if (row.seen > due + due / 2) announce(EventKind::duplicate_cob_id, row.id, row.node, {}, now);
     row.seen = 0;
   }
 }
@@ -82,8 +82,8 @@ void IntruderWatch::watch_sdo(const StampedFrame& stamped) {
   if (server.asked > 0) --server.asked;
   if (expected || ++server.unasked < unasked_limit) return;
   server.unasked = 0;
-  tell(EventKind::duplicate_cob_id, stamped.frame.id, static_cast<std::uint8_t>(node),
-       stamped.frame, stamped.when);
+  announce(EventKind::duplicate_cob_id, stamped.frame.id, static_cast<std::uint8_t>(node),
+           stamped.frame, stamped.when);
 }
 
 /// If the diagnostic socket itself loses frames, `seen` stays behind for good. A lag that lasted a
@@ -95,7 +95,7 @@ void IntruderWatch::on_drained(const SentFrames& sent, Time now) {
     const auto behind = static_cast<std::int32_t>(count - own.seen);
     if (!started_) own.seen = count;
     if (started_ && behind < 0) {
-      tell(own.kind, own.id, 0, own.last, now);
+      announce(own.kind, own.id, 0, own.last, now);
       own.seen = count;
     }
     own.least_behind = std::min(own.least_behind, static_cast<std::uint32_t>(std::max(behind, 0)));
@@ -107,11 +107,11 @@ void IntruderWatch::on_drained(const SentFrames& sent, Time now) {
   if (adjust) adjusted_ = now;
 }
 
-void IntruderWatch::tell(EventKind kind, CobId id, std::uint8_t node, const Frame& frame,
-                         Time now) {
-  Time& told = told_[id.id() & 0x7FF];
-  if ((told != Time{} && now - told < tell_again) || events_.size() == max_events) return;
-  told = now;
+void IntruderWatch::announce(EventKind kind, CobId id, std::uint8_t node, const Frame& frame,
+                             Time now) {
+  Time& reported = reported_[id.id() & 0x7FF];
+  if ((reported != Time{} && now - reported < report_again) || events_.size() == max_events) return;
+  reported = now;
   Event event{.when = now, .kind = kind, .node = node};
   event.value = id.id();
   event.bytes = frame.data;

@@ -60,7 +60,7 @@ class IntruderWatch {
   void watch_own(Own& own, const StampedFrame& frame, Origin origin);
   void watch_sync_interval(Time now);
   void watch_sdo(const StampedFrame& frame);
-  void tell(EventKind kind, CobId id, std::uint8_t node, const Frame& frame, Time now);
+  void announce(EventKind kind, CobId id, std::uint8_t node, const Frame& frame, Time now);
 
   CobId sync_id_;
   std::vector<Own> own_;
@@ -68,7 +68,7 @@ class IntruderWatch {
   std::array<std::uint16_t, 2048> own_index_;
   std::array<std::uint16_t, 2048> cyclic_index_;
   std::array<SdoServer, 128> servers_{};
-  std::array<Time, 2048> told_{};
+  std::array<Time, 2048> reported_{};
   std::uint32_t syncs_ = 0;
   Time adjusted_{};
   bool started_ = false;

@@ -27,7 +27,7 @@ concept FrontLink = std::copy_constructible<L> &&
                       { link.stop_requested() } noexcept -> std::same_as<bool>;
                       /// Returns false if there is no room; the loop then offers the reply again.
                       { link.give_reply(reply) } noexcept -> std::same_as<bool>;
-                      { link.tell(event) } noexcept;
+                      { link.announce(event) } noexcept;
 
                       /// A cycle begins. A recording can begin here.
                       { link.begin_cycle(cycle) } noexcept;
@@ -53,7 +53,7 @@ class DirectLink {
   bool give_reply(const Reply& reply) noexcept {
     return !exchange_->replies.full() && exchange_->replies.push(reply);
   }
-  void tell(const Event& event) noexcept { exchange_->events.push(event); }
+  void announce(const Event& event) noexcept { exchange_->events.push(event); }
 
   void begin_cycle(std::uint64_t) noexcept {}
   static constexpr bool checkpoint_due() noexcept { return false; }

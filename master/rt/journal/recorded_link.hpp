@@ -39,8 +39,8 @@ class RecordedLink {
     if (journal_ != nullptr) journal_->put(Mark::replies_full, 0);
     return false;
   }
-  void tell(const Event& event) noexcept {
-    direct_.tell(event);
+  void announce(const Event& event) noexcept {
+    direct_.announce(event);
     if (journal_ == nullptr) return;
     std::uint64_t* const room = journal_->claim(Mark::event, 0, journal::event_words);
     if (room != nullptr) std::memcpy(static_cast<void*>(room), &event, sizeof event);

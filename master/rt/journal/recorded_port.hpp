@@ -101,16 +101,16 @@ class RecordedPort {
     constexpr Time jitter = std::chrono::microseconds{50};
     if (beginnings_ != journal_->beginnings()) {
       beginnings_ = journal_->beginnings();
-      told_ = {};
+      reported_ = {};
     }
     std::uint64_t parts = 0;
-    const Time drift = news.since_1970 - told_.since_1970;
+    const Time drift = news.since_1970 - reported_.since_1970;
     if (drift > jitter || drift < -jitter) {
       parts |= journal::utc;
     } else {
-      news.since_1970 = told_.since_1970;
+      news.since_1970 = reported_.since_1970;
     }
-    if (news.last_sync_echo != told_.last_sync_echo) parts |= journal::echo;
+    if (news.last_sync_echo != reported_.last_sync_echo) parts |= journal::echo;
     if (!same_state(news)) parts |= journal::state;
     const auto bits = static_cast<std::size_t>(std::popcount(parts & 3));
     const std::size_t words = bits + ((parts & journal::state) != 0 ? journal::state_words : 0);
@@ -120,15 +120,16 @@ class RecordedPort {
       if ((parts & journal::utc) != 0) *room++ = count_of(news.since_1970);
       if ((parts & journal::state) != 0) journal::put_state(news, room);
     }
-    if (parts != 0) told_ = news;
+    if (parts != 0) reported_ = news;
   }
   bool same_state(const PortNews& news) const noexcept {
-    return news.interface_down == told_.interface_down &&
-           news.error_passive == told_.error_passive && news.bus_off == told_.bus_off &&
-           news.receive_overruns == told_.receive_overruns &&
-           news.error_frames == told_.error_frames &&
-           news.tx_error_counter == told_.tx_error_counter &&
-           news.rx_error_counter == told_.rx_error_counter && news.last_error == told_.last_error;
+    return news.interface_down == reported_.interface_down &&
+           news.error_passive == reported_.error_passive && news.bus_off == reported_.bus_off &&
+           news.receive_overruns == reported_.receive_overruns &&
+           news.error_frames == reported_.error_frames &&
+           news.tx_error_counter == reported_.tx_error_counter &&
+           news.rx_error_counter == reported_.rx_error_counter &&
+           news.last_error == reported_.last_error;
   }
   static std::uint64_t count_of(Time time) noexcept {
     return static_cast<std::uint64_t>(time.count());
@@ -136,7 +137,7 @@ class RecordedPort {
 
   P* port_;
   Journal* journal_;
-  mutable PortNews told_;  // as recorded last
+  mutable PortNews reported_;  // as recorded last
   mutable unsigned beginnings_ = 0;
 };
 

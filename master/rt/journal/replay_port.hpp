@@ -118,7 +118,7 @@ class ReplayedLink {
   bool take_request(Request& request) noexcept { return port_->take_request(request); }
   bool stop_requested() noexcept { return port_->stop_requested(); }
   bool give_reply(const Reply&) noexcept { return port_->give_reply(); }
-  void tell(const Event& event) noexcept {
+  void announce(const Event& event) noexcept {
     exchange_->events.push(event);
     port_->note_event();
   }

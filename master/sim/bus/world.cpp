@@ -98,7 +98,7 @@ void World::step(Time at) noexcept {
 void World::step_bus() noexcept {
   WireFrame wire;
   if (bus_.step(now_, wire)) on_wire_end(wire);
-  tell_bus_changes();
+  report_bus_changes();
 }
 
 void World::run_device(std::size_t index) noexcept {
@@ -182,7 +182,7 @@ void World::deliver(std::size_t index, const Frame& frame) noexcept {
   after_call(index);
 }
 
-void World::tell_bus_changes() noexcept {
+void World::report_bus_changes() noexcept {
   for (BusNodeIndex i = bus_.take_change(); i != VirtualBus::nobody; i = bus_.take_change()) {
     if (i >= devices_.size()) continue;
     HostedDevice& hosted = *devices_[i];

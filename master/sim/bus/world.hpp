@@ -76,7 +76,7 @@ class World {
   bool fits_bus(const Device& device) const noexcept;
   void deliver_to_devices(const WireFrame& wire) noexcept;
   void deliver(std::size_t index, const Frame& frame) noexcept;
-  void tell_bus_changes() noexcept;
+  void report_bus_changes() noexcept;
   void set_power(std::size_t index, bool on) noexcept;
   void babble_again() noexcept;
 

@@ -90,7 +90,7 @@ void World::apply(const Fault& fault, bool begins) {
     apply_to_device(i, fault, begins);
     if (devices_[i]->device.state() != DeviceState::off) after_call(i);
   }
-  tell_bus_changes();
+  report_bus_changes();
 }
 
 void World::apply_to_wire(const Fault& fault, bool begins) noexcept {

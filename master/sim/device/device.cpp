@@ -276,7 +276,7 @@ void Device::on_bus_off(Time now) noexcept {
 }
 
 void Device::on_bus_recovered(Time now) noexcept {
-  emcy_.tell(0x8140);
+  emcy_.announce(0x8140);
   finish_call(now);
 }
 

@@ -52,7 +52,7 @@ AstraadaDrv28::AstraadaDrv28(ObjectStore& store, EmcyProducer& emcy)
 DeviceTraits AstraadaDrv28::traits() const noexcept {
   return {.timer = DeviceTraits::Timer::alone,
           .answers_255 = true,
-          .tells_state_at_start = false,
+          .reports_state_at_start = false,
           .answers_rtr = false,
           .inhibit_unit = std::chrono::milliseconds{1},
           .inhibit_floor = std::chrono::milliseconds{50}};

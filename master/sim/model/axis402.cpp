@@ -65,9 +65,9 @@ double Axis402::interpolation_period() const noexcept {
     return static_cast<double>(sync_distance_.count()) * 1e-9;
   }
   const auto exponent = std::clamp<std::int64_t>(objects_.period_exponent.get(), -9, 0);
-  const double told = static_cast<double>(objects_.period_value.get()) *
-                      std::pow(10.0, static_cast<double>(exponent));
-  return std::clamp(told, 0.001, 1.0);
+  const double reported = static_cast<double>(objects_.period_value.get()) *
+                          std::pow(10.0, static_cast<double>(exponent));
+  return std::clamp(reported, 0.001, 1.0);
 }
 
 void Axis402::take_cyclic_target(double period) noexcept {
@@ -91,8 +91,8 @@ bool Axis402::knows(std::int64_t mode) const noexcept {
   constexpr std::uint32_t built = 1 | 1 << 2 | 1 << 3 | 1 << 5 | 1 << 6 | 1 << 7 | 1 << 8 | 1 << 9;
   if (mode == 0) return true;
   if (mode < 1 || mode > 32) return false;
-  const auto told = static_cast<std::uint32_t>(objects_.supported_modes.get()) & 0xFFFF;
-  const std::uint32_t supported = told == 0 ? built : told & built;
+  const auto reported = static_cast<std::uint32_t>(objects_.supported_modes.get()) & 0xFFFF;
+  const std::uint32_t supported = reported == 0 ? built : reported & built;
   return (supported >> (mode - 1) & 1) != 0;
 }
 

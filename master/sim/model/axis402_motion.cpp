@@ -270,10 +270,10 @@ void Axis402::publish_torque() noexcept {
   }
   const double drag = friction * std::clamp(motor_.velocity / 100, -1.0, 1.0);
   const double torque = 1000 * (motor_.acceleration / rated_acceleration_ + drag);
-  const std::int64_t told = rounded(std::clamp(torque, -32767.0, 32767.0));
-  objects_.torque_actual.set(told);
-  objects_.torque_demand.set(told);
-  objects_.current_actual.set(told);
+  const std::int64_t reported = rounded(std::clamp(torque, -32767.0, 32767.0));
+  objects_.torque_actual.set(reported);
+  objects_.torque_demand.set(reported);
+  objects_.current_actual.set(reported);
 }
 
 }  // namespace takt::sim

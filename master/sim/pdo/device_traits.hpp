@@ -18,7 +18,7 @@ struct DeviceTraits {
   bool timer_at_sync = false;     ///< type 0: expiry of the event timer is an event
   bool compares_samples = false;  ///< type 0: a change counts only if it is still present at SYNC
   bool answers_255 = false;       ///< type 255 without event timer: RPDO n triggers TPDO n
-  bool tells_state_at_start = true;  ///< event-driven TPDOs are sent once on entering OPERATIONAL
+  bool reports_state_at_start = true;  ///< event-driven TPDOs are sent once on entering OPERATIONAL
   bool answers_rtr = true;     ///< answers remote requests if bit 30 of the COB-ID allows them
   bool produces_sync = false;  ///< bit 30 of 0x1005 may be set
   Time inhibit_unit = std::chrono::microseconds{100};  ///< unit of the inhibit time 0x1800:03

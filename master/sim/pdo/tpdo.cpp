@@ -21,7 +21,7 @@ void Tpdo::reconfigure(Time now) noexcept {
   count_ = 0;
   sampled_ = started_ = false;
   seen_ = last_ = mapping_.pack();
-  pending_ = traits_.tells_state_at_start && !only_answers() && (type_ == 0 || type_ >= 254);
+  pending_ = traits_.reports_state_at_start && !only_answers() && (type_ == 0 || type_ >= 254);
   timer_ = runs_by_timer() ? now + record_.event_timer() : never;
   update_deadline();
 }

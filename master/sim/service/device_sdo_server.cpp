@@ -89,8 +89,8 @@ void SdoServer::start_upload(Time now, Transmitter& out) noexcept {
   const Abort refused = dictionary_->read(key_, now, data);
   if (refused != Abort::none) return abort(refused, now, out);
   if (!data.empty() && data.size() <= 4) {
-    const auto told = std::max<std::size_t>(data.size(), faults_->pad_expedited);
-    const auto unused = static_cast<unsigned>(4 - std::min<std::size_t>(told, 4));
+    const auto reported = std::max<std::size_t>(data.size(), faults_->pad_expedited);
+    const auto unused = static_cast<unsigned>(4 - std::min<std::size_t>(reported, 4));
     const unsigned command = faults_->no_size ? 0x42u : 0x43u | unused << 2;
     return answer(static_cast<std::uint8_t>(command), data, now, out);
   }
@@ -128,10 +128,10 @@ void SdoServer::upload_segment(const Frame& frame, Time now, Transmitter& out) n
 
 void SdoServer::start_download(const Frame& frame, Time now, Transmitter& out) noexcept {
   const bool expedited = (frame.data[0] & 0x02) != 0;
-  const bool size_told = (frame.data[0] & 0x01) != 0;
+  const bool size_reported = (frame.data[0] & 0x01) != 0;
   if (!expedited) return start_segmented_download(frame, now, out);
   std::size_t size = 4;
-  if (size_told) {
+  if (size_reported) {
     size -= (frame.data[0] >> 2) & 3;
   } else {
     std::size_t width = 0;

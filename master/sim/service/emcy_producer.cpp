@@ -56,7 +56,7 @@ void EmcyProducer::clear_active(std::uint16_t code, std::uint8_t source) noexcep
   push(0, {});
 }
 
-void EmcyProducer::tell(std::uint16_t code, Detail detail) noexcept { push(code, detail); }
+void EmcyProducer::announce(std::uint16_t code, Detail detail) noexcept { push(code, detail); }
 
 void EmcyProducer::push(std::uint16_t code, Detail detail) noexcept {
   if (code != 0) remember(code);

@@ -41,7 +41,7 @@ class EmcyProducer {
     if (active_count_ != 0) clear_active(code, source);
   }
   /// Sends an EMCY and enters the error in the history, but not in the list of active errors.
-  void tell(std::uint16_t code, Detail detail = {}) noexcept;
+  void announce(std::uint16_t code, Detail detail = {}) noexcept;
   bool is_active(std::uint16_t code, std::uint8_t source = 0) const noexcept;
 
   /// Sends the waiting messages as far as the inhibit time allows.

@@ -84,8 +84,8 @@ BlockReceiver::Then BlockReceiver::on_end(const SdoBytes& frame, std::vector<std
   if (size_known_ && size_ != 0 && data.size() != size_) {
     return refuse(data.size() > size_ ? Abort::too_long : Abort::too_short);
   }
-  const auto told = static_cast<std::uint16_t>(frame[1] | frame[2] << 8);
-  if (crc_ && told != block_crc(data)) return refuse(Abort::crc);
+  const auto reported = static_cast<std::uint16_t>(frame[1] | frame[2] << 8);
+  if (crc_ && reported != block_crc(data)) return refuse(Abort::crc);
   return Then::finish;
 }
 

@@ -82,7 +82,7 @@ TEST(GroupThatEnds, ReleasesWhatItCommandedOnce) {
   EXPECT_TRUE(release->signals.empty());
 }
 
-TEST_F(Group, TellsOnceThatTheDaemonIsOfAnOlderTakt) {
+TEST_F(Group, ReportsOnceThatTheDaemonIsOfAnOlderTakt) {
   layout_t old = two_axes();
   old.schema = 1;
   for (int i = 0; i < 3; ++i) lcm_.arrive("LIFT_LAYOUT", old);
@@ -96,7 +96,7 @@ TEST_F(Group, TellsOnceThatTheDaemonIsOfAnOlderTakt) {
       "the daemon sends messages of schema 1 and this program uses schema 2: update the daemon");
 }
 
-TEST_F(Group, TellsThatTheDaemonHasRestarted) {
+TEST_F(Group, ReportsThatTheDaemonHasRestarted) {
   lcm_.arrive("LIFT_LAYOUT", two_axes());
   group_.wait(0ns);
   group_.axes().set_goal(DriveGoal::enabled);
@@ -139,7 +139,7 @@ TEST_F(Group, GoesOverToAnotherSessionWhenTheImagesOfTheFirstHaveCeased) {
   EXPECT_EQ(group_.input().session(), 78);
 }
 
-TEST_F(Group, KeepsWhatTheDaemonTells) {
+TEST_F(Group, KeepsWhatTheDaemonReports) {
   event_t event{};
   event.kind = "command_refused";
   event.text = "another sender holds node 5";
@@ -227,7 +227,7 @@ TEST(AxisGroup, CommandsWithTheInstanceOfItsOptions) {
   EXPECT_EQ(command->sender, "test 0000ab12");
 }
 
-TEST(AxisGroup, TellsItselfFromAnotherProgramOfTheSameName) {
+TEST(AxisGroup, ReportsItselfFromAnotherProgramOfTheSameName) {
   FakeLcm lcm;
   AxisGroup group{std::make_unique<FakeTransport>(lcm), {.bus = "lift", .sender = "test"}};
   FakeLcm of_other;

@@ -112,7 +112,7 @@ TEST(DriveSequence, EnablesAfterAResetWhereBothWereAsked) {
   EXPECT_EQ(drive.step(switch_on_disabled), 0x0006);
 }
 
-TEST(DriveSequence, IsNotEnabledAgainAfterAFaultUntilTold) {
+TEST(DriveSequence, IsNotEnabledAgainAfterAFaultUntilReported) {
   DriveSequence drive = enabled_drive();
 
   EXPECT_EQ(drive.step(fault_reaction), 0x0000);
@@ -123,7 +123,7 @@ TEST(DriveSequence, IsNotEnabledAgainAfterAFaultUntilTold) {
   EXPECT_EQ(drive.step(switch_on_disabled), 0x0000);
 }
 
-TEST(DriveSequence, IsNotEnabledAgainAfterSafeTorqueOffUntilTold) {
+TEST(DriveSequence, IsNotEnabledAgainAfterSafeTorqueOffUntilReported) {
   DriveSequence drive = enabled_drive();
 
   EXPECT_EQ(drive.step(switch_on_disabled), 0x0000);
@@ -132,7 +132,7 @@ TEST(DriveSequence, IsNotEnabledAgainAfterSafeTorqueOffUntilTold) {
   EXPECT_EQ(drive.step(switch_on_disabled), 0x0006);
 }
 
-TEST(DriveSequence, KeepsTheLastStateWhenAStatuswordTellsNone) {
+TEST(DriveSequence, KeepsTheLastStateWhenAStatuswordReportsNone) {
   DriveSequence drive = enabled_drive();
 
   EXPECT_EQ(drive.step(0x0201), 0x000F);

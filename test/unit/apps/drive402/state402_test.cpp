@@ -13,7 +13,7 @@ struct Case {
 
 class Statusword : public testing::TestWithParam<Case> {};
 
-TEST_P(Statusword, TellsTheState) {
+TEST_P(Statusword, ReportsTheState) {
   EXPECT_EQ(decode_statusword(GetParam().statusword), GetParam().state);
 }
 

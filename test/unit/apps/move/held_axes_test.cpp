@@ -56,14 +56,14 @@ TEST_F(HeldAxes, AreNotAllOwnWhileNobodyHoldsOne) {
   EXPECT_TRUE(holds_all(group_));
 }
 
-TEST_F(HeldAxes, AreToldWithTheNameOfTheirHolder) {
+TEST_F(HeldAxes, AreReportedWithTheNameOfTheirHolder) {
   held_by("me 1 00000a0b", "me 1 00000c0d");
   EXPECT_EQ(held_by_others(group_, 1),
             "elbow belongs to 'me 1 00000c0d', and the commands of this program are refused");
   EXPECT_FALSE(others_hold_all(group_, 1));
 }
 
-TEST_F(HeldAxes, AreToldInOneLine) {
+TEST_F(HeldAxes, AreReportedInOneLine) {
   held_by("a\nb", "a\nb");
   EXPECT_EQ(held_by_others(group_, 1),
             "shoulder belongs to 'a?b', and the commands of this program are refused; elbow "
@@ -71,7 +71,7 @@ TEST_F(HeldAxes, AreToldInOneLine) {
   EXPECT_TRUE(others_hold_all(group_, 1));
 }
 
-TEST_F(HeldAxes, AreNotToldBecauseOfOneForgedStatus) {
+TEST_F(HeldAxes, AreNotReportedBecauseOfOneForgedStatus) {
   held_by("other", "other", 5);
   held_by("me 1 00000a0b", "me 1 00000a0b");
   held_by("other", "other", 5);

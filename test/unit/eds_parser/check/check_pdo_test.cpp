@@ -34,7 +34,7 @@ Findings judged(const Record& record) {
                    .dictionary);
 }
 
-TEST(CheckPdo, AnInhibitTimeLongerThanTheEventTimerIsTold) {
+TEST(CheckPdo, AnInhibitTimeLongerThanTheEventTimerIsReported) {
   const auto findings = judged({.inhibit = 1001, .timer = 100});
 
   const auto* finding = find(findings, "pdo-inhibit-too-long");
@@ -57,31 +57,33 @@ TEST(CheckPdo, NoTransmissionTypeSparesNoOtherEntry) {
   EXPECT_TRUE(has(check(read(sub("1800sub6", 5, "241")).dictionary), "pdo-sync-start"));
 }
 
-TEST(CheckPdo, AnEventTimerBesideASynchronousTypeIsTold) {
-  const auto told = [](const Record& record) {
+TEST(CheckPdo, AnEventTimerBesideASynchronousTypeIsReported) {
+  const auto reported = [](const Record& record) {
     return has(judged(record), "pdo-event-timer-unused");
   };
 
-  EXPECT_TRUE(told({.type = 1, .timer = 100}));
-  EXPECT_TRUE(told({.type = 240, .timer = 100}));
-  EXPECT_TRUE(told({.type = 252, .timer = 100}));
-  EXPECT_TRUE(told({.type = 253, .timer = 100}));
-  EXPECT_FALSE(told({.type = 1}));
-  EXPECT_FALSE(told({.type = 0, .timer = 100}));  // for some devices the timer is the event
-  EXPECT_FALSE(told({.type = 254, .timer = 100}));
-  EXPECT_FALSE(told({.index = "1400", .type = 1, .timer = 100}));  // monitors the reception
+  EXPECT_TRUE(reported({.type = 1, .timer = 100}));
+  EXPECT_TRUE(reported({.type = 240, .timer = 100}));
+  EXPECT_TRUE(reported({.type = 252, .timer = 100}));
+  EXPECT_TRUE(reported({.type = 253, .timer = 100}));
+  EXPECT_FALSE(reported({.type = 1}));
+  EXPECT_FALSE(reported({.type = 0, .timer = 100}));  // for some devices the timer is the event
+  EXPECT_FALSE(reported({.type = 254, .timer = 100}));
+  EXPECT_FALSE(reported({.index = "1400", .type = 1, .timer = 100}));  // monitors the reception
   const auto findings = judged({.type = 1, .timer = 100});
   EXPECT_EQ(find(findings, "pdo-event-timer-unused")->severity, Severity::note);
   EXPECT_EQ(find(findings, "pdo-event-timer-unused")->pos, (SourcePos{line_of(20), 14}));
 }
 
-TEST(CheckPdo, AnInhibitTimeWithoutEffectIsTold) {
-  const auto told = [](const Record& record) { return has(judged(record), "pdo-inhibit-unused"); };
+TEST(CheckPdo, AnInhibitTimeWithoutEffectIsReported) {
+  const auto reported = [](const Record& record) {
+    return has(judged(record), "pdo-inhibit-unused");
+  };
 
-  for (const int type : {0, 1, 240, 252, 253}) EXPECT_TRUE(told({.type = type, .inhibit = 1}));
-  EXPECT_FALSE(told({.type = 1}));
-  EXPECT_FALSE(told({.type = 254, .inhibit = 1}));
-  EXPECT_FALSE(told({.index = "1400", .type = 1, .inhibit = 1}));
+  for (const int type : {0, 1, 240, 252, 253}) EXPECT_TRUE(reported({.type = type, .inhibit = 1}));
+  EXPECT_FALSE(reported({.type = 1}));
+  EXPECT_FALSE(reported({.type = 254, .inhibit = 1}));
+  EXPECT_FALSE(reported({.index = "1400", .type = 1, .inhibit = 1}));
   EXPECT_FALSE(has(check(read(sub("1800sub3", 6, "100")).dictionary), "pdo-inhibit-unused"));
   const auto findings = judged({.type = 1, .inhibit = 1});
   EXPECT_EQ(find(findings, "pdo-inhibit-unused")->severity, Severity::note);
@@ -89,14 +91,14 @@ TEST(CheckPdo, AnInhibitTimeWithoutEffectIsTold) {
 }
 
 TEST(CheckPdo, ATypeOnRequestNeedsTheRequestAllowed) {
-  const auto told = [](const Record& record) { return has(judged(record), "pdo-rtr"); };
+  const auto reported = [](const Record& record) { return has(judged(record), "pdo-rtr"); };
 
-  EXPECT_TRUE(told({.cob_id = "$NODEID+0x40000180", .type = 252}));
-  EXPECT_TRUE(told({.cob_id = "0x40000185", .type = 253}));
-  EXPECT_FALSE(told({.cob_id = "$NODEID+0x180", .type = 253}));
-  EXPECT_FALSE(told({.cob_id = "$NODEID+0x40000180", .type = 254}));
-  EXPECT_FALSE(told({.cob_id = "0xC0000185", .type = 253}));  // off
-  EXPECT_FALSE(told({.cob_id = "", .type = 253}));
+  EXPECT_TRUE(reported({.cob_id = "$NODEID+0x40000180", .type = 252}));
+  EXPECT_TRUE(reported({.cob_id = "0x40000185", .type = 253}));
+  EXPECT_FALSE(reported({.cob_id = "$NODEID+0x180", .type = 253}));
+  EXPECT_FALSE(reported({.cob_id = "$NODEID+0x40000180", .type = 254}));
+  EXPECT_FALSE(reported({.cob_id = "0xC0000185", .type = 253}));  // off
+  EXPECT_FALSE(reported({.cob_id = "", .type = 253}));
   const auto findings = judged({.cob_id = "$NODEID+0x40000180", .type = 253});
   ASSERT_TRUE(has(findings, "pdo-rtr"));
   EXPECT_EQ(find(findings, "pdo-rtr")->pos, (SourcePos{line_of(10), 14}));

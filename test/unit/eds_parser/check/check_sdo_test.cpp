@@ -23,22 +23,22 @@ Findings judged(const std::string& objects, std::optional<NodeId> node = std::nu
 }
 
 TEST(CheckSdo, TheDefaultChannelFollowsFromTheNodeId) {
-  const auto told = [](const std::string& first, const std::string& second,
-                       std::optional<NodeId> node) {
+  const auto reported = [](const std::string& first, const std::string& second,
+                           std::optional<NodeId> node) {
     const auto findings = judged(channel("1200", first, second), node);
     EXPECT_FALSE(has(findings, "cob-id-restricted"));
     return std::ranges::count(findings, "sdo-default-channel", &Finding::rule);
   };
 
-  EXPECT_EQ(told("$NODEID+0x600", "$NODEID+0x580", {}), 0);
-  EXPECT_EQ(told("$NODEID+0x600", "$NODEID+0x580", 5_node), 0);
-  EXPECT_EQ(told("0x605", "0x585", 5_node), 0);
-  EXPECT_EQ(told("0x605", "0x585", {}), 0);
-  EXPECT_EQ(told("", "", {}), 0);
-  EXPECT_EQ(told("0x606", "0x586", 5_node), 2);
-  EXPECT_EQ(told("$NODEID+0x580", "$NODEID+0x600", {}), 2);
-  EXPECT_EQ(told("0x600", "0x580", {}), 2);
-  EXPECT_EQ(told("0x80000000", "0x80000000", {}), 2);
+  EXPECT_EQ(reported("$NODEID+0x600", "$NODEID+0x580", {}), 0);
+  EXPECT_EQ(reported("$NODEID+0x600", "$NODEID+0x580", 5_node), 0);
+  EXPECT_EQ(reported("0x605", "0x585", 5_node), 0);
+  EXPECT_EQ(reported("0x605", "0x585", {}), 0);
+  EXPECT_EQ(reported("", "", {}), 0);
+  EXPECT_EQ(reported("0x606", "0x586", 5_node), 2);
+  EXPECT_EQ(reported("$NODEID+0x580", "$NODEID+0x600", {}), 2);
+  EXPECT_EQ(reported("0x600", "0x580", {}), 2);
+  EXPECT_EQ(reported("0x80000000", "0x80000000", {}), 2);
   const auto findings = judged(channel("1200", "$NODEID+0x580", "$NODEID+0x580"));
   ASSERT_TRUE(has(findings, "sdo-default-channel"));
   EXPECT_EQ(find(findings, "sdo-default-channel")->severity, Severity::warning);
@@ -61,7 +61,7 @@ TEST(CheckSdo, AFurtherServerNeedsCobIdsOfItsOwn) {
 }
 
 /// Returns severity and message of the findings about sub-index 1 of 0x1201.
-std::string said(const std::string& cob_id, std::optional<NodeId> node = std::nullopt) {
+std::string declared(const std::string& cob_id, std::optional<NodeId> node = std::nullopt) {
   std::string text;
   for (const auto& finding : judged(channel("1201", cob_id, "0x80000000"), node)) {
     if (finding.rule != "cob-id-restricted") continue;
@@ -71,33 +71,33 @@ std::string said(const std::string& cob_id, std::optional<NodeId> node = std::nu
 }
 
 TEST(CheckSdo, AFurtherServerOnTheChannelOfAnotherNodeIsAWarningThatNamesIt) {
-  EXPECT_EQ(said("$NODEID+0x640", 5_node),
+  EXPECT_EQ(declared("$NODEID+0x640", 5_node),
             "warning: 1201sub1: COB-ID 0x645 is the SDO request of node 69; it works while no such "
             "node is on the bus\n");
-  EXPECT_EQ(said("0x645"),
+  EXPECT_EQ(declared("0x645"),
             "warning: 1201sub1: COB-ID 0x645 is the SDO request of node 69; it works while no such "
             "node is on the bus\n");
-  EXPECT_EQ(said("$NODEID+0x640"),
+  EXPECT_EQ(declared("$NODEID+0x640"),
             "warning: 1201sub1: COB-ID $NODEID+0x640 is the SDO request of node $NODEID+64 for "
             "nodes of 1..63; it works while no such node is on the bus\n");
   EXPECT_EQ(
-      said("$NODEID+0x5C0"),
+      declared("$NODEID+0x5C0"),
       "warning: 1201sub1: COB-ID $NODEID+0x5C0 is the SDO answer of node $NODEID+64 for nodes "
       "of 1..63, and the SDO request of node $NODEID-64 for nodes of 65..127; it works while "
       "no such node is on the bus\n");
-  EXPECT_EQ(said("$NODEID+0x640", 64_node), "");
-  EXPECT_EQ(said("$NODEID+0x5C0", 64_node), "");
+  EXPECT_EQ(declared("$NODEID+0x640", 64_node), "");
+  EXPECT_EQ(declared("$NODEID+0x5C0", 64_node), "");
 }
 
 TEST(CheckSdo, AFurtherServerOnTheFirstChannelOfTheDeviceOrOnOtherServicesIsAnError) {
-  EXPECT_EQ(said("$NODEID+0x600", 5_node),
+  EXPECT_EQ(declared("$NODEID+0x600", 5_node),
             "error: 1201sub1: COB-ID 0x605 is restricted (SDO requests)\n");
-  EXPECT_EQ(said("$NODEID+0x600"),
+  EXPECT_EQ(declared("$NODEID+0x600"),
             "error: 1201sub1: COB-ID $NODEID+0x600 is restricted (SDO requests) for nodes of "
             "1..127\n");
-  EXPECT_EQ(said("$NODEID+0x700", 5_node),
+  EXPECT_EQ(declared("$NODEID+0x700", 5_node),
             "error: 1201sub1: COB-ID 0x705 is restricted (error control)\n");
-  EXPECT_EQ(said("0x6E5"), "warning: 1201sub1: COB-ID 0x6E5 is restricted (reserved)\n");
+  EXPECT_EQ(declared("0x6E5"), "warning: 1201sub1: COB-ID 0x6E5 is restricted (reserved)\n");
 }
 
 TEST(CheckSdo, ACobIdOfAPdoIsTaken) {

@@ -130,26 +130,26 @@ TEST(Check, KnowsTheRestrictedCobIds) {
   EXPECT_TRUE(restricted("$NODEID+0x580"));
 }
 
-TEST(Check, TellsAnExtendedFrameWhoseIdFits11Bits) {
-  const auto told = [](std::string_view cob_id) {
+TEST(Check, ReportsAnExtendedFrameWhoseIdFits11Bits) {
+  const auto reported = [](std::string_view cob_id) {
     const auto findings = tpdo("0x60410010", cob_id);
     const auto* found = find(findings, "cob-id-extended");
     return found == nullptr ? "" : std::string{name(found->severity)} + ": " + found->message;
   };
 
   EXPECT_EQ(
-      told("$NODEID+0x20000180"),
+      reported("$NODEID+0x20000180"),
       "warning: 1800sub1: COB-ID $NODEID+0x20000180 has bit 29 set: this is the 29-bit "
       "identifier $NODEID+0x00000180, although 11 bits are enough; clear bit 29 for a base frame");
-  EXPECT_NE(told("0x60000185"), "");
-  EXPECT_NE(told("0x200007FF"), "");
-  EXPECT_EQ(told("0x20000800"), "");
-  EXPECT_EQ(told("0x38000185"), "");
-  EXPECT_EQ(told("$NODEID+0x180"), "");
-  EXPECT_EQ(told("0xA0000185"), "");  // off
+  EXPECT_NE(reported("0x60000185"), "");
+  EXPECT_NE(reported("0x200007FF"), "");
+  EXPECT_EQ(reported("0x20000800"), "");
+  EXPECT_EQ(reported("0x38000185"), "");
+  EXPECT_EQ(reported("$NODEID+0x180"), "");
+  EXPECT_EQ(reported("0xA0000185"), "");  // off
 }
 
-TEST(Check, AbsoluteCobIdsOf29BitsAreToldToo) {
+TEST(Check, AbsoluteCobIdsOf29BitsAreReportedToo) {
   const auto findings = tpdo("0x60410010", "0x38000185");
   ASSERT_TRUE(has(findings, "cob-id-absolute"));
   EXPECT_TRUE(find(findings, "cob-id-absolute")->message.contains("COB-ID 0x18000185 is the same"));
@@ -177,7 +177,7 @@ TEST(Check, BitsOfSyncTimeAndEmcyAreLookedAtToo) {
   EXPECT_EQ(rules("1014", "$NODEID+0xC0000080"), (std::pair{false, false}));  // off
 }
 
-TEST(Check, Bit30IsToldOfRpdosOnly) {
+TEST(Check, Bit30IsReportedOfRpdosOnly) {
   const auto findings = rpdo("0x60400010", "$NODEID+0x40000200");
   ASSERT_TRUE(has(findings, "pdo-rtr-of-rpdo"));
   EXPECT_EQ(find(findings, "pdo-rtr-of-rpdo")->severity, Severity::note);
@@ -250,8 +250,8 @@ TEST(Check, ComparesValuesWithLimits) {
   EXPECT_TRUE(has(value, "parameter-value-in-eds"));
 }
 
-TEST(Check, TellsABitRateThatTheDeviceHasNot) {
-  const auto told = [](std::string_view rates, std::string_view rate) {
+TEST(Check, ReportsABitRateThatTheDeviceHasNot) {
+  const auto reported = [](std::string_view rates, std::string_view rate) {
     const auto file =
         read_eds("[DeviceInfo]\n" + std::string{rates} + "[DeviceComissioning]\n" +
                      "NodeID=5\nBaudrate=" + std::string{rate} + "\n[1000]\nDataType=7\n",
@@ -261,13 +261,13 @@ TEST(Check, TellsABitRateThatTheDeviceHasNot) {
     return finding == nullptr ? std::string{} : to_string(*finding);
   };
 
-  EXPECT_EQ(told("BaudRate_500=1\nBaudRate_125=1\nBaudRate_250=0\n", "250"),
+  EXPECT_EQ(reported("BaudRate_500=1\nBaudRate_125=1\nBaudRate_250=0\n", "250"),
             "t.dcf:7:10: warning: Baudrate is 250 kbit/s; according to [DeviceInfo] the device has "
             "125, 500 [baudrate-unsupported]");
-  EXPECT_EQ(told("BaudRate_500=1\n", "500"), "");
-  EXPECT_EQ(told("BaudRate_500=1\n", "500000"), "") << "taken for bit/s";
-  EXPECT_EQ(told("", "250"), "") << "the file says nothing of them";
-  EXPECT_EQ(told("BaudRate_500=1\n", ""), "");
+  EXPECT_EQ(reported("BaudRate_500=1\n", "500"), "");
+  EXPECT_EQ(reported("BaudRate_500=1\n", "500000"), "") << "taken for bit/s";
+  EXPECT_EQ(reported("", "250"), "") << "the file says nothing of them";
+  EXPECT_EQ(reported("BaudRate_500=1\n", ""), "");
 }
 
 TEST(Check, NamesTheLimitThatAValueBreaks) {
@@ -345,7 +345,7 @@ TEST(Check, DemandsTheObjectsOfTheModesThatADriveClaims) {
   EXPECT_EQ(missing("0x00020192", drive("0x300", {"60FF", "6071"})), (Indices{"606C", "6077"}));
 }
 
-TEST(Check, AdvisesADriveToTellItsModesAndToTakeTheCycle) {
+TEST(Check, AdvisesADriveToReportItsModesAndToTakeTheCycle) {
   const auto advised = [](const std::string& objects) {
     return missing("0x00020192", objects, "profile-object-advised");
   };

@@ -65,7 +65,7 @@ TEST(PdoDescription, KnowsTheFlagsWithoutANodeId) {
   EXPECT_TRUE(on.valid);
 }
 
-TEST(PdoDescription, TellsWhatIsAddedToAnUnknownNodeId) {
+TEST(PdoDescription, ReportsWhatIsAddedToAnUnknownNodeId) {
   const auto pdo = first(tpdo("$NODEID+0x40000180", "2"), std::nullopt);
 
   EXPECT_EQ(pdo.cob_id(), std::nullopt);

@@ -58,7 +58,7 @@ TEST(Ini, TakesLinesWhereverTheyBegin) {
   }
 }
 
-TEST(Ini, TellsOfLinesItCannotUse) {
+TEST(Ini, ReportsOfLinesItCannotUse) {
   Read read{"early=1\n[a\nnonsense\n[b] tail\nx=1\n# remark\n"};
 
   const auto findings = read.report.take();
@@ -76,11 +76,11 @@ TEST(Ini, TellsOfLinesItCannotUse) {
 TEST(Ini, SaysOnceWhereTheEncodingIsAssumed) {
   const auto assumed = [](std::string_view text) {
     Read read{text};
-    Findings said;
+    Findings declared;
     for (const auto& finding : read.report.take()) {
-      if (finding.rule == "encoding-assumed") said.push_back(finding);
+      if (finding.rule == "encoding-assumed") declared.push_back(finding);
     }
-    return said;
+    return declared;
   };
 
   const auto findings = assumed("[a]\r\nx=\xC3\xA4\r y=\xE2\x82\xAC\xE4\xF6\nz=\xFC\n");

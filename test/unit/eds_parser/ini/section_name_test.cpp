@@ -21,7 +21,7 @@ EdsFile record_with(const std::string& header) {
       header + "\nParameterName=v\nDataType=6\nAccessType=rw\nDefaultValue=7\n");
 }
 
-TEST(SectionName, BlanksAreLeftOutAndTold) {
+TEST(SectionName, BlanksAreLeftOutAndReported) {
   for (const auto* header : {"[2000 sub1]", "[2000  Sub1]", "[2000\tsub1]", "[2000sub 1]",
                              "[2000 sub 1]", "[ 2000sub1 ]", "[2000sub1 ]", "[ 2000 sub1]"}) {
     const auto file = record_with(header);

@@ -12,9 +12,9 @@ namespace takt {
 namespace {
 
 struct Mistake {
-  std::string what;   ///< text in the good file
-  std::string wrong;  ///< wrong text in its place
-  std::string told;   ///< text in the error message
+  std::string what;      ///< text in the good file
+  std::string wrong;     ///< wrong text in its place
+  std::string reported;  ///< text in the error message
 };
 std::ostream& operator<<(std::ostream& out, const Mistake& mistake) { return out << mistake.wrong; }
 
@@ -60,7 +60,7 @@ TEST_P(OneCause, GivesOneErrorThatNamesIt) {
   const std::vector<std::string> errors = errors_of(yaml);
 
   ASSERT_EQ(errors.size(), 1U) << (errors.empty() ? "" : errors[0] + "\n" + errors.back());
-  EXPECT_NE(errors[0].find(GetParam().told), std::string::npos) << errors[0];
+  EXPECT_NE(errors[0].find(GetParam().reported), std::string::npos) << errors[0];
 }
 
 INSTANTIATE_TEST_SUITE_P(

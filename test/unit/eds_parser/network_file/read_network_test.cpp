@@ -59,20 +59,21 @@ TEST(ReadNetwork, KeysOfOtherReadersGiveANoteOnceAndNoError) {
 
   EXPECT_THAT(net.complaints(), IsEmpty());
   EXPECT_EQ(net.findings.size(), 3U);
-  EXPECT_THAT(net.said("unused-key"), HasSubstr("units: {position: {scale"));
+  EXPECT_THAT(net.declared("unused-key"), HasSubstr("units: {position: {scale"));
 }
 
 TEST(ReadNetwork, KeysThatHaveNoEffectOnTheMasterSayWhy) {
   const auto net = read(
       "master: {emcy_inhibit_time: 100, error_behavior: {1: 0}, sdo_timeout_ms: 100}\n"
       "nodes: {one: {node_id: 1, dcf: a.eds}}\n");
-  const std::string said = net.said("unused-key");
+  const std::string declared = net.declared("unused-key");
 
-  EXPECT_THAT(said, HasSubstr("`emcy_inhibit_time` of `master` has no effect: the master sends no "
-                              "EMCY"));
-  EXPECT_THAT(said,
+  EXPECT_THAT(declared,
+              HasSubstr("`emcy_inhibit_time` of `master` has no effect: the master sends no "
+                        "EMCY"));
+  EXPECT_THAT(declared,
               HasSubstr("`error_behavior` of `master` has no effect: the master has no 0x1029"));
-  EXPECT_THAT(said,
+  EXPECT_THAT(declared,
               HasSubstr("`sdo_timeout_ms` of `master` has no effect: write it under the nodes"));
 }
 
@@ -99,16 +100,16 @@ TEST(ReadNetwork, UnknownKeysGetASuggestion) {
 
   EXPECT_THAT(net.complaints(), ElementsAre("1:10 error [unknown-key]", "4:1 error [unknown-key]",
                                             "3:21 error [unknown-key]"));
-  EXPECT_THAT(net.said("unknown-key"), HasSubstr("did you mean `baudrate`?"));
-  EXPECT_THAT(net.said("unknown-key"), HasSubstr("did you mean `master`?"));
+  EXPECT_THAT(net.declared("unknown-key"), HasSubstr("did you mean `baudrate`?"));
+  EXPECT_THAT(net.declared("unknown-key"), HasSubstr("did you mean `master`?"));
 }
 
 TEST(ReadNetwork, ABaudrateThatCanOnlyBeBitsPerSecondIsTakenForThat) {
   const auto net = read(with_node("master: {baudrate: 500000}\n"));
 
   EXPECT_THAT(net.complaints(), ElementsAre("1:20 warning [unit]"));
-  EXPECT_THAT(net.said("unit"), HasSubstr("kbit/s"));
-  EXPECT_THAT(net.said("unit"), HasSubstr("write 500"));
+  EXPECT_THAT(net.declared("unit"), HasSubstr("kbit/s"));
+  EXPECT_THAT(net.declared("unit"), HasSubstr("write 500"));
   EXPECT_EQ(*net.spec.master.baudrate_kbit, 500U);
 }
 
@@ -118,21 +119,21 @@ TEST(ReadNetwork, ABitRateOutOfRangeIsRefusedWithASentence) {
 
   EXPECT_THAT(odd.complaints(), ElementsAre("1:20 error [unit]"));
   EXPECT_THAT(own.complaints(), ElementsAre("1:21 error [unit]"));
-  EXPECT_THAT(own.said("unit"), HasSubstr("write 500"));
+  EXPECT_THAT(own.declared("unit"), HasSubstr("write 500"));
 }
 
 TEST(ReadNetwork, ASyncPeriodInMillisecondsIsRefusedWithASentence) {
   const auto net = read(with_node("master: {sync_period: 10}\n"));
 
   EXPECT_THAT(net.complaints(), ElementsAre("1:23 error [unit]"));
-  EXPECT_THAT(net.said("unit"), HasSubstr("for 10 ms write 10000"));
+  EXPECT_THAT(net.declared("unit"), HasSubstr("for 10 ms write 10000"));
 }
 
 TEST(ReadNetwork, LeadingZerosAreReportedNotGuessed) {
   const auto net = read("nodes: {arm: {node_id: 010, dcf: a.eds}}\n");
 
   EXPECT_THAT(net.complaints(), ElementsAre("1:24 error [octal]"));
-  EXPECT_THAT(net.said("octal"), HasSubstr("octal to some YAML readers"));
+  EXPECT_THAT(net.declared("octal"), HasSubstr("octal to some YAML readers"));
 }
 
 TEST(ReadNetwork, RangesAreChecked) {
@@ -163,11 +164,12 @@ TEST(ReadNetwork, WrongShapesSayWhatIsExpected) {
       "  leg: [1]\n"
       "  eye: {node_id: [2], dcf: a.eds, tpdo: {1: {mapping: {index: 1}}}}\n");
 
-  EXPECT_THAT(net.said("wrong-type"), HasSubstr("`heartbeat_consumer` has to be true or false"));
-  EXPECT_THAT(net.said("wrong-type"), HasSubstr("node `leg` has to be a map"));
-  EXPECT_THAT(net.said("wrong-type"),
+  EXPECT_THAT(net.declared("wrong-type"),
+              HasSubstr("`heartbeat_consumer` has to be true or false"));
+  EXPECT_THAT(net.declared("wrong-type"), HasSubstr("node `leg` has to be a map"));
+  EXPECT_THAT(net.declared("wrong-type"),
               HasSubstr("`node_id` has to be a number, but this is a list"));
-  EXPECT_THAT(net.said("wrong-type"), HasSubstr("`mapping` of TPDO1"));
+  EXPECT_THAT(net.declared("wrong-type"), HasSubstr("`mapping` of TPDO1"));
 }
 
 TEST(ReadNetwork, MissingKeysAreNamed) {
@@ -176,20 +178,20 @@ TEST(ReadNetwork, MissingKeysAreNamed) {
       "  arm: {}\n"
       "  leg: {node_id: 2, dcf: a.eds, sdo: [{index: 0x6081}, {value: 3}]}\n");
 
-  EXPECT_THAT(net.said("missing-key"), HasSubstr("node `arm` lacks `node_id`"));
-  EXPECT_THAT(net.said("missing-key"), HasSubstr("node `arm` lacks `dcf`"));
-  EXPECT_THAT(net.said("missing-key"), HasSubstr("lacks `value`"));
-  EXPECT_THAT(net.said("missing-key"), HasSubstr("lacks `index`"));
+  EXPECT_THAT(net.declared("missing-key"), HasSubstr("node `arm` lacks `node_id`"));
+  EXPECT_THAT(net.declared("missing-key"), HasSubstr("node `arm` lacks `dcf`"));
+  EXPECT_THAT(net.declared("missing-key"), HasSubstr("lacks `value`"));
+  EXPECT_THAT(net.declared("missing-key"), HasSubstr("lacks `index`"));
 }
 
-TEST(ReadNetwork, AnEdsUnderTheKeyEdsIsToldItsKey) {
+TEST(ReadNetwork, AnEdsUnderTheKeyEdsIsReportedItsKey) {
   const auto net = read("nodes: {arm: {node_id: 1, eds: a.eds}}\n");
 
   EXPECT_THAT(net.complaints(), ElementsAre("1:27 error [missing-key]"));
-  EXPECT_THAT(net.said("missing-key"), HasSubstr("the key is `dcf`"));
+  EXPECT_THAT(net.declared("missing-key"), HasSubstr("the key is `dcf`"));
 }
 
-TEST(ReadNetwork, TheSameObjectWrittenTwiceIsToldUnlessMeant) {
+TEST(ReadNetwork, TheSameObjectWrittenTwiceIsReportedUnlessMeant) {
   const auto net = read(
       "nodes:\n"
       "  arm:\n"
@@ -202,8 +204,8 @@ TEST(ReadNetwork, TheSameObjectWrittenTwiceIsToldUnlessMeant) {
 
   EXPECT_THAT(net.complaints(), ElementsAre("7:9 warning [written-twice]"));
   EXPECT_EQ(net.spec.nodes[0].sdo.size(), 3U);
-  EXPECT_THAT(net.said("written-twice"), HasSubstr("6083:00"));
-  EXPECT_THAT(net.said("written-twice"), HasSubstr("first in line 6"));
+  EXPECT_THAT(net.declared("written-twice"), HasSubstr("6083:00"));
+  EXPECT_THAT(net.declared("written-twice"), HasSubstr("first in line 6"));
 }
 
 TEST(ReadNetwork, HeartbeatKeysOfOtherReadersAreReadAsTheyReadThem) {

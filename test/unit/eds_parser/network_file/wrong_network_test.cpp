@@ -21,7 +21,7 @@ using testing::Not;
 class WrongNetwork : public testing::Test {
  protected:
   /// Returns the findings of `path`, one per line, without the folder.
-  static std::string told(const fs::path& path) {
+  static std::string reported(const fs::path& path) {
     std::string text;
     for (Finding finding : load_network(path).findings) {
       finding.file = fs::path{finding.file}.filename();
@@ -29,12 +29,14 @@ class WrongNetwork : public testing::Test {
     }
     return text;
   }
-  std::string told_of(const std::string& text) { return told(folder_.write("net.yaml", text)); }
+  std::string reported_of(const std::string& text) {
+    return reported(folder_.write("net.yaml", text));
+  }
 
   /// Returns the findings of a network with one node, which is an axis with these additional lines.
   std::string of_axis(const std::string& lines) {
-    return told_of(std::string{"master: {sync_period: 10000}\nnodes:\n  a:\n    node_id: 1\n"} +
-                   "    dcf: " TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds\n" + lines);
+    return reported_of(std::string{"master: {sync_period: 10000}\nnodes:\n  a:\n    node_id: 1\n"} +
+                       "    dcf: " TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds\n" + lines);
   }
 
   const test::Folder folder_;
@@ -65,7 +67,7 @@ TEST_F(WrongNetwork, UnitsOfAnObjectThatTheDeviceHasNotAreErrors) {
 }
 
 TEST_F(WrongNetwork, TheRestOfANodeIsJudgedThoughItsIdIsWrongOrTaken) {
-  const std::string text = told_of(
+  const std::string text = reported_of(
       "nodes:\n"
       "  a: {node_id: 1, dcf: " TAKT_SOURCE_DIR
       "/share/eds/takt_drive402.eds}\n"
@@ -86,8 +88,8 @@ TEST_F(WrongNetwork, TheRestOfANodeIsJudgedThoughItsIdIsWrongOrTaken) {
 TEST_F(WrongNetwork, IdentifiersOfServicesClashWithPdosAndWithEachOther) {
   const std::string drive = "dcf: " TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds";
   const auto two = [&](const std::string& master, const std::string& a, const std::string& b) {
-    return told_of("master: {sync_period: 10000" + master + "}\nnodes:\n  a: {node_id: 5, " +
-                   drive + a + "}\n  b: {node_id: 6, " + drive + b + "}\n");
+    return reported_of("master: {sync_period: 10000" + master + "}\nnodes:\n  a: {node_id: 5, " +
+                       drive + a + "}\n  b: {node_id: 6, " + drive + b + "}\n");
   };
   const std::string pdo = ", tpdo: {1: {cob_id: ";
 
@@ -106,32 +108,33 @@ TEST_F(WrongNetwork, NumbersAndAllAreNoNamesOfNodes) {
   const std::string file =
       "nodes:\n  5: {node_id: 6, dcf: x.eds}\n  all: {node_id: 7, dcf: x.eds}\n";
 
-  EXPECT_THAT(told_of(file),
+  EXPECT_THAT(reported_of(file),
               AllOf(HasSubstr("net.yaml:2:3: error: `5` can't be the name of a node"),
                     HasSubstr("net.yaml:3:3: error: `all` can't be the name of a node")));
 }
 
 TEST_F(WrongNetwork, AnInterfaceHasTheLengthThatLinuxTakes) {
-  EXPECT_THAT(told_of("bus: {interface: averyveryverylonginterface}\n"), HasSubstr("[interface]"));
-  EXPECT_THAT(told_of("bus: {interface: \"unix:\"}\n"), HasSubstr("[interface]"));
-  EXPECT_THAT(told_of("bus: {interface: unix:/run/bus}\n"), Not(HasSubstr("[interface]")));
-  EXPECT_THAT(told_of("bus: {interface: can0}\n"), Not(HasSubstr("[interface]")));
+  EXPECT_THAT(reported_of("bus: {interface: averyveryverylonginterface}\n"),
+              HasSubstr("[interface]"));
+  EXPECT_THAT(reported_of("bus: {interface: \"unix:\"}\n"), HasSubstr("[interface]"));
+  EXPECT_THAT(reported_of("bus: {interface: unix:/run/bus}\n"), Not(HasSubstr("[interface]")));
+  EXPECT_THAT(reported_of("bus: {interface: can0}\n"), Not(HasSubstr("[interface]")));
 }
 
 TEST_F(WrongNetwork, AFolderIsCalledAFolder) {
-  EXPECT_THAT(told(folder_.path()), HasSubstr("is a folder; name the network file"));
-  EXPECT_THAT(told(folder_ / "none.yaml"), HasSubstr("there is no such file"));
-  EXPECT_THAT(told_of("nodes: {a: {node_id: 1, dcf: .}}\n"), HasSubstr("`.` is a folder"));
-  EXPECT_THAT(told_of("nodes: {a: {node_id: 1, dcf: /dev/zero}}\n"),
+  EXPECT_THAT(reported(folder_.path()), HasSubstr("is a folder; name the network file"));
+  EXPECT_THAT(reported(folder_ / "none.yaml"), HasSubstr("there is no such file"));
+  EXPECT_THAT(reported_of("nodes: {a: {node_id: 1, dcf: .}}\n"), HasSubstr("`.` is a folder"));
+  EXPECT_THAT(reported_of("nodes: {a: {node_id: 1, dcf: /dev/zero}}\n"),
               HasSubstr("`/dev/zero` is not a regular file"));
 }
 
-TEST_F(WrongNetwork, OfAFileThatIsNoEdsOnlyThatIsTold) {
+TEST_F(WrongNetwork, OfAFileThatIsNoEdsOnlyThatIsReported) {
   std::string noise;
   for (int i = 0; i < 200; ++i) noise += "no key and no section\n";
   folder_.write("noise.eds", noise);
 
-  const std::string text = told_of("nodes: {a: {node_id: 1, dcf: noise.eds}}\n");
+  const std::string text = reported_of("nodes: {a: {node_id: 1, dcf: noise.eds}}\n");
 
   EXPECT_THAT(text, HasSubstr("the file is not an EDS or DCF"));
   EXPECT_LE(std::ranges::count(text, '\n'), 3);
@@ -142,28 +145,28 @@ TEST_F(WrongNetwork, AnEdsThatIsCutOffIsAWarning) {
   eds << std::ifstream{TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds"}.rdbuf();
   folder_.write("half.eds", eds.str().substr(0, eds.str().size() / 2));
 
-  EXPECT_THAT(told_of("nodes: {a: {node_id: 1, dcf: half.eds}}\n"),
+  EXPECT_THAT(reported_of("nodes: {a: {node_id: 1, dcf: half.eds}}\n"),
               AllOf(HasSubstr("half.eds: warning"), HasSubstr("is the file cut off?")));
 }
 
 TEST_F(WrongNetwork, ATabIsCalledATab) {
-  EXPECT_THAT(told_of("bus:\n\tname: t\n"),
+  EXPECT_THAT(reported_of("bus:\n\tname: t\n"),
               AllOf(HasSubstr("net.yaml:2:"), HasSubstr("the line begins with a tab")));
-  EXPECT_THAT(told_of("nodes:\n  a: {node_id: 1\n"), Not(HasSubstr("tab")));
+  EXPECT_THAT(reported_of("nodes:\n  a: {node_id: 1\n"), Not(HasSubstr("tab")));
 }
 
-TEST_F(WrongNetwork, WhatFollowsFromAWrongSyncPeriodIsNotTold) {
+TEST_F(WrongNetwork, WhatFollowsFromAWrongSyncPeriodIsNotReported) {
   const std::string axis =
       "nodes: {a: {node_id: 1, dcf: " TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds}}\n";
 
-  EXPECT_THAT(told_of("master: {sync_period: 2ms}\n" + axis),
+  EXPECT_THAT(reported_of("master: {sync_period: 2ms}\n" + axis),
               AllOf(HasSubstr("`2ms` is not a whole number"), Not(HasSubstr("[no-sync]"))));
-  EXPECT_THAT(told_of("master: {sync_period: 2}\n" + axis),
+  EXPECT_THAT(reported_of("master: {sync_period: 2}\n" + axis),
               AllOf(HasSubstr("for 2 ms write 2000"), Not(HasSubstr("[does-not-fit]"))));
 }
 
 TEST_F(WrongNetwork, ANodeThatIsNoMapLacksNothingElse) {
-  const std::string text = told_of("nodes: {a: 5, b: [1, 2]}\n");
+  const std::string text = reported_of("nodes: {a: 5, b: [1, 2]}\n");
 
   EXPECT_THAT(
       text, AllOf(HasSubstr("node `a` has to be a map (`key: value`), but this is a single value"),
@@ -184,13 +187,13 @@ TEST_F(WrongNetwork, AnUnknownModelOrQuirkOfTheSimulationIsAnErrorThatListsWhatT
 
 TEST_F(WrongNetwork, AWrongLcmUrlIsAnErrorOfTheFile) {
   EXPECT_THAT(
-      told_of("lcm: {url: \"upd://1.2.3.4\"}\n"),
+      reported_of("lcm: {url: \"upd://1.2.3.4\"}\n"),
       AllOf(HasSubstr("net.yaml:1:12: error: `url` of `lcm`"), HasSubstr("expected udpm://")));
-  EXPECT_THAT(told_of("lcm: {url: \"tcpq://127.0.0.1:99999\"}\n"), HasSubstr("0..65535"));
-  EXPECT_THAT(told_of("black_box: {folder: a, size_mb: 0}\n"), HasSubstr("1..1024 MiB"));
-  EXPECT_THAT(told_of("black_box: {dir: a}\n"), HasSubstr("`dir`"));
-  EXPECT_THAT(told_of("black_box: {folder: \"\"}\n"), HasSubstr("`folder` is empty"));
-  EXPECT_THAT(told_of("lcm: {url: \"udpm://239.255.76:7667\"}\n"), HasSubstr("dotted"));
+  EXPECT_THAT(reported_of("lcm: {url: \"tcpq://127.0.0.1:99999\"}\n"), HasSubstr("0..65535"));
+  EXPECT_THAT(reported_of("black_box: {folder: a, size_mb: 0}\n"), HasSubstr("1..1024 MiB"));
+  EXPECT_THAT(reported_of("black_box: {dir: a}\n"), HasSubstr("`dir`"));
+  EXPECT_THAT(reported_of("black_box: {folder: \"\"}\n"), HasSubstr("`folder` is empty"));
+  EXPECT_THAT(reported_of("lcm: {url: \"udpm://239.255.76:7667\"}\n"), HasSubstr("dotted"));
 }
 
 TEST_F(WrongNetwork, TheHighBitsOfACobIdAreExplained) {

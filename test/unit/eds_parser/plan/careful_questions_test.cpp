@@ -18,20 +18,21 @@ constexpr const char* no_other_pdos =
 
 class Careful : public testing::Test {
  protected:
-  std::string told_of(const std::string& text) {
-    std::string told;
+  std::string reported_of(const std::string& text) {
+    std::string reported;
     LoadedNetwork network = load_network(folder_.write("net.yaml", text));
     for (Finding finding : network.findings) {
       finding.file = "net.yaml";
-      told += to_string(finding) + "\n";
+      reported += to_string(finding) + "\n";
     }
     plan_ = std::move(network.plan);
-    return told;
+    return reported;
   }
   /// Returns the messages for one drive with these additional keys.
   std::string of_drive(const std::string& keys, const std::string& bus = "") {
-    return told_of("bus: {name: lift" + bus + "}\nmaster: {sync_period: 10000}\nnodes:\n  a: {" +
-                   drive + ", node_id: 1, " + keys + "}\n");
+    return reported_of("bus: {name: lift" + bus +
+                       "}\nmaster: {sync_period: 10000}\nnodes:\n  a: {" + drive +
+                       ", node_id: 1, " + keys + "}\n");
   }
   static std::string rpdo1(const std::string& mapping) {
     return "rpdo: {1: {transmission: 1, mapping: " + mapping + "}, " + no_other_pdos + "}";
@@ -86,13 +87,14 @@ TEST_F(Careful, AModeOfZeroIsNoMode) {
 }
 
 TEST_F(Careful, AModeThatTheBootDoesNotWriteIsNotSet) {
-  const std::string told =
+  const std::string reported =
       of_drive(rpdo1("[0x6040, 0x607A]") + ", boot: false, sdo: [{index: 0x6060, value: 8}]");
 
-  EXPECT_THAT(told, AllOf(HasSubstr("nothing sets the mode of operation, 6060:00 (`boot: false` "
-                                    "writes no `sdo`): the drive may ignore the set-points. Map "
-                                    "0x6060 into an RPDO [mode]"),
-                          Not(HasSubstr("or write"))));
+  EXPECT_THAT(reported,
+              AllOf(HasSubstr("nothing sets the mode of operation, 6060:00 (`boot: false` "
+                              "writes no `sdo`): the drive may ignore the set-points. Map "
+                              "0x6060 into an RPDO [mode]"),
+                    Not(HasSubstr("or write"))));
 }
 
 TEST_F(Careful, AModeThatNoTpdoShowsIsToBeMappedToo) {
@@ -104,20 +106,21 @@ TEST_F(Careful, AModeThatNoTpdoShowsIsToBeMappedToo) {
 }
 
 TEST_F(Careful, AnRpdoWithAnErrorDoesNotAskForAMode) {
-  const std::string told = of_drive(
+  const std::string reported = of_drive(
       "rpdo: {1: {transmission: 1, mapping: [0x6040, 0x607A]}, 2: {transmission: 1, mapping: "
       "[6060h]}, 3: {enabled: false}, 4: {enabled: false}}");
 
-  EXPECT_THAT(told, AllOf(HasSubstr("`6060h` is not a whole number"), Not(HasSubstr("[mode]"))));
+  EXPECT_THAT(reported,
+              AllOf(HasSubstr("`6060h` is not a whole number"), Not(HasSubstr("[mode]"))));
 }
 
 // on_loss
 
 TEST_F(Careful, SeveralDrivesWithoutADecisionOnTheLossOfOneAreAWarning) {
   const auto two = [&](const std::string& keys) {
-    return told_of(std::string{"bus: {name: lift}\nmaster: {sync_period: 10000}\nnodes:\n  a: {"} +
-                   drive + ", node_id: 1" + keys + "}\n  b: {" + drive + ", node_id: 2" + keys +
-                   "}\n");
+    return reported_of(
+        std::string{"bus: {name: lift}\nmaster: {sync_period: 10000}\nnodes:\n  a: {"} + drive +
+        ", node_id: 1" + keys + "}\n  b: {" + drive + ", node_id: 2" + keys + "}\n");
   };
   EXPECT_THAT(two(""), AllOf(HasSubstr("when one of `a`, `b` is lost: they would continue. Write "
                                        "`on_loss: quick_stop`"),
@@ -129,9 +132,10 @@ TEST_F(Careful, SeveralDrivesWithoutADecisionOnTheLossOfOneAreAWarning) {
 
 TEST_F(Careful, NmtStopOfADriveThatMakesNoQuickStopByItselfIsAWarning) {
   const auto two = [&](const std::string& of_a, const std::string& of_b) {
-    return told_of(std::string{"bus: {name: lift}\nmaster: {sync_period: 10000}\nnodes:\n  a: {"} +
-                   drive + ", node_id: 1, group: z, " + of_a + "}\n  b: {" + drive +
-                   ", node_id: 2, group: z, " + of_b + "}\n");
+    return reported_of(
+        std::string{"bus: {name: lift}\nmaster: {sync_period: 10000}\nnodes:\n  a: {"} + drive +
+        ", node_id: 1, group: z, " + of_a + "}\n  b: {" + drive + ", node_id: 2, group: z, " +
+        of_b + "}\n");
   };
   const std::string stops = "sdo: [{index: 0x6007, value: 3}]";
   EXPECT_THAT(
@@ -205,70 +209,72 @@ TEST_F(Careful, AnInhibitTimeBelowTheFrameIsAWarning) {
 // COB-IDs
 
 TEST_F(Careful, AnExplicitCobIdThatAnotherTpdoHasIsAnError) {
-  const std::string told = told_of(
+  const std::string reported = reported_of(
       std::string{"bus: {name: lift}\nmaster: {sync_period: 10000}\nnodes:\n  a: {"} + drive +
       ", node_id: 1}\n  b: {" + drive + ", node_id: 2, tpdo: {1: {cob_id: 0x181}}}\n");
   EXPECT_THAT(
-      told,
+      reported,
       AllOf(HasSubstr(
                 "error: `cob_id` 0x181 of TPDO1 of node `b` is also used by TPDO1 of node `a` in "),
             HasSubstr("[cob-id-clash]"), Not(HasSubstr("[cob-id-moved]"))));
-  EXPECT_EQ(told.find("error"), told.rfind("error")) << "one cause, one error: " << told;
+  EXPECT_EQ(reported.find("error"), reported.rfind("error"))
+      << "one cause, one error: " << reported;
 }
 
 TEST_F(Careful, ATpdoAndAnRpdoOfTwoDevicesRemainALink) {
   EXPECT_THAT(
-      told_of(std::string{"bus: {name: lift}\nmaster: {sync_period: 10000}\nnodes:\n  a: {"} +
-              drive + ", node_id: 1}\n  b: {" + drive +
-              ", node_id: 2, rpdo: {1: {cob_id: 0x181}}}\n"),
+      reported_of(std::string{"bus: {name: lift}\nmaster: {sync_period: 10000}\nnodes:\n  a: {"} +
+                  drive + ", node_id: 1}\n  b: {" + drive +
+                  ", node_id: 2, rpdo: {1: {cob_id: 0x181}}}\n"),
       AllOf(HasSubstr("[linked]"), Not(HasSubstr("error"))));
 }
 
 // shared lines
 
 TEST_F(Careful, AMistakeUnderAnAnchorIsOneErrorForAllNodesThatMergeIt) {
-  const std::string told = told_of(
+  const std::string reported = reported_of(
       "bus: {name: lift}\nmaster: {sync_period: 10000}\n.axis: &axis\n  " + std::string{drive} +
       "\n  sdo: [{index: 0x6060, value: 300}]\n  tpdo: {1: {mapping: [0x6041, 0x9999]}}\n"
       "nodes:\n  a: {<<: *axis, node_id: 1}\n  b: {<<: *axis, node_id: 2}\n"
       "  c: {<<: *axis, node_id: 3}\n");
 
   std::size_t errors = 0;
-  for (std::size_t at = told.find(" error: "); at != told.npos;
-       at = told.find(" error: ", at + 1)) {
+  for (std::size_t at = reported.find(" error: "); at != reported.npos;
+       at = reported.find(" error: ", at + 1)) {
     ++errors;
   }
-  EXPECT_EQ(errors, 2u) << told;
-  EXPECT_THAT(told, AllOf(HasSubstr("net.yaml:5:"), HasSubstr("net.yaml:6:"),
-                          HasSubstr("; the same applies to `b`, `c`, which share this line")));
+  EXPECT_EQ(errors, 2u) << reported;
+  EXPECT_THAT(reported, AllOf(HasSubstr("net.yaml:5:"), HasSubstr("net.yaml:6:"),
+                              HasSubstr("; the same applies to `b`, `c`, which share this line")));
 }
 
 TEST_F(Careful, TwoMistakesOfOneNodeInOneLineStayTwo) {
-  const std::string told =
+  const std::string reported =
       of_drive("sdo: [{index: 0x6060, value: 300}, {index: 0x6060, value: 301}]");
-  EXPECT_THAT(told, AllOf(HasSubstr("not 300"), HasSubstr("not 301")));
+  EXPECT_THAT(reported, AllOf(HasSubstr("not 300"), HasSubstr("not 301")));
 }
 
 // messages
 
-TEST_F(Careful, ANumberThatDoesNotFitIsToldTheRangeAndTheBits) {
+TEST_F(Careful, ANumberThatDoesNotFitIsReportedTheRangeAndTheBits) {
   EXPECT_THAT(of_drive("sdo: [{index: 0x6060, value: 300}]"),
               HasSubstr("(INTEGER8) holds -128..127, or 0x80..0xFF as bits, not 300"));
   EXPECT_THAT(of_drive("sdo: [{index: 0x6060, value: 0xFF}]"), Not(HasSubstr("error")));
 }
 
-TEST_F(Careful, AnIndexWithout0xIsToldHowItIsWritten) {
+TEST_F(Careful, AnIndexWithout0xIsReportedHowItIsWritten) {
   for (const char* keys : {"tpdo: {1: {mapping: [{index: 607A}]}}", "tpdo: {1: {mapping: [607A]}}",
                            "tpdo: {1: {mapping: [607A:0]}}", "sdo: [{index: 607A, value: 1}]"}) {
-    const std::string told = of_drive(keys);
-    EXPECT_THAT(told, HasSubstr("`607A` is hexadecimal without 0x: write 0x607A")) << keys;
-    EXPECT_EQ(told.find("error"), told.rfind("error")) << "one cause, one error: " << told;
+    const std::string reported = of_drive(keys);
+    EXPECT_THAT(reported, HasSubstr("`607A` is hexadecimal without 0x: write 0x607A")) << keys;
+    EXPECT_EQ(reported.find("error"), reported.rfind("error"))
+        << "one cause, one error: " << reported;
   }
 }
 
 TEST_F(Careful, AMappingMayBeWrittenShort) {
-  const std::string told = of_drive(tpdo1("transmission: 1, mapping: [0x6041, 0x6064:0]"));
-  EXPECT_THAT(told, Not(HasSubstr("error")));
+  const std::string reported = of_drive(tpdo1("transmission: 1, mapping: [0x6041, 0x6064:0]"));
+  EXPECT_THAT(reported, Not(HasSubstr("error")));
   ASSERT_EQ(plan_.pdos.tpdos.size(), 1u);
   EXPECT_EQ(plan_.pdos.tpdos[0].length, 6);
   EXPECT_EQ(plan_.layout.signals[1].object, (ObjectKey{0x6064, 0}));

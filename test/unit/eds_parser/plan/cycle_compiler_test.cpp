@@ -50,14 +50,15 @@ TEST(CycleCompiler, SaysKPlusTwoWhereNoTimeIsLeft) {
   const auto net = drives(6, "sync_period: 1900");
 
   EXPECT_THAT(net.complaints(), ElementsAre("1:23 warning [no-time-budget]"));
-  EXPECT_THAT(net.said("no-time-budget"), HasSubstr("acts at SYNC k+2"));
+  EXPECT_THAT(net.declared("no-time-budget"), HasSubstr("acts at SYNC k+2"));
 }
 
 TEST(CycleCompiler, RefusesWhatCanNotFit) {
   const auto net = drives(4, "sync_period: 1000");
 
   EXPECT_THAT(net.complaints(), ElementsAre("1:23 error [does-not-fit]"));
-  EXPECT_THAT(net.said("does-not-fit"), HasSubstr("595 us of SYNC and TPDOs and 540 us of RPDOs"));
+  EXPECT_THAT(net.declared("does-not-fit"),
+              HasSubstr("595 us of SYNC and TPDOs and 540 us of RPDOs"));
 }
 
 TEST(CycleCompiler, SlowBusesHaveLongFrames) {
@@ -76,7 +77,7 @@ TEST(CycleCompiler, WarnsWhereTheWindowOfADeviceEndsBeforeTheOutputs) {
   const auto net = drives(1, "sync_period: 2000, sync_window: 1000");
 
   EXPECT_THAT(net.complaints(), ElementsAre("1:42 warning [sync-window]"));
-  EXPECT_THAT(net.said("sync-window"), HasSubstr("until 1000 us after SYNC (0x1007)"));
+  EXPECT_THAT(net.declared("sync-window"), HasSubstr("until 1000 us after SYNC (0x1007)"));
 }
 
 TEST(CycleCompiler, ASynchronousPdoWithoutSyncIsWarnedOf) {
@@ -97,7 +98,7 @@ TEST(CycleCompiler, HeartbeatsGrowSlowerOnACrowdedBus) {
 }
 
 TEST(CycleCompiler, ABitRateThatTheDeviceDoesNotKnowIsWarnedOf) {
-  EXPECT_THAT(drives(1, "sync_period: 50000, baudrate: 250").said("bit-rate"),
+  EXPECT_THAT(drives(1, "sync_period: 50000, baudrate: 250").declared("bit-rate"),
               HasSubstr("supports 500, 1000 kbit/s"));
 }
 

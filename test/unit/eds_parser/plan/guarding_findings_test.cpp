@@ -29,43 +29,44 @@ std::ptrdiff_t complaints_of(std::string_view rule, const test::Compiled& net) {
 }
 
 TEST(GuardingFindings, EachKeyIsLeftAloneBesideAHeartbeat) {
-  const std::string said = compile(network(guarding), with_guarding()).said("guarding");
+  const std::string declared = compile(network(guarding), with_guarding()).declared("guarding");
 
   for (const auto* key : {"`guard_time`", "`life_time_factor`", "`retry_factor`"}) {
-    EXPECT_THAT(said, HasSubstr("(CiA 301): " + std::string{key} + " has no effect"));
+    EXPECT_THAT(declared, HasSubstr("(CiA 301): " + std::string{key} + " has no effect"));
   }
 }
 
 TEST(GuardingFindings, WhyANodeIsNotGuarded) {
   const std::string off = "heartbeat_producer: 0, ";
-  const auto said = [&](const std::string& node, const std::string& master = "node_id: 1") {
-    return compile(network(node, master), with_guarding()).said("guarding");
+  const auto declared = [&](const std::string& node, const std::string& master = "node_id: 1") {
+    return compile(network(node, master), with_guarding()).declared("guarding");
   };
 
-  EXPECT_THAT(said(off + "life_time_factor: 3"),
+  EXPECT_THAT(declared(off + "life_time_factor: 3"),
               HasSubstr("no guard time, neither in the network file nor in tiny.eds: "
                         "`life_time_factor` has no effect"));
-  EXPECT_THAT(said(off + "guard_time: 100, retry_factor: 0"),
+  EXPECT_THAT(declared(off + "guard_time: 100, retry_factor: 0"),
               HasSubstr("(`retry_factor: 0`): `guard_time` has no effect"));
-  EXPECT_THAT(said(off + guarding, "heartbeat_consumer: false"),
+  EXPECT_THAT(declared(off + guarding, "heartbeat_consumer: false"),
               HasSubstr("(`heartbeat_consumer: false` of `master`): `guard_time` has no effect"));
-  EXPECT_THAT(said("boot: false, " + guarding),
+  EXPECT_THAT(declared("boot: false, " + guarding),
               HasSubstr("(`boot: false`): `guard_time` has no effect"));
-  EXPECT_EQ(said(off + "guard_time: 0, life_time_factor: 0"), "");
+  EXPECT_EQ(declared(off + "guard_time: 0, life_time_factor: 0"), "");
 }
 
-TEST(GuardingFindings, NothingIsSaidOfADeviceThatTakesIt) {
+TEST(GuardingFindings, NothingIsDeclaredOfADeviceThatTakesIt) {
   const auto net = compile(network("heartbeat_producer: 0, " + guarding), with_guarding());
 
-  EXPECT_EQ(net.said("guarding") + net.said("guard-object"), "");
+  EXPECT_EQ(net.declared("guarding") + net.declared("guard-object"), "");
 }
 
-TEST(GuardingFindings, ADeviceWithoutTheObjectsIsTold) {
+TEST(GuardingFindings, ADeviceWithoutTheObjectsIsReported) {
   const auto net = compile(network("heartbeat_producer: 0, " + guarding));
 
   EXPECT_EQ(net.plan.nodes.at(0).guard.retries, 2);
-  EXPECT_THAT(net.said("guard-object"), HasSubstr("tiny.eds has no writable 100C:00"));
-  EXPECT_THAT(net.said("guard-object"), HasSubstr("needs 100D:00, which tiny.eds does not have"));
+  EXPECT_THAT(net.declared("guard-object"), HasSubstr("tiny.eds has no writable 100C:00"));
+  EXPECT_THAT(net.declared("guard-object"),
+              HasSubstr("needs 100D:00, which tiny.eds does not have"));
   EXPECT_EQ(complaints_of("guard-object", net), 1) << "the device that does not watch the master";
 }
 
@@ -73,7 +74,7 @@ TEST(GuardingFindings, AFactorOfNoneNeedsNoObject) {
   const auto net = compile(network("heartbeat_producer: 0, guard_time: 200, life_time_factor: 0"));
 
   EXPECT_EQ(complaints_of("guarding", net) + complaints_of("guard-object", net), 0);
-  EXPECT_THAT(net.said("guarding"), HasSubstr("does not need `life_time_factor: 0`"));
+  EXPECT_THAT(net.declared("guarding"), HasSubstr("does not need `life_time_factor: 0`"));
 }
 
 }  // namespace

@@ -43,10 +43,10 @@ nodes:
   ASSERT_TRUE(net.plan.nodes[0].lss);
   EXPECT_EQ(net.plan.nodes[0].lss->address[0], 0u);
   EXPECT_EQ(net.plan.nodes[0].lss->known, (LssAddress{all, all, 0, 0}));
-  EXPECT_EQ(net.said("lss"), "");
+  EXPECT_EQ(net.declared("lss"), "");
 }
 
-TEST(LssCompiler, WarnsOfDevicesThatItCannotTellApart) {
+TEST(LssCompiler, WarnsOfDevicesThatItCannotReportApart) {
   const Compiled net = compile(R"(
 master: {sync_period: 10000}
 nodes:
@@ -55,7 +55,7 @@ nodes:
   third: {node_id: 7, dcf: tiny.eds, lss: true, vendor_id: 9}
 )");
   EXPECT_EQ(net.complaints(), std::vector<std::string>{"5:43 warning [lss]"});
-  EXPECT_NE(net.said("lss").find("`left` and `right`"), std::string::npos);
+  EXPECT_NE(net.declared("lss").find("`left` and `right`"), std::string::npos);
 }
 
 TEST(LssCompiler, GivesTheSimulatedDeviceItsSerialNumber) {
@@ -81,9 +81,9 @@ nodes:
   watched: {node_id: 6, dcf: tiny.eds, lss: true, boot: false, serial_number: 1}
   typo: {node_id: 7, dcf: tiny.eds, lss: {stores: true}, serial_number: 2}
 )");
-  EXPECT_NE(net.said("lss").find("write `vendor_id` and `product_code`"), std::string::npos);
-  EXPECT_NE(net.said("lss").find("`watched` is only watched"), std::string::npos);
-  EXPECT_NE(net.said("unknown-key").find("did you mean `store`"), std::string::npos);
+  EXPECT_NE(net.declared("lss").find("write `vendor_id` and `product_code`"), std::string::npos);
+  EXPECT_NE(net.declared("lss").find("`watched` is only watched"), std::string::npos);
+  EXPECT_NE(net.declared("unknown-key").find("did you mean `store`"), std::string::npos);
 }
 
 }  // namespace

@@ -73,33 +73,33 @@ TEST(SdoAccess, RefusesAChannelOfAnotherNode) {
       "  leg: {node_id: 6, dcf: x}\n");
   EXPECT_THAT(net.complaints(),
               ElementsAre("3:42 error [cob-id-clash]", "3:42 warning [no-sdo-server]"));
-  EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("`leg` (0x606, 0x586)"));
+  EXPECT_THAT(net.declared("cob-id-clash"), HasSubstr("`leg` (0x606, 0x586)"));
 }
 
-TEST(SdoAccess, TellsOfAChannelThatTheDeviceFileHasNoServerFor) {
+TEST(SdoAccess, ReportsOfAChannelThatTheDeviceFileHasNoServerFor) {
   const auto net = compile(on_second);
 
   EXPECT_THAT(net.complaints(), ElementsAre("6:18 warning [no-sdo-server]"));
-  EXPECT_THAT(net.said("no-sdo-server"),
+  EXPECT_THAT(net.declared("no-sdo-server"),
               HasSubstr("`sdo_channel` of node `arm`: tiny.eds has no SDO server besides the first "
                         "(no 0x1201 to 0x127F)"));
-  EXPECT_THAT(net.said("no-sdo-server"), HasSubstr("leave `sdo_channel` out"));
+  EXPECT_THAT(net.declared("no-sdo-server"), HasSubstr("leave `sdo_channel` out"));
 }
 
-TEST(SdoAccess, TellsOfAServerThatIsOffOrOnOtherIds) {
+TEST(SdoAccess, ReportsOfAServerThatIsOffOrOnOtherIds) {
   EXPECT_THAT(compile(on_second, eds_with_server("$NODEID+0x80000640", "$NODEID+0x800005C0"))
-                  .said("no-sdo-server"),
+                  .declared("no-sdo-server"),
               HasSubstr("no SDO server of tiny.eds is on 0x645 and 0x5C5 (0x1201: off)"));
-  EXPECT_THAT(
-      compile(on_second, eds_with_server("$NODEID+0x640", "$NODEID+0x6C0")).said("no-sdo-server"),
-      HasSubstr("(0x1201: 0x645 and 0x6C5)"));
-  EXPECT_THAT(compile(on_second, eds_with_server("", "")).said("no-sdo-server"),
+  EXPECT_THAT(compile(on_second, eds_with_server("$NODEID+0x640", "$NODEID+0x6C0"))
+                  .declared("no-sdo-server"),
+              HasSubstr("(0x1201: 0x645 and 0x6C5)"));
+  EXPECT_THAT(compile(on_second, eds_with_server("", "")).declared("no-sdo-server"),
               HasSubstr("(0x1201: off)"));
 }
 
 TEST(SdoAccess, TakesAChannelThatTheDeviceFileHas) {
-  EXPECT_EQ(compile(on_second, eds_with_server("0x645", "0x5C5")).said("no-sdo-server"), "");
-  EXPECT_EQ(compile(on_channel("{request: 0x605, answer: 0x585}")).said("no-sdo-server"), "");
+  EXPECT_EQ(compile(on_second, eds_with_server("0x645", "0x5C5")).declared("no-sdo-server"), "");
+  EXPECT_EQ(compile(on_channel("{request: 0x605, answer: 0x585}")).declared("no-sdo-server"), "");
 }
 
 TEST(SdoAccess, RefusesWhatIsIncompleteOrOutOfRange) {

@@ -33,22 +33,22 @@ const std::string off = ", sdo: [{index: 0x1201, sub_index: 1, value: 0x80000641
 TEST(SdoServers, ASecondChannelOnTheFirstOfAnotherNodeIsAnError) {
   const auto net = compile(two(1, 65), eds());
 
-  EXPECT_THAT(net.said("cob-id-clash"),
+  EXPECT_THAT(net.declared("cob-id-clash"),
               HasSubstr("SDO channel 2 (0x1201) of node `arm` is on: 0x641 is in the SDO channel "
                         "of node `leg` (0x641, 0x5C1)"));
-  EXPECT_THAT(net.said("cob-id-clash"),
+  EXPECT_THAT(net.declared("cob-id-clash"),
               HasSubstr("`sdo: [{index: 0x1201, sub_index: 1, value: 0x80000000}]`"));
-  EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("0x5C1 is in"));
+  EXPECT_THAT(net.declared("cob-id-clash"), HasSubstr("0x5C1 is in"));
 }
 
-TEST(SdoServers, NothingIsSaidWhereTheyDoNotMeet) {
-  EXPECT_EQ(compile(two(1, 64), eds()).said("cob-id-clash"), "");
+TEST(SdoServers, NothingIsDeclaredWhereTheyDoNotMeet) {
+  EXPECT_EQ(compile(two(1, 64), eds()).declared("cob-id-clash"), "");
 }
 
 TEST(SdoServers, OneThatIsSwitchedOffIsNotInUse) {
-  EXPECT_EQ(compile(two(1, 65, off), eds()).said("cob-id-clash"), "");
-  EXPECT_EQ(compile(two(1, 65), eds("$NODEID+0x80000640")).said("cob-id-clash"), "");
-  EXPECT_EQ(compile(two(1, 65), eds("0")).said("cob-id-clash"), "");
+  EXPECT_EQ(compile(two(1, 65, off), eds()).declared("cob-id-clash"), "");
+  EXPECT_EQ(compile(two(1, 65), eds("$NODEID+0x80000640")).declared("cob-id-clash"), "");
+  EXPECT_EQ(compile(two(1, 65), eds("0")).declared("cob-id-clash"), "");
 }
 
 TEST(SdoServers, OneThatTheNetworkFileSwitchesOnIsInUse) {
@@ -57,7 +57,7 @@ TEST(SdoServers, OneThatTheNetworkFileSwitchesOnIsInUse) {
       "{index: 0x1201, sub_index: 2, value: 0x5C1}]";
   const auto net = compile(two(1, 65, on), eds("0x80000000", "0x80000000"));
 
-  EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("0x5C1 is in the SDO channel of node `leg`"));
+  EXPECT_THAT(net.declared("cob-id-clash"), HasSubstr("0x5C1 is in the SDO channel of node `leg`"));
   EXPECT_EQ(net.complaints().at(0).substr(0, 2), "3:") << "where it is written";
 }
 
@@ -65,14 +65,14 @@ TEST(SdoServers, TheOneThatTheMasterUsesIsNoClash) {
   const auto net = compile(
       "nodes: {arm: {node_id: 1, dcf: x, sdo_channel: {request: 0x641, answer: 0x5C1}}}\n", eds());
 
-  EXPECT_EQ(net.said("cob-id-clash"), "");
+  EXPECT_EQ(net.declared("cob-id-clash"), "");
 }
 
 TEST(SdoServers, OtherServicesAreMetToo) {
   const auto net = compile(
       "nodes: {arm: {node_id: 1, dcf: x}, leg: {node_id: 2, dcf: x, emcy_cob_id: 0x641}}\n", eds());
 
-  EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("0x641 is EMCY of node `leg`"));
+  EXPECT_THAT(net.declared("cob-id-clash"), HasSubstr("0x641 is EMCY of node `leg`"));
 }
 
 /// Makes a network with node 1, which has `keys`, and node 65. The second channel of node 1 has the
@@ -87,11 +87,11 @@ TEST(SdoServers, TwoLenze8400Meet64NodeIdsApart) {
   const auto net = test::compile_device_file(lenzes(), "lenze8400.eds");
 
   EXPECT_TRUE(has_error(net.findings));
-  EXPECT_THAT(net.said("cob-id-clash"),
+  EXPECT_THAT(net.declared("cob-id-clash"),
               HasSubstr("the SDO channel 2 (0x1201) of node `pump` is on: 0x641 is in the SDO "
                         "channel of node `fan` (0x641, 0x5C1)"));
-  EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("0x5C1 is in the SDO channel of node `fan`"));
-  EXPECT_EQ(test::compile_device_file(lenzes(off), "lenze8400.eds").said("cob-id-clash"), "");
+  EXPECT_THAT(net.declared("cob-id-clash"), HasSubstr("0x5C1 is in the SDO channel of node `fan`"));
+  EXPECT_EQ(test::compile_device_file(lenzes(off), "lenze8400.eds").declared("cob-id-clash"), "");
 }
 
 /// Makes an EDS like that of the manufacturer, in which the second channel is disabled or missing.
@@ -105,16 +105,18 @@ TEST(SdoServers, OneThatOnlyTheDeviceDataHaveOnIsAWarning) {
   for (const bool there : {true, false}) {
     const auto net = test::compile_with_shipped(
         lenzes(identity), there ? lenze_eds("0x80000000") : test::tiny_objects());
-    const std::string said = net.said("cob-id-clash");
+    const std::string declared = net.declared("cob-id-clash");
 
-    EXPECT_THAT(said, HasSubstr("the SDO channel 2 (0x1201) of node `pump` may be on: parameter "
-                                "channel 2 listens on 0x640"));
-    EXPECT_THAT(said, HasSubstr("(lenze8400.yaml:"));
-    EXPECT_THAT(said,
+    EXPECT_THAT(declared,
+                HasSubstr("the SDO channel 2 (0x1201) of node `pump` may be on: parameter "
+                          "channel 2 listens on 0x640"));
+    EXPECT_THAT(declared, HasSubstr("(lenze8400.yaml:"));
+    EXPECT_THAT(declared,
                 HasSubstr("and then the two would collide: 0x641 is in the SDO channel of node "
                           "`fan` (0x641, 0x5C1)"));
-    EXPECT_THAT(said, HasSubstr(there ? "`sdo: [{index: 0x1201, sub_index: 1, value: 0x80000000}]`"
-                                      : "switch it off in the device (bit 31 of 1201:01)"));
+    EXPECT_THAT(declared,
+                HasSubstr(there ? "`sdo: [{index: 0x1201, sub_index: 1, value: 0x80000000}]`"
+                                : "switch it off in the device (bit 31 of 1201:01)"));
     EXPECT_TRUE(std::ranges::none_of(net.findings, [](const Finding& finding) {
       return finding.rule == "cob-id-clash" && finding.severity == Severity::error;
     }));
@@ -122,17 +124,17 @@ TEST(SdoServers, OneThatOnlyTheDeviceDataHaveOnIsAWarning) {
 }
 
 TEST(SdoServers, AChannelThatOnlyTheDeviceDataHaveIsTaken) {
-  const auto said = [](const std::string& channel, const std::string& eds) {
+  const auto declared = [](const std::string& channel, const std::string& eds) {
     return test::compile_with_shipped("nodes:\n  arm: {node_id: 5, dcf: x" + identity +
                                           ", sdo_channel: " + channel + "}\n",
                                       eds)
-        .said("no-sdo-server");
+        .declared("no-sdo-server");
   };
   const std::string second = "{request: 0x645, answer: 0x5C5}";
 
-  EXPECT_EQ(said(second, test::tiny_objects()), "");
-  EXPECT_EQ(said(second, lenze_eds("0x80000000")), "");
-  EXPECT_THAT(said("{request: 0x646, answer: 0x5C5}", test::tiny_objects()),
+  EXPECT_EQ(declared(second, test::tiny_objects()), "");
+  EXPECT_EQ(declared(second, lenze_eds("0x80000000")), "");
+  EXPECT_THAT(declared("{request: 0x646, answer: 0x5C5}", test::tiny_objects()),
               HasSubstr("has no SDO server besides the first"));
 }
 
@@ -148,11 +150,11 @@ TEST(SdoServers, OfTheDeviceDataNeedIndexAndBothIdentifiers) {
 TEST(SdoServers, OneOfTheDeviceDataThatTheNetworkFileSwitchesOffIsNotInUse) {
   const auto net = test::compile_with_shipped(lenzes(identity + off), lenze_eds("0x80000000"));
 
-  EXPECT_EQ(net.said("cob-id-clash"), "");
+  EXPECT_EQ(net.declared("cob-id-clash"), "");
 }
 
 TEST(SdoServers, APlainNumberOfAnEdsIsThatOfAnotherNode) {
-  EXPECT_EQ(compile(two(1, 65), eds("0x641", "0x5C1")).said("cob-id-clash"), "");
+  EXPECT_EQ(compile(two(1, 65), eds("0x641", "0x5C1")).declared("cob-id-clash"), "");
 }
 
 }  // namespace

@@ -58,11 +58,11 @@ TEST(StoppingTime, IsThatOfTheMotorsSpeedBehindItsGear) {
   const auto network = drive({.sdo = behind_the_gear + ", {index: 0x6085, value: 2500}"});
   EXPECT_EQ(axis(network).stopping_time, 40s);
   EXPECT_EQ(network.plan.stop_timeout, 30s) << "62.5 s would be needed";
-  EXPECT_NE(network.said("stop-time")
+  EXPECT_NE(network.declared("stop-time")
                 .find("drive `z` needs 40.0 s to stop from its velocity limit (607F, 6080, "
                       "`limits:`) along the ramp 6085:00; the ordered stop waits 24.0 s"),
             std::string::npos)
-      << network.said("stop-time");
+      << network.declared("stop-time");
 }
 
 TEST(StoppingTime, IsThatOfTheLowerLimit) {
@@ -80,11 +80,11 @@ TEST(StoppingTime, IsAlongTheSlowDownRampWhereTheOptionCodeSaysSo) {
                                        "{index: 0x6085, value: 60000}",
                                 .master = ", stop_timeout: 5000"});
     EXPECT_EQ(axis(network).stopping_time, 6s) << option;
-    EXPECT_NE(network.said("stop-time")
+    EXPECT_NE(network.declared("stop-time")
                   .find("needs 6.0 s to stop from its velocity limit (607F, 6080, `limits:`) along "
                         "the ramp 6084:00; the ordered stop waits 4.0 s"),
               std::string::npos)
-        << network.said("stop-time");
+        << network.declared("stop-time");
   }
 }
 
@@ -105,7 +105,7 @@ TEST(StoppingTime, DoesNotDependOnTheOptionCodeOfDisableOperation) {
                                        "}, {index: 0x607F, value: 60000}, "
                                        "{index: 0x6084, value: 1}, {index: 0x6085, value: 10000}"});
     EXPECT_EQ(axis(network).stopping_time, 6s) << option;
-    EXPECT_EQ(network.said("stop-time").find("coasts"), std::string::npos);
+    EXPECT_EQ(network.declared("stop-time").find("coasts"), std::string::npos);
   }
 }
 
@@ -170,12 +170,12 @@ TEST(StandstillWindow, IsSmallInTheUnitOfTheNetworkFile) {
   EXPECT_EQ(axis(network).velocity_window, 10000) << "1 mm/s";
 }
 
-TEST(StandstillWindow, IsToldWhereNothingIsKnownOfTheAxis) {
+TEST(StandstillWindow, IsReportedWhereNothingIsKnownOfTheAxis) {
   const auto network = drive({});
   EXPECT_EQ(axis(network).velocity_window, 10);
-  EXPECT_NE(network.said("standstill").find("`z` has no velocity threshold (606F)"),
+  EXPECT_NE(network.declared("standstill").find("`z` has no velocity threshold (606F)"),
             std::string::npos);
-  EXPECT_EQ(drive({.sdo = "{index: 0x606F, value: 150}"}).said("standstill"), "");
+  EXPECT_EQ(drive({.sdo = "{index: 0x606F, value: 150}"}).declared("standstill"), "");
 }
 
 }  // namespace

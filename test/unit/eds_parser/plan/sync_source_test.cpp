@@ -44,7 +44,7 @@ TEST(SyncSource, IsTheNodeOfTheFile) {
   EXPECT_EQ(cycle.on_sync_loss, SyncLoss::fallback);
 }
 
-TEST(SyncSource, IsToldToProduceAfterItHasItsPeriod) {
+TEST(SyncSource, IsReportedToProduceAfterItHasItsPeriod) {
   const NodePlan& producer = demo().plan.nodes.at(0);
   const auto identifiers = steps_of(producer, cob_id_sync);
   ASSERT_EQ(identifiers.size(), 2u);
@@ -78,13 +78,13 @@ TEST(SyncSource, IsAllowedToBeEarlyByATwentiethOfThePeriod) {
 TEST(SyncSource, IsRefusedWhereItIsNoNodeOrHasNoPeriod) {
   const std::string nodes = "nodes: {arm: {node_id: 5, dcf: x}}\n";
   EXPECT_THAT(
-      compile("master: {sync_period: 10000, sync_source: amr}\n" + nodes).said("sync-source"),
+      compile("master: {sync_period: 10000, sync_source: amr}\n" + nodes).declared("sync-source"),
       HasSubstr("`sync_source: amr`: there is no such node"));
-  EXPECT_THAT(compile("master: {sync_source: external}\n" + nodes).said("sync-source"),
+  EXPECT_THAT(compile("master: {sync_source: external}\n" + nodes).declared("sync-source"),
               HasSubstr("needs `sync_period`"));
-  EXPECT_THAT(
-      compile("master: {sync_period: 10000, sync_timeout: 15000}\n" + nodes).said("sync-source"),
-      HasSubstr("`sync_timeout` is for a SYNC that another device makes"));
+  EXPECT_THAT(compile("master: {sync_period: 10000, sync_timeout: 15000}\n" + nodes)
+                  .declared("sync-source"),
+              HasSubstr("`sync_timeout` is for a SYNC that another device makes"));
 }
 
 TEST(TimeOfDayKeys, GiveAPeriodAndAnIdentifier) {
@@ -96,8 +96,9 @@ TEST(TimeOfDayKeys, GiveAPeriodAndAnIdentifier) {
   const auto by_period = compile("master: {time_period: 500, time_cob_id: 0x220}\n" + nodes);
   EXPECT_EQ(by_period.plan.time.period, 500ms);
   EXPECT_EQ(by_period.plan.time.cob_id, CobId::base(0x220));
-  EXPECT_THAT(compile("master: {time_period: 500, time_cob_id: 0x123}\n" + nodes).said("cob-id"),
-              HasSubstr("is reserved by CiA 301"));
+  EXPECT_THAT(
+      compile("master: {time_period: 500, time_cob_id: 0x123}\n" + nodes).declared("cob-id"),
+      HasSubstr("is reserved by CiA 301"));
 }
 
 }  // namespace

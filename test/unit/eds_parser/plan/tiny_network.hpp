@@ -122,7 +122,7 @@ struct Compiled {
     return out;
   }
   /// Returns all messages of one rule.
-  std::string said(std::string_view rule) const {
+  std::string declared(std::string_view rule) const {
     std::string out;
     for (const Finding& f : findings) {
       if (f.rule == rule) out += f.message + "\n";

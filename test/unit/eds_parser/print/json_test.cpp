@@ -108,7 +108,7 @@ AccessType=ro
 ParamRefd=P1
 )";
 
-TEST(EdsJson, TellsWhatTheNodeIsCalledElsewhereAndItsModules) {
+TEST(EdsJson, ReportsWhatTheNodeIsCalledElsewhereAndItsModules) {
   const auto json = json_of(read_eds(in_plant, "t.dcf"));
 
   EXPECT_EQ(json["commissioning"].dump(),

@@ -160,7 +160,7 @@ TEST(Compact, ImplicitPdosOfADcfAreOff) {
   }
 }
 
-TEST(Compact, WhatIsOddAboutItsNumberIsToldOnceAndInItsPlace) {
+TEST(Compact, WhatIsOddAboutItsNumberIsReportedOnceAndInItsPlace) {
   const auto file = read(
       "[3100]\nParameterName=Gain\nObjectType=0x8\nDataType=6\nAccessType=rw\n"
       "CompactSubObj=0A\nSubNumber=010\n");

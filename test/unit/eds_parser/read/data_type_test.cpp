@@ -158,14 +158,14 @@ TEST(ObjectTypes, ADefstructInShortNotationIsExpanded) {
             Value{std::uint64_t{72057594037927935}});
 }
 
-TEST(ObjectTypes, AVarInShortNotationIsTakenForAnArrayAndTold) {
+TEST(ObjectTypes, AVarInShortNotationIsTakenForAnArrayAndReported) {
   for (const auto* type : {"7", "2", "5"}) {
     const auto file = read("[2000]\nParameterName=s\nObjectType=" + std::string{type} +
                            "\nDataType=6\nAccessType=rw\nCompactSubObj=2\n");
 
-    const auto* told = test::find(file.findings, "sub-objects-of-var");
-    ASSERT_NE(told, nullptr) << type;
-    EXPECT_EQ(told->pos, (SourcePos{test::line_of(3), 12}));
+    const auto* reported = test::find(file.findings, "sub-objects-of-var");
+    ASSERT_NE(reported, nullptr) << type;
+    EXPECT_EQ(reported->pos, (SourcePos{test::line_of(3), 12}));
     EXPECT_EQ(file.dictionary.find(std::uint16_t{0x2000})->type, ObjectType::array);
     EXPECT_EQ(file.dictionary.find(std::uint16_t{0x2000})->subs.size(), 3U);
   }
@@ -194,9 +194,9 @@ TEST(DataType, ANumberOfMoreThan64BitsFitsNoType) {
   for (const auto* type : {"0x1B", "0x15", "7"}) {
     const auto file = read(var(type, "18446744073709551616"));
 
-    const auto* told = test::find(file.findings, "value-exceeds-type");
-    ASSERT_NE(told, nullptr) << type;
-    EXPECT_EQ(told->severity, Severity::error);
+    const auto* reported = test::find(file.findings, "value-exceeds-type");
+    ASSERT_NE(reported, nullptr) << type;
+    EXPECT_EQ(reported->severity, Severity::error);
     EXPECT_FALSE(has(file.findings, "value-unreadable"));
   }
   const auto limit = read(var("0x1B", "1") + "HighLimit=0x1FFFFFFFFFFFFFFFF\n");
@@ -218,12 +218,12 @@ TEST(DataType, TheLargestReal32IsOneInAnyRounding) {
   EXPECT_EQ(value("-1e39"), std::nullopt);
 }
 
-TEST(DataType, WhatStandsBehindARealOrARowOfBytesIsTold) {
+TEST(DataType, WhatStandsBehindARealOrARowOfBytesIsReported) {
   const auto finding = [](std::string_view type, std::string_view text) {
     const auto file = read(var(type, text));
-    const auto* told = test::find(file.findings, "inline-comment");
-    EXPECT_EQ(told == nullptr ? 14U : told->pos.column, 14U);
-    return told != nullptr;
+    const auto* reported = test::find(file.findings, "inline-comment");
+    EXPECT_EQ(reported == nullptr ? 14U : reported->pos.column, 14U);
+    return reported != nullptr;
   };
 
   EXPECT_TRUE(finding("0x0008", "0.5 ; gain"));
@@ -249,7 +249,7 @@ TEST(DataType, MayBeAWordAsObjectTypeMay) {
   EXPECT_FALSE(has(file.findings, "sub-objects-of-var"));
 }
 
-TEST(DataType, AWordBeforeACommentCountsAndBothAreTold) {
+TEST(DataType, AWordBeforeACommentCountsAndBothAreReported) {
   const auto file = read(
       "[2000]\nParameterName=r\nObjectType=RECORD ; foo\nSubNumber=1\n"
       "[2000sub0]\nParameterName=n\nDataType=UNSIGNED8 # foo\nAccessType=ro\n");
@@ -261,7 +261,7 @@ TEST(DataType, AWordBeforeACommentCountsAndBothAreTold) {
   EXPECT_FALSE(has(file.findings, "number-unreadable"));
 }
 
-TEST(DataType, AnObjectTypeIsToldOnceWhereThereIsNoDataType) {
+TEST(DataType, AnObjectTypeIsReportedOnceWhereThereIsNoDataType) {
   const auto count = [](const std::string& type, std::string_view rule) {
     const auto file = read("[2000]\nParameterName=d\nAccessType=rw\nObjectType=" + type + "\n");
     return std::ranges::count(file.findings, rule, &Finding::rule);

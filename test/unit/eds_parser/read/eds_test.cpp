@@ -121,7 +121,7 @@ TEST(Eds, TakesNoFormulaForABitPattern) {
   EXPECT_TRUE(has(file.findings, "value-unreadable"));
 }
 
-TEST(Eds, TellsOfAFormulaThatNeedsMoreThan64Bits) {
+TEST(Eds, ReportsOfAFormulaThatNeedsMoreThan64Bits) {
   const auto text = var("0x001B", "$NODEID+0xFFFFFFFFFFFFFFFF");
 
   EXPECT_FALSE(read(text).dictionary.find(ObjectKey{0x2000, 0})->value());
@@ -147,8 +147,8 @@ std::string limits(const std::string& type, const std::string& value, const std:
   const auto text = [](const std::optional<Value>& limit) {
     return limit ? std::to_string(*as_integer(*limit)) : std::string{"-"};
   };
-  const bool told = has(file.findings, "limit-above-type");
-  return text(sub->low_limit) + ".." + text(sub->high_limit) + (told ? " told" : "");
+  const bool reported = has(file.findings, "limit-above-type");
+  return text(sub->low_limit) + ".." + text(sub->high_limit) + (reported ? " told" : "");
 }
 
 TEST(Eds, DropsALimitAboveItsSignedType) {
@@ -228,15 +228,15 @@ TEST(Eds, KeepsSubObjectsWhateverSubNumberSays) {
 }
 
 TEST(Eds, TheThreeMandatoryObjectsBelongIntoTheirList) {
-  const auto said = [](const std::string& index) {
+  const auto declared = [](const std::string& index) {
     const auto file = read("[ManufacturerObjects]\nSupportedObjects=1\n1=" + index + "\n");
     return find(file.findings, "wrong-list")->message;
   };
 
   for (const auto* index : {"0x1000", "0x1001", "0x1018"}) {
-    EXPECT_TRUE(said(index).ends_with("belongs in [MandatoryObjects]")) << said(index);
+    EXPECT_TRUE(declared(index).ends_with("belongs in [MandatoryObjects]")) << declared(index);
   }
-  EXPECT_TRUE(said("0x1008").ends_with("belongs in [OptionalObjects]"));
+  EXPECT_TRUE(declared("0x1008").ends_with("belongs in [OptionalObjects]"));
 }
 
 TEST(Eds, ListsOnlySayWhereAnObjectBelongs) {

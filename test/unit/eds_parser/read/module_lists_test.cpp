@@ -38,7 +38,7 @@ std::string changed(std::string_view from, std::string_view to) {
   return text.replace(text.find(from), from.size(), to);
 }
 
-SourcePos told(std::string_view text, std::string_view rule) {
+SourcePos reported(std::string_view text, std::string_view rule) {
   const auto file = read(text);
   const auto* finding = find(file.findings, rule);
   return finding == nullptr ? SourcePos{} : finding->pos;
@@ -50,7 +50,7 @@ TEST(ModuleLists, ASoundModuleHasNoFinding) {
       read(std::string{module} + "[ConnectedModules]\nNrOfEntries=2\n1=1\n2=1\n").findings.empty());
 }
 
-TEST(ModuleLists, AnObjectWithoutSectionAndASectionThatIsNotListedAreTold) {
+TEST(ModuleLists, AnObjectWithoutSectionAndASectionThatIsNotListedAreReported) {
   const auto file = read(changed("1=0x6423", "1=0x6424"));
 
   std::vector<SourcePos> places;
@@ -58,29 +58,30 @@ TEST(ModuleLists, AnObjectWithoutSectionAndASectionThatIsNotListedAreTold) {
     if (finding.rule == "module-list") places.push_back(finding.pos);
   }
   EXPECT_EQ(places, (std::vector{SourcePos{line_of(7), 3}, SourcePos{line_of(8), 1}}));
-  EXPECT_EQ(told(changed("1=0x6000", "1=0x6001"), "module-list"), (SourcePos{line_of(14), 3}));
-  EXPECT_EQ(told(changed("[M1SubExtends]\nNrOfEntries=1\n1=0x6000\n", ""), "module-list").line,
+  EXPECT_EQ(reported(changed("1=0x6000", "1=0x6001"), "module-list"), (SourcePos{line_of(14), 3}));
+  EXPECT_EQ(reported(changed("[M1SubExtends]\nNrOfEntries=1\n1=0x6000\n", ""), "module-list").line,
             line_of(12));
 }
 
-TEST(ModuleLists, CountsAreTold) {
-  EXPECT_EQ(told(changed("[SupportedModules]\nNrOfEntries=1", "[SupportedModules]\nNrOfEntries=2"),
-                 "entry-count-wrong"),
-            (SourcePos{line_of(2), 13}));
+TEST(ModuleLists, CountsAreReported) {
   EXPECT_EQ(
-      told(changed("Objects]\nNrOfEntries=1", "Objects]\nNrOfEntries=3"), "entry-count-wrong"),
+      reported(changed("[SupportedModules]\nNrOfEntries=1", "[SupportedModules]\nNrOfEntries=2"),
+               "entry-count-wrong"),
+      (SourcePos{line_of(2), 13}));
+  EXPECT_EQ(
+      reported(changed("Objects]\nNrOfEntries=1", "Objects]\nNrOfEntries=3"), "entry-count-wrong"),
       (SourcePos{line_of(6), 13}));
 }
 
-TEST(ModuleLists, ACountOfSubObjectsThatBringsNothingIsTold) {
+TEST(ModuleLists, ACountOfSubObjectsThatBringsNothingIsReported) {
   for (const auto* count :
        {"Count=0", "Count=", "Count=300", "Count=four", "Count=0;0", "Count=0;65", "Count=-1"}) {
-    EXPECT_EQ(told(changed("Count=4", count), "number-unreadable"), (SourcePos{line_of(19), 7}))
+    EXPECT_EQ(reported(changed("Count=4", count), "number-unreadable"), (SourcePos{line_of(19), 7}))
         << count;
   }
-  EXPECT_EQ(told(changed("Count=4\n", ""), "number-unreadable"), (SourcePos{line_of(15), 1}));
+  EXPECT_EQ(reported(changed("Count=4\n", ""), "number-unreadable"), (SourcePos{line_of(15), 1}));
   for (const auto* count : {"Count=254", "Count=0;2", "Count=0x4", "Count = 2"}) {
-    EXPECT_EQ(told(changed("Count=4", count), "number-unreadable"), SourcePos{}) << count;
+    EXPECT_EQ(reported(changed("Count=4", count), "number-unreadable"), SourcePos{}) << count;
   }
 }
 

@@ -124,7 +124,7 @@ TEST(Modules, FixedObjectsHaveTheListsOfShortNotation) {
   EXPECT_EQ(file.dictionary.find(ObjectKey{0x2100, 1})->denotation, "first");
 }
 
-TEST(Modules, SectionsOfNoUseAreTold) {
+TEST(Modules, SectionsOfNoUseAreReported) {
   const auto lonely = read("[M1Fixed2100Name]\n1=x\n" + extension("1") + connected(1));
   const auto lists = read(extension("1") + "[M1SubExt6000Name]\n1=x\n" + connected(1));
   const auto odd = read(extension("1") + "[M1FixedThings]\n1=x\n");
@@ -136,7 +136,7 @@ TEST(Modules, SectionsOfNoUseAreTold) {
   EXPECT_TRUE(test::has(odd.findings, "unknown-section"));
 }
 
-TEST(Modules, ABlankBeforeSubIsTold) {
+TEST(Modules, ABlankBeforeSubIsReported) {
   const auto file = read(
       "[M1Fixed2100]\nParameterName=r\nObjectType=9\nSubNumber=1\n"
       "[M1Fixed2100 sub1]\nParameterName=v\nDataType=6\nAccessType=rw\nDefaultValue=7\n" +
@@ -167,7 +167,7 @@ TEST(Modules, StandInTheOrderOfTheirNumbers) {
   EXPECT_FALSE(test::has(file.findings, "module-count"));
 }
 
-TEST(Modules, EntriesThatDoNotFitTheirListAreTold) {
+TEST(Modules, EntriesThatDoNotFitTheirListAreReported) {
   const auto more = read(extension("1") + "[ConnectedModules]\nNrOfEntries=1\n1=1\n2=1\n");
   const auto twice = read(extension("1") + "[ConnectedModules]\nNrOfEntries=2\n1=1\n1=1\n");
   const auto other = read(extension("1") + "[ConnectedModules]\nNr Of Entries=1\n1=1\n");
@@ -181,13 +181,13 @@ TEST(Modules, EntriesThatDoNotFitTheirListAreTold) {
   EXPECT_EQ(integer(other, {0x6000, 0}), 1);
 }
 
-TEST(Modules, AnUnknownModuleIsTold) {
+TEST(Modules, AnUnknownModuleIsReported) {
   const auto file = read(extension("4") + "[ConnectedModules]\n1=7\n");
 
   EXPECT_TRUE(test::has(file.findings, "unknown-module"));
 }
 
-TEST(Modules, SubObjectsThatTheFileDescribesTooAreTold) {
+TEST(Modules, SubObjectsThatTheFileDescribesTooAreReported) {
   std::string described = "[6000]\nParameterName=r\nObjectType=8\nSubNumber=3\n";
   for (const char* sub : {"0", "1", "2"}) {
     described += "[6000sub" + std::string{sub} + "]\nParameterName=s\nDataType=5\nAccessType=ro\n";

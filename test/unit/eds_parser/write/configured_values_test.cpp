@@ -91,7 +91,7 @@ TEST(ConfiguredValues, AMappingWithoutACountAndWithAGapIsAnError) {
   EXPECT_EQ(test::find(values.findings, "mapping-count-unknown")->severity, Severity::error);
 }
 
-TEST(ConfiguredValues, AnEntryBehindTheCountIsLeftOutAndTold) {
+TEST(ConfiguredValues, AnEntryBehindTheCountIsLeftOutAndReported) {
   Findings findings;
   const auto text = configured(mapped(sub("1A00sub0", "5", "DefaultValue=0") +
                                       sub("1A00sub1", "7", "ParameterValue=0x10010008")),
@@ -108,7 +108,7 @@ TEST(ConfiguredValues, AFileWithAnErrorConfiguresNothing) {
   EXPECT_FALSE(test::has(values.findings, "value-left-out"));
 }
 
-TEST(ConfiguredValues, AFormulaOfAnUnknownNodeIsLeftOutAndTold) {
+TEST(ConfiguredValues, AFormulaOfAnUnknownNodeIsLeftOutAndReported) {
   const auto values = configured_values(test::read(
       sub("1017", "6", "ParameterValue=100") + sub("2000", "7", "ParameterValue=$NODEID+0x300"),
       std::nullopt));
@@ -116,7 +116,7 @@ TEST(ConfiguredValues, AFormulaOfAnUnknownNodeIsLeftOutAndTold) {
   EXPECT_TRUE(test::has(values.findings, "value-left-out"));
 }
 
-TEST(ConfiguredValues, AFileForADomainIsLeftOutAndTold) {
+TEST(ConfiguredValues, AFileForADomainIsLeftOutAndReported) {
   const auto values = configured_values(test::read(sub("1017", "6", "ParameterValue=100") +
                                                    sub("1F50", "0xF", "DownloadFile=p.bin")));
   EXPECT_EQ(lines(values.entries), "1017:00 64 00\n");
@@ -130,7 +130,7 @@ TEST(ConfiguredValues, StoreAndRestoreAreCommandsAndNoConfiguration) {
   EXPECT_TRUE(test::has(findings, "command-left-out"));
 }
 
-TEST(ConfiguredValues, AnUnknownTypeIsLeftOutAndTold) {
+TEST(ConfiguredValues, AnUnknownTypeIsLeftOutAndReported) {
   Findings findings;
   EXPECT_EQ(configured(sub("2000", "0x44", "ParameterValue=1"), &findings), "");
   EXPECT_TRUE(test::has(findings, "data-type-unknown"));

@@ -249,7 +249,7 @@ TEST(EdsFix, EachFindingOfAValueIsCounted) {
   EXPECT_EQ(mended("DataType=0x0005\nDefaultValue=0777 ; too much\n"), 2U) << "not that it exceeds";
 }
 
-TEST(EdsFix, EveryRuleThatIsSaidToBeMendedHasItsCase) {
+TEST(EdsFix, EveryRuleThatIsDeclaredToBeMendedHasItsCase) {
   const std::vector<Case> all = cases();
   for (const std::string_view rule : fixable_rules) {
     EXPECT_TRUE(std::ranges::any_of(all, [&](const Case& one) { return one.rule == rule; }))
@@ -324,7 +324,7 @@ TEST(EdsFix, ASlipThatWouldChangeTheObjectIsLeftAndTheRestMended) {
   EXPECT_TRUE(has(fixed.left, "unknown-key"));
 }
 
-TEST(EdsFix, WhatIsNoEdsIsSaid) {
+TEST(EdsFix, WhatIsNoEdsIsDeclared) {
   const FixedEds fixed = fix_eds("hello\n", "t.eds");
 
   EXPECT_FALSE(fixed.readable);

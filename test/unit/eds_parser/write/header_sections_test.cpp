@@ -19,7 +19,7 @@ bool unknown_key(const EdsFile& file, std::uint32_t line) {
   });
 }
 
-TEST(HeaderSections, KeysThatCia306DoesNotHaveAreTold) {
+TEST(HeaderSections, KeysThatCia306DoesNotHaveAreReported) {
   const auto file = read_eds(
       "[FileInfo]\nFileName=t.eds\nAutor=x\n[DeviceInfo]\nVendorName=V\nNrOfTXPDOs=4\n"
       "BaudRate500=1\n[DummyUsage]\nDummy9=1\n[DeviceComissioning]\nNodeID=5\nNodName=a\n"
@@ -34,7 +34,7 @@ TEST(HeaderSections, KeysThatCia306DoesNotHaveAreTold) {
   EXPECT_EQ(lines, (std::vector<std::uint32_t>{3, 6, 7, 9, 12, 16, 21, 23}));
 }
 
-TEST(HeaderSections, ReservedKeysAndBitRatesOfVendorsAreNotTold) {
+TEST(HeaderSections, ReservedKeysAndBitRatesOfVendorsAreNotReported) {
   const auto file = read_eds(
       "[FileInfo]\nFileName=a\nFileVersion=1\nFileRevision=1\nEDSVersion=4.0\nDescription=d\n"
       "CreationTime=01:00PM\nCreationDate=01-02-2020\nCreatedBy=x\nModificationTime=01:00PM\n"
@@ -49,7 +49,7 @@ TEST(HeaderSections, ReservedKeysAndBitRatesOfVendorsAreNotTold) {
   EXPECT_FALSE(has(file.findings, "unknown-key"));
 }
 
-TEST(HeaderSections, WhatIsOddAboutANumberIsTold) {
+TEST(HeaderSections, WhatIsOddAboutANumberIsReported) {
   const auto rule_at = [](std::string_view line) {
     const auto file =
         read_eds("[DeviceInfo]\n" + std::string{line} + "\n[1000]\nDataType=7\n", "t");
@@ -89,7 +89,7 @@ TEST(HeaderSections, OnlyNumberedEntriesAreLinks) {
   EXPECT_TRUE(unknown_key(file, 4));
 }
 
-TEST(HeaderSections, LinksOfAndToWhatIsNotThereAreTold) {
+TEST(HeaderSections, LinksOfAndToWhatIsNotThereAreReported) {
   const auto file = read(
       "[1001ObjectLinks]\nObjectLinks=2\n1=0x1018\n2=0x2002\n"
       "[2005ObjectLinks]\nObjectLinks=1\n1=0x1001\n");
@@ -102,8 +102,8 @@ TEST(HeaderSections, LinksOfAndToWhatIsNotThereAreTold) {
   EXPECT_EQ(source->pos.line, line_of(5));
 }
 
-TEST(HeaderSections, CountsThatAreNotThoseOfTheEntriesAreTold) {
-  const auto told_at = [](std::string_view text) {
+TEST(HeaderSections, CountsThatAreNotThoseOfTheEntriesAreReported) {
+  const auto reported_at = [](std::string_view text) {
     const auto file = read(text);
     const auto* finding = find(file.findings, "entry-count-wrong");
     return finding == nullptr ? SourcePos{} : finding->pos;
@@ -111,16 +111,20 @@ TEST(HeaderSections, CountsThatAreNotThoseOfTheEntriesAreTold) {
   const std::string array =
       "[2000]\nParameterName=a\nObjectType=8\nDataType=5\nAccessType=rw\nCompactSubObj=3\n";
 
-  EXPECT_EQ(told_at("[Comments]\nLines=3\nLine1=a\n"), (SourcePos{line_of(2), 7}));
-  EXPECT_EQ(told_at("[1001ObjectLinks]\nObjectLinks=2\n1=0x1018\n"), (SourcePos{line_of(2), 13}));
-  EXPECT_EQ(told_at("[Tools]\nItems=2\n[Tool1]\nName=a\nCommand=b\n"), (SourcePos{line_of(2), 7}));
-  EXPECT_EQ(told_at(array + "[2000Name]\nNrOfEntries=1\n1=a\n2=b\n"), (SourcePos{line_of(8), 13}));
-  EXPECT_EQ(told_at(array + "[2000Value]\nNrOfEntries=3\n1=1\n"), (SourcePos{line_of(8), 13}));
-  EXPECT_EQ(told_at(array + "[2000Denotation]\nNrOfEntries=0\n1=x\n"), (SourcePos{line_of(8), 13}));
+  EXPECT_EQ(reported_at("[Comments]\nLines=3\nLine1=a\n"), (SourcePos{line_of(2), 7}));
+  EXPECT_EQ(reported_at("[1001ObjectLinks]\nObjectLinks=2\n1=0x1018\n"),
+            (SourcePos{line_of(2), 13}));
+  EXPECT_EQ(reported_at("[Tools]\nItems=2\n[Tool1]\nName=a\nCommand=b\n"),
+            (SourcePos{line_of(2), 7}));
+  EXPECT_EQ(reported_at(array + "[2000Name]\nNrOfEntries=1\n1=a\n2=b\n"),
+            (SourcePos{line_of(8), 13}));
+  EXPECT_EQ(reported_at(array + "[2000Value]\nNrOfEntries=3\n1=1\n"), (SourcePos{line_of(8), 13}));
+  EXPECT_EQ(reported_at(array + "[2000Denotation]\nNrOfEntries=0\n1=x\n"),
+            (SourcePos{line_of(8), 13}));
 
-  EXPECT_EQ(told_at("[Comments]\nLines=0x1\nLine1=a\n"), SourcePos{});
-  EXPECT_EQ(told_at("[Tools]\nItems=1\n[Tool1]\nName=a\nCommand=b\n"), SourcePos{});
-  EXPECT_EQ(told_at(array + "[2000Name]\nNrOfEntries=2\n1=a\n2=b\n"), SourcePos{});
+  EXPECT_EQ(reported_at("[Comments]\nLines=0x1\nLine1=a\n"), SourcePos{});
+  EXPECT_EQ(reported_at("[Tools]\nItems=1\n[Tool1]\nName=a\nCommand=b\n"), SourcePos{});
+  EXPECT_EQ(reported_at(array + "[2000Name]\nNrOfEntries=2\n1=a\n2=b\n"), SourcePos{});
 }
 
 TEST(HeaderSections, CommentsAreCountedInDecimalAsTheFixCountsThem) {
@@ -135,7 +139,7 @@ TEST(HeaderSections, CommentsAreCountedInDecimalAsTheFixCountsThem) {
   EXPECT_EQ(fix_eds(text, "t.eds").text, text);
 }
 
-TEST(HeaderSections, AnEmptyCountOfNoEntriesIsNotTold) {
+TEST(HeaderSections, AnEmptyCountOfNoEntriesIsNotReported) {
   const auto count = [](std::string_view value, std::string_view entries) {
     return has(
         read("[Comments]\nLines=" + std::string{value} + "\n" + std::string{entries}).findings,
@@ -148,7 +152,7 @@ TEST(HeaderSections, AnEmptyCountOfNoEntriesIsNotTold) {
   EXPECT_TRUE(count("", "Line1=a\n"));
 }
 
-TEST(HeaderSections, LinksOfAndToObjectsOfModulesAreNotTold) {
+TEST(HeaderSections, LinksOfAndToObjectsOfModulesAreNotReported) {
   const auto file = read(
       "[1001ObjectLinks]\nObjectLinks=3\n1=0x6000\n2=0x6401\n3=0x7000\n"
       "[6000ObjectLinks]\nObjectLinks=1\n1=0x1001\n"

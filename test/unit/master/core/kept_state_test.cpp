@@ -95,11 +95,11 @@ TEST(KeptValues, AreNumbersWhateverADamagedCheckpointHolds) {
   EXPECT_EQ(value, 0);
 }
 
-TEST(KeptTimes, AWatchForTwinsTellsAtOnceAndThenOnceInTenSeconds) {
+TEST(KeptTimes, AWatchForTwinsReportsAtOnceAndThenOnceInTenSeconds) {
   TwinWatch watch{100ms, CobId::base(0x605)};
-  int told = 0;
-  for (Time now{}; now < 4s; now += 50ms) told += watch.on_heartbeat(now).has_value();
-  EXPECT_EQ(told, 1) << "from the first second of the clock on";
+  int reported = 0;
+  for (Time now{}; now < 4s; now += 50ms) reported += watch.on_heartbeat(now).has_value();
+  EXPECT_EQ(reported, 1) << "from the first second of the clock on";
 }
 
 }  // namespace

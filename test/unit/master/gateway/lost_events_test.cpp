@@ -21,7 +21,7 @@ class NobodyHears final : public Transport {
   std::string url() const override { return {}; }
 };
 
-TEST(LostEvents, AreToldOnceWithTheirNumber) {
+TEST(LostEvents, AreReportedOnceWithTheirNumber) {
   test::Rig rig{test::axes({.period = 4ms})};
   test::RestlessPort port{*rig.port};
   rig.use(port);
@@ -51,7 +51,8 @@ TEST(Notices, CarryNoControlCharacterToATerminal) {
   Bridge bridge{
       *rig.master, lcm, clocks, {}, [&](const Notice& notice) { texts.push_back(notice.text); }};
 
-  bridge.tell(Notice{.node = 0, .kind = "test", .weight = Weight::note, .text = "a\x1B[2J\n  b"});
+  bridge.announce(
+      Notice{.node = 0, .kind = "test", .weight = Weight::note, .text = "a\x1B[2J\n  b"});
 
   EXPECT_EQ(texts, (std::vector<std::string>{"a?[2J\n  b"}));
 }

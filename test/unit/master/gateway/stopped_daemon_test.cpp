@@ -92,13 +92,13 @@ class StoppedDaemon : public testing::Test {
   test::Rig rig;
   test::RigClocks clocks{rig};
   Waiting lcm;
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   Bridge bridge{*rig.master,
                 lcm,
                 clocks,
                 {.session = 7, .interface = {}, .realtime = {}},
                 [this](const Notice& notice) {
-                  told.push_back(notice.kind);
+                  reported.push_back(notice.kind);
                   if (notice.kind == "fallback_begun") fallback = notice.text;
                 }};
   std::string fallback;  // text of the fallback
@@ -117,7 +117,7 @@ TEST_F(StoppedDaemon, ActsOnNoCommandThatWaited) {
 
   EXPECT_EQ(bridge.commands_taken(), 1U);
   EXPECT_EQ(bridge.commands_refused(), 20U);
-  EXPECT_EQ(std::ranges::count(told, "front_gap"), 1);
+  EXPECT_EQ(std::ranges::count(reported, "front_gap"), 1);
 }
 
 TEST_F(StoppedDaemon, DiscardsEverythingThatWaitedHoweverLongTheBacklogIs) {
@@ -378,7 +378,7 @@ TEST_F(StoppedDaemon, DiscardsASetPointOfItsTextGatewayIfItStoodStillSinceItLook
   EXPECT_EQ(refused(CommandRefusal::waited), 1U);
 }
 
-TEST_F(StoppedDaemon, TellsTheKeyTheTimeAndTheSenderOfAFallback) {
+TEST_F(StoppedDaemon, ReportsTheKeyTheTimeAndTheSenderOfAFallback) {
   lcm.arrive(bridge.channels().command, command(6));
   for (int i = 0; i < 20; ++i) cycle();
 

@@ -86,7 +86,7 @@ TEST(Messages, AnotherTypeIsAnotherVersion) {
   EXPECT_EQ(decode<command_t>(bytes).error(), DecodeFault::other_version);
 }
 
-TEST(Messages, ATypeThatSchema1HadOtherwiseIsSaidToBeOfSchema1) {
+TEST(Messages, ATypeThatSchema1HadOtherwiseIsDeclaredToBeOfSchema1) {
   const auto begins_with = [](std::string_view hex) {
     std::vector<std::byte> bytes(16);
     for (std::size_t i = 0; i < 8; ++i) {

@@ -7,7 +7,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(RateLimit, TellsOnceAndThenCounts) {
+TEST(RateLimit, ReportsOnceAndThenCounts) {
   RateLimit limit{milliseconds{1000}};
 
   EXPECT_EQ(limit.allow("a", milliseconds{5000}), 0U);
@@ -19,13 +19,13 @@ TEST(RateLimit, TellsOnceAndThenCounts) {
 
 TEST(RateLimit, AFloodOfDifferentThingsIsHeldBackToo) {
   RateLimit limit{milliseconds{1000}, 4};
-  int told = 0;
+  int reported = 0;
 
   for (int i = 0; i < 1000; ++i) {
-    if (limit.allow(std::to_string(i), milliseconds{5000 + i})) ++told;
+    if (limit.allow(std::to_string(i), milliseconds{5000 + i})) ++reported;
   }
 
-  EXPECT_EQ(told, 4);
+  EXPECT_EQ(reported, 4);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ TEST(Beat, SkipsThePeriodsThatHavePassed) {
   EXPECT_EQ(parts.beat.sync_at(), 10'008ms);
   EXPECT_EQ(parts.beat.cycle(), 4U);
   EXPECT_EQ(parts.bus.status.cycles_missed, 3U);
-  EXPECT_EQ(parts.told(), std::vector{EventKind::cycles_missed});
+  EXPECT_EQ(parts.reported(), std::vector{EventKind::cycles_missed});
 }
 
 TEST(Beat, ALateSyncEndsTheWindowAtTheOutputs) {
@@ -66,14 +66,14 @@ TEST(Beat, HoldsTheFramesOfACycleWhileItsSyncWasNotSeen) {
   const Frame frame{.id = CobId::base(0x201)};
   EXPECT_EQ(parts.sender.send({&frame, 1}), 0U);
   EXPECT_TRUE(parts.port.sent.empty());
-  EXPECT_TRUE(parts.told().empty());
+  EXPECT_TRUE(parts.reported().empty());
 
   parts.beat.next();
   parts.port.news_now.last_sync_echo = 10'005ms;
   parts.await();
   EXPECT_TRUE(parts.beat.wire_open());
   EXPECT_EQ(parts.sender.send({&frame, 1}), 1U);
-  EXPECT_EQ(parts.told(), std::vector{EventKind::cycles_missed});
+  EXPECT_EQ(parts.reported(), std::vector{EventKind::cycles_missed});
 }
 
 TEST(Beat, CountsItsSyncOnlyWhenItWasSent) {
@@ -118,7 +118,7 @@ TEST_F(FollowedBeat, BeginsByItsOwnClockWithoutSyncAndNoticesTheLoss) {
   parts.beat.next();
   parts.await();
   EXPECT_TRUE(parts.beat.sync_lost());
-  EXPECT_EQ(parts.told(), (std::vector{EventKind::sync_back, EventKind::sync_lost}));
+  EXPECT_EQ(parts.reported(), (std::vector{EventKind::sync_back, EventKind::sync_lost}));
 }
 
 TEST_F(FollowedBeat, PassesOverASyncThatIsTooOldToBeginACycle) {

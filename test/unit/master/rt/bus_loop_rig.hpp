@@ -45,7 +45,7 @@ class Loop {
     }
     exchange->set_points.publish(port.now());
   }
-  std::vector<EventKind> told() {
+  std::vector<EventKind> reported() {
     std::vector<EventKind> all;
     for (Event event; exchange->events.pop(event);) all.push_back(event.kind);
     return all;

@@ -256,7 +256,7 @@ TEST(BusLoop, StopsInOrder) {
   EXPECT_EQ(bus.port.sent_with(0x201).front().frame.data[0], 0x02);
   EXPECT_TRUE(bus.network->stopping);
   EXPECT_TRUE(bus.exchange->finished);
-  const auto events = bus.told();
+  const auto events = bus.reported();
   EXPECT_EQ(std::ranges::count(events, EventKind::stopping), 1);
   EXPECT_EQ(std::ranges::count(events, EventKind::stopped), 1);
 }

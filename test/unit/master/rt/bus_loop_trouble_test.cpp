@@ -6,7 +6,7 @@
 namespace takt {
 namespace {
 
-TEST(BusLoop, MakesAtMostEightCallsWithAMissingPdoAndTellsIt) {
+TEST(BusLoop, MakesAtMostEightCallsWithAMissingPdoAndReportsIt) {
   Loop bus;
   bus.command_all(0x0F, 7);
   bus.run(50);
@@ -24,7 +24,7 @@ TEST(BusLoop, MakesAtMostEightCallsWithAMissingPdoAndTellsIt) {
   bus.run(20);
   EXPECT_EQ(bus.most_calls, 8U);
   EXPECT_EQ(bus.port.calls.size(), 6U);  // the loop no longer waits for the dead node
-  const auto events = bus.told();
+  const auto events = bus.reported();
   EXPECT_EQ(std::ranges::count(events, EventKind::pdo_missing), 1);
 }
 
@@ -49,7 +49,7 @@ TEST(BusLoop, AfterAStallOf50MsSendsNoBurst) {
   EXPECT_EQ(image.cycle, 20U + 25U);
   EXPECT_EQ(image.beat, 20U);
   EXPECT_EQ(bus.status().cycles_missed, 25U);
-  const auto events = bus.told();
+  const auto events = bus.reported();
   EXPECT_EQ(std::ranges::count(events, EventKind::cycles_missed), 1);
   EXPECT_EQ(std::ranges::count(events, EventKind::pdo_missing), 0);
 }
@@ -199,7 +199,7 @@ TEST(BusLoop, EventDrivenOutputsThatDoNotAllFitTakeTurns) {
   EXPECT_EQ(bus.status().outputs_skipped, 0U);
 }
 
-TEST(BusLoop, TellsAFullSendBufferWithItsCauseOnceASecond) {
+TEST(BusLoop, ReportsAFullSendBufferWithItsCauseOnceASecond) {
   Loop bus;
   bus.run(1);
   bus.command_all(0x0F, 7, 1000);
@@ -251,7 +251,7 @@ TEST(BusLoop, ANodeThatIsOffDoesNotDisturbTheOthers) {
   bus.run(50);
   EXPECT_EQ(bus.port.sent_with(0x201).size(), 50U);
   EXPECT_EQ(bus.port.sent_with(0x202).size(), 0U);
-  EXPECT_TRUE(bus.told().empty());
+  EXPECT_TRUE(bus.reported().empty());
 
   bus.network->set_up(1, true);  // the node is back; its old command is not sent again
   bus.run(5);

@@ -28,7 +28,7 @@ struct Parts {
     beat.await(port, bus.services, [&] { intake.drain(); });
   }
   void arrive(Time when, Frame frame) { port.inbox.push_back({.frame = frame, .when = when}); }
-  std::vector<EventKind> told() {
+  std::vector<EventKind> reported() {
     std::vector<EventKind> all;
     for (Event event; bus.events.pop(event);) all.push_back(event.kind);
     return all;

@@ -107,7 +107,7 @@ TEST(Histogram, PutsTimesIntoBinsOfAnEighthOctave) {
   EXPECT_EQ(Histogram::bin_of(100h), HistogramSnapshot::bins - 1);
 }
 
-TEST(Histogram, TellsPercentilesAndOctaves) {
+TEST(Histogram, ReportsPercentilesAndOctaves) {
   auto histogram = std::make_unique<Histogram>();
   for (int i = 0; i < 99; ++i) histogram->record(10us);
   const HistogramSnapshot before = histogram->snapshot();
@@ -190,7 +190,7 @@ std::vector<EventKind> drain(EventQueue& events) {
   return kinds;
 }
 
-TEST(PortWatch, TellsEachChangeOnce) {
+TEST(PortWatch, ReportsEachChangeOnce) {
   auto events = std::make_unique<EventQueue>();
   PortWatch watch{*events};
   watch.on_news({}, 0ms);

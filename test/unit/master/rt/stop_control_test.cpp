@@ -169,7 +169,7 @@ struct StoppingSyncLoss : SyncLossTest {
   StoppingSyncLoss() : SyncLossTest{SyncLoss::stop} {}
 };
 
-TEST_F(StoppingSyncLoss, TellsTheServicesToStopTheNodesAndToStartThemAgain) {
+TEST_F(StoppingSyncLoss, ReportsTheServicesToStopTheNodesAndToStartThemAgain) {
   stop.follow_sync(true);
   EXPECT_EQ(bus.services.sync_losses, 1);
   stop.follow_sync(false);

@@ -29,14 +29,14 @@ class SyncFollowerTest : public testing::Test {
     EXPECT_EQ(follower->take(), when);
     return true;
   }
-  std::vector<Event> told() {
+  std::vector<Event> reported() {
     std::vector<Event> all;
     for (Event event; events->pop(event);) all.push_back(event);
     return all;
   }
   std::vector<EventKind> kinds() {
     std::vector<EventKind> all;
-    for (const Event& event : told()) all.push_back(event.kind);
+    for (const Event& event : reported()) all.push_back(event.kind);
     return all;
   }
 
@@ -69,14 +69,14 @@ TEST_F(SyncFollowerTest, IsLostAfterItsTimeOutOnly) {
   EXPECT_TRUE(follower->lost());
   follower->on_silence(125ms, {});
 
-  const auto all = told();
+  const auto all = reported();
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[1].kind, EventKind::sync_lost);
   EXPECT_EQ(all[1].value, 15'000'000);
 
   EXPECT_TRUE(sync(130ms));
   EXPECT_FALSE(follower->lost());
-  const auto back = told();
+  const auto back = reported();
   ASSERT_EQ(back.size(), 1u);
   EXPECT_EQ(back[0].kind, EventKind::sync_back);
   EXPECT_EQ(back[0].value, 30'000'000);
@@ -93,17 +93,17 @@ TEST_F(SyncFollowerTest, WaitsForTheFirstSyncWhileNodesBoot) {
   EXPECT_FALSE(follower->lost());
   follower->on_silence(31s, ready);
   EXPECT_TRUE(follower->lost());
-  EXPECT_EQ(told().at(0).value, 0);
+  EXPECT_EQ(reported().at(0).value, 0);
 }
 
-TEST_F(SyncFollowerTest, TellsOnceWhereItsCounterJumps) {
+TEST_F(SyncFollowerTest, ReportsOnceWhereItsCounterJumps) {
   use(followed(4));
   sync(100ms, 3);
   sync(110ms, 4);
   sync(120ms, 1);
-  told();
+  reported();
   sync(130ms, 3);
-  const auto all = told();
+  const auto all = reported();
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].kind, EventKind::sync_jump);
   EXPECT_EQ(all[0].value, 3);
@@ -112,7 +112,7 @@ TEST_F(SyncFollowerTest, TellsOnceWhereItsCounterJumps) {
   EXPECT_EQ(kinds(), Kinds{});
 }
 
-TEST_F(SyncFollowerTest, TellsOnceThatACounterIsMissingOrTooMuch) {
+TEST_F(SyncFollowerTest, ReportsOnceThatACounterIsMissingOrTooMuch) {
   use(followed(4));
   sync(100ms);
   sync(110ms);
@@ -126,14 +126,14 @@ TEST_F(SyncFollowerTest, TellsOnceThatACounterIsMissingOrTooMuch) {
 TEST_F(SyncFollowerTest, BeginsNoCycleWithASecondProducersSync) {
   use(followed());
   sync(100ms);
-  told();
+  reported();
   EXPECT_FALSE(sync(103ms));
   EXPECT_TRUE(sync(110ms));
   EXPECT_FALSE(sync(113ms));
   EXPECT_EQ(kinds(), Kinds{EventKind::sync_early}) << "told once";
 }
 
-TEST_F(SyncFollowerTest, TellsAPeriodThatIsNotTheDeclaredOne) {
+TEST_F(SyncFollowerTest, ReportsAPeriodThatIsNotTheDeclaredOne) {
   use(followed());
   for (int i = 0; i < 40; ++i) sync(100ms + i * 8ms);
   EXPECT_EQ(kinds(), (Kinds{EventKind::sync_back, EventKind::sync_period}));
@@ -267,9 +267,9 @@ TEST_F(FollowingLoop, HoldsItsOutputsWithoutSyncAndGoesOnWithIt) {
   for (int i = 0; i < 5; ++i) sync(again + i * 2ms);
   loop.run(5);
   EXPECT_GT(loop.port.sent_with(0x201).size(), before + 2);
-  const auto told = loop.told();
-  EXPECT_EQ(std::ranges::count(told, EventKind::sync_lost), 1);
-  EXPECT_EQ(std::ranges::count(told, EventKind::sync_back), 2);
+  const auto reported = loop.reported();
+  EXPECT_EQ(std::ranges::count(reported, EventKind::sync_lost), 1);
+  EXPECT_EQ(std::ranges::count(reported, EventKind::sync_back), 2);
 }
 
 class FallingLoop : public FollowingLoop {

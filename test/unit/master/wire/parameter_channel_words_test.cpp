@@ -7,7 +7,7 @@ namespace {
 
 /// The error codes in the manual of the card: invalid command, address, value, operation failed,
 /// password, frame, read-only, while running, locked.
-TEST(ParameterChannel, TellsEachErrorCodeInWords) {
+TEST(ParameterChannel, ReportsEachErrorCodeInWords) {
   const char* const words[] = {"no error",
                                "invalid command",
                                "no such parameter address",

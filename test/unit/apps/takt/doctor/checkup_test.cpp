@@ -62,7 +62,7 @@ TEST(Doctor, GivesTheCommandThatBringsAnInterfaceUp) {
   EXPECT_EQ(judge_link(link, {})[0].command, "ip link set can0 up");
 }
 
-TEST(Doctor, TellsEachFaultOfAnInterfaceWithItsCommand) {
+TEST(Doctor, ReportsEachFaultOfAnInterfaceWithItsCommand) {
   CanLink link = healthy();
   link.tx_queue_length = 10;
   link.restart_ms = 0;
@@ -114,7 +114,7 @@ TEST(Doctor, KnowsARealtimeKernelASlowClockAndAThriftyGovernor) {
   EXPECT_EQ(about(remarks, "CPU frequency")->command, "cpupower frequency-set -g performance");
 }
 
-TEST(Doctor, TellsWhatRealTimeWasRefused) {
+TEST(Doctor, ReportsWhatRealTimeWasRefused) {
   RtReport report;
   report.priority = 80;
   report.memory_locked = true;

@@ -117,7 +117,7 @@ TEST_F(Import, AKeyThatOnlyTheDriverClassCanKnowIsSuspiciousASlipIsWrong) {
   EXPECT_EQ(key(bus, "neck.hartbeat_producer").fate, KeyFate::wrong);
 }
 
-TEST_F(Import, TellsADeviceThatIsToldAnotherSyncPeriod) {
+TEST_F(Import, ReportsADeviceThatIsReportedAnotherSyncPeriod) {
   const auto bus = report(
       "master: {sync_period: 20000}\n"
       "arm: {node_id: 2, dcf: drive.eds, sdo: [{index: 0x1006, value: 10000}]}\n"
@@ -142,7 +142,7 @@ TEST_F(Import, WhatStandsInAnUnknownKeyIsNotUsed) {
   EXPECT_EQ(key(bus, "leg.motor_channels.1.node_id").fate, KeyFate::ignored);
 }
 
-TEST_F(Import, TellsWhatIsDoneWithoutAWord) {
+TEST_F(Import, ReportsWhatIsDoneWithoutAWord) {
   const auto bus = report(
       "master: {node_id: 1, sync_period: 10000}\n"
       "arm: {node_id: 2, dcf: drive.eds, heartbeat_producer: 50}\n"
@@ -170,7 +170,7 @@ TEST_F(Import, ATaktFileThatSaysAllHasNothingUnasked) {
   EXPECT_THAT(bus.unasked, testing::IsEmpty());
 }
 
-TEST_F(Import, TellsWhereDefaultsWouldHaveWon) {
+TEST_F(Import, ReportsWhereDefaultsWouldHaveWon) {
   const auto bus = report(
       "master: {sync_period: 10000}\n"
       "defaults:\n"
@@ -187,7 +187,7 @@ TEST_F(Import, TellsWhereDefaultsWouldHaveWon) {
   EXPECT_EQ(key(bus, "nodes.arm.boot_timeout_ms").fate, KeyFate::used);
 }
 
-TEST_F(Import, AnIndexWithout0xIsToldWithTheObjectThatWasMeant) {
+TEST_F(Import, AnIndexWithout0xIsReportedWithTheObjectThatWasMeant) {
   const auto bus = report(
       "arm: {node_id: 2, dcf: drive.eds, sdo: [{index: 6083, value: 1}], tpdo: {1: {mapping: "
       "[{index: 6041}]}}}\n");
@@ -255,7 +255,7 @@ TEST_F(Import, NamesEveryKeyAsUsedOrIgnored) {
   EXPECT_EQ(bus.count(KeyFate::suspicious) + bus.count(KeyFate::wrong), 0u);
 }
 
-TEST_F(Import, TellsAnInterpolationPeriodThatIsNotTheCycle) {
+TEST_F(Import, ReportsAnInterpolationPeriodThatIsNotTheCycle) {
   const auto bus = report(
       "master: {sync_period: 10000}\n"
       "arm:\n"
@@ -340,8 +340,8 @@ TEST_F(Import, BusFilesOfTheWildAreReportedWhole) {
     const auto bus = import_report(entry.path() / "bus.yml");
     EXPECT_GT(bus.count(KeyFate::used), 3u) << entry.path();
     for (const ImportedKey& one : bus.keys) {
-      const bool told = one.fate == KeyFate::used || !one.why.empty();
-      EXPECT_TRUE(told) << entry.path() << one.path;
+      const bool reported = one.fate == KeyFate::used || !one.why.empty();
+      EXPECT_TRUE(reported) << entry.path() << one.path;
     }
     const bool has_its_eds = entry.path().filename() != "cia402_multichannel_system";
     EXPECT_EQ(bus.usable, has_its_eds) << entry.path();

@@ -119,7 +119,7 @@ TEST_F(Nodelist, WithoutAManagerTheMasterHasTheHighestFreeId) {
   EXPECT_NE(std::ranges::count(import(all).report.others, "no-free-id", &Finding::rule), 0);
 }
 
-TEST_F(Nodelist, AWrongCountAndTwoEqualNamesAreTold) {
+TEST_F(Nodelist, AWrongCountAndTwoEqualNamesAreReported) {
   const auto imported = import(
       "[TOPOLOGY]\nNodes=7\nNode5Present=1\nNode5Name=io\nNode5DCFName=io.dcf\n"
       "Node6Present=1\nNode6Name=IO\nNode6DCFName=io.dcf\n");

@@ -136,7 +136,7 @@ TEST_F(Trap, AnOrderedStopHasTheTimeThatASlowCycleNeeds) {
             std::chrono::seconds{3});
 }
 
-TEST_F(Trap, AQuotedFalseIsFalseAndTold) {
+TEST_F(Trap, AQuotedFalseIsFalseAndReported) {
   const auto network = load("tpdo: {1: {enabled: \"false\"}}");
 
   ASSERT_EQ(errors(network), "");
@@ -170,13 +170,13 @@ TEST_F(Trap, TwoNodesOfOneIdAndOneCobIdTwiceAreErrors) {
          "b: {node_id: 6, dcf: drive.eds, tpdo: {1: {cob_id: 0x190, transmission: 1}}}\n"
          "c: {node_id: 6, dcf: drive.eds}\n";
 
-  const std::string told = errors(load_network(folder_ / "two.yml"));
+  const std::string reported = errors(load_network(folder_ / "two.yml"));
 
-  EXPECT_THAT(told, HasSubstr("0x190"));
-  EXPECT_THAT(told, HasSubstr("node id 6"));
+  EXPECT_THAT(reported, HasSubstr("0x190"));
+  EXPECT_THAT(reported, HasSubstr("node id 6"));
 }
 
-TEST_F(Trap, AnObjectWrittenTwiceIsToldAndWrittenTwiceInThisOrder) {
+TEST_F(Trap, AnObjectWrittenTwiceIsReportedAndWrittenTwiceInThisOrder) {
   const auto network = load("sdo: [{index: 0x6040, value: 0x80}, {index: 0x6040, value: 6}]");
 
   EXPECT_EQ(errors(network), "");

@@ -44,7 +44,7 @@ TEST_F(DeviceFolder, PassesOverAFolderThatIsShut) {
   EXPECT_FALSE(files.find(1, drive).path.empty());
 }
 
-TEST_F(DeviceFolder, TellsThatItIsShutItself) {
+TEST_F(DeviceFolder, ReportsThatItIsShutItself) {
   files.add_folder(folder / "shut", findings);
 
   ASSERT_EQ(findings.size(), 1U);

@@ -186,7 +186,7 @@ TEST(IncompleteRecording, TheMasterGetsAnIdThatNoDeviceHas) {
   EXPECT_THAT(network.text, HasSubstr("    node_id: 127\n"));
 }
 
-TEST(IncompleteRecording, AFileForANodeThatIsNotThereIsTold) {
+TEST(IncompleteRecording, AFileForANodeThatIsNotThereIsReported) {
   DeviceFiles files;
   Findings findings;
   ASSERT_TRUE(files.assign(9, TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds", findings));

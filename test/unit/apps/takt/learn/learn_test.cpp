@@ -266,14 +266,14 @@ std::string counter_of(unsigned node, const std::string& overflow) {
          "#6019100000000000\n";
 }
 
-TEST(Learn, ASyncWithoutCounterHasNoneWhateverADeviceWasTold) {
+TEST(Learn, ASyncWithoutCounterHasNoneWhateverADeviceWasReported) {
   const LearnedNetwork network = learned(counter_of(4, "0A") + syncs({"", "", "", "", ""}));
 
   EXPECT_THAT(network.text, HasSubstr("  sync_period: 5000\n"));
   EXPECT_THAT(network.text, Not(HasSubstr("sync_overflow")));
 }
 
-TEST(Learn, TheCounterTurnsOverWhereMostDevicesWereToldOfThoseItReached) {
+TEST(Learn, TheCounterTurnsOverWhereMostDevicesWereReportedOfThoseItReached) {
   const LearnedNetwork network = learned(
       counter_of(4, "0A") + counter_of(5, "0A") + counter_of(6, "F0") + counter_of(7, "02") +
       counter_of(8, "02") + counter_of(9, "02") + syncs({"01", "02", "03", "04", "05"}));

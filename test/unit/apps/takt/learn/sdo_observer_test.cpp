@@ -168,7 +168,7 @@ std::optional<SdoTransfer> block_download(int segments, int lost) {
   return sdo.answer(answered({0xA1, 0, 0, 0, 0, 0, 0, 0}));
 }
 
-TEST(SdoObserver, TellsABlockThatIsTooLongFromOneWithGaps) {
+TEST(SdoObserver, ReportsABlockThatIsTooLongFromOneWithGaps) {
   const auto whole = block_download(500, 0);
   const auto too_long = block_download(600, 0);  // 4200 bytes
   const auto in_parts = block_download(500, 3);

@@ -99,7 +99,7 @@ TEST(BusScan, KeepsANodeThatOnlySendsHeartbeats) {
   EXPECT_FALSE(scan.nodes().at(10).answers);
 }
 
-TEST(BusScan, LeavesANodeThatFallsSilentWithWhatItHasTold) {
+TEST(BusScan, LeavesANodeThatFallsSilentWithWhatItHasReported) {
   Bus bus;
   bus.slave = [](unsigned node, const Bytes& request) -> std::optional<Bytes> {
     if (node != 127 || request[1] != 0x00) return {};

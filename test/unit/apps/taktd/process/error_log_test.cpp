@@ -57,7 +57,7 @@ TEST(ErrorLog, SaysEachSentenceWithTheTimeOfDayAndItsWeight) {
 }
 
 /// The test would hang if a writer waited, because the pipe is full long before the last message.
-TEST(ErrorLog, WaitsForNobodyAndTellsHowMuchWasLost) {
+TEST(ErrorLog, WaitsForNobodyAndReportsHowMuchWasLost) {
   Pipe pipe = make_pipe();
   ErrorLog log{std::move(pipe.writer)};
   const std::string sentence(1000, 'x');
@@ -72,7 +72,7 @@ TEST(ErrorLog, WaitsForNobodyAndTellsHowMuchWasLost) {
   EXPECT_THAT(text, HasSubstr(" lines are lost here\n"));
 }
 
-TEST(ErrorLog, TellsOnceThatItHasNoThreadWhenItHasOne) {
+TEST(ErrorLog, ReportsOnceThatItHasNoThreadWhenItHasOne) {
   Pipe pipe = make_pipe();
   bool possible = false;
   ErrorLog log{std::move(pipe.writer), [&](std::function<void()> body) {
@@ -86,9 +86,9 @@ TEST(ErrorLog, TellsOnceThatItHasNoThreadWhenItHasOne) {
   log.say(Weight::note, "three");
 
   const std::string text = read_until(pipe.reader, "three\n");
-  const std::size_t told = text.find("no thread can be created for stderr");
-  EXPECT_NE(told, std::string::npos) << text;
-  EXPECT_EQ(text.find("no thread can be created", told + 1), std::string::npos) << text;
+  const std::size_t reported = text.find("no thread can be created for stderr");
+  EXPECT_NE(reported, std::string::npos) << text;
+  EXPECT_EQ(text.find("no thread can be created", reported + 1), std::string::npos) << text;
 }
 
 TEST(ErrorLog, SaysItsSentencesWhereNoThreadCanEverBeCreated) {

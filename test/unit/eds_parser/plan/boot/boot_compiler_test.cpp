@@ -31,10 +31,10 @@ TEST(BootCompiler, TextInQuotesIsTextForAStringAndANumberForTheRest) {
       part(net, "write if differs 2008:00 0x3231", 2),
       ElementsAre("write if differs 2008:00 0x3231", "write if differs 6081:00 0x00000010"));
   EXPECT_THAT(
-      net.said("quoted-number"),
+      net.declared("quoted-number"),
       HasSubstr("6081:00 Profile velocity (UNSIGNED32) gets the number in the quotes, 0x10"));
-  EXPECT_THAT(wrong.said("out-of-range"), HasSubstr("takes a number"));
-  EXPECT_THAT(plain.said("out-of-range"), HasSubstr("takes text in quotes"));
+  EXPECT_THAT(wrong.declared("out-of-range"), HasSubstr("takes a number"));
+  EXPECT_THAT(plain.declared("out-of-range"), HasSubstr("takes text in quotes"));
 }
 
 TEST(BootCompiler, ANumberThatARealCannotHoldIsAnError) {
@@ -45,7 +45,8 @@ TEST(BootCompiler, ANumberThatARealCannotHoldIsAnError) {
   const auto wrong = compile(arm("sdo: [{index: 0x2008, value: -1.0e+39}]"), eds);
 
   EXPECT_THAT(net.complaints(), IsEmpty());
-  EXPECT_THAT(wrong.said("out-of-range"), HasSubstr("2008:00 Gain (REAL32) holds at most 3.4e38"));
+  EXPECT_THAT(wrong.declared("out-of-range"),
+              HasSubstr("2008:00 Gain (REAL32) holds at most 3.4e38"));
 }
 
 TEST(BootCompiler, WholeBootOfATinyDriveInOrder) {
@@ -158,10 +159,10 @@ TEST(BootCompiler, AValueOutsideTheLimitsOfTheEdsIsAWarningAndAWordInThePlan) {
       compile(arm("sdo: [{index: 0x6081, value: 500}], tpdo: {1: {transmission: 254}}"), eds);
 
   EXPECT_THAT(net.complaints(), ElementsAre("2:56 warning [limits]", "2:70 warning [limits]"));
-  EXPECT_THAT(net.said("limits"),
+  EXPECT_THAT(net.declared("limits"),
               HasSubstr("`sdo` of node `arm`: 6081:00 Profile velocity = 500 is "
                         "outside the limits 2..240 of tiny.eds"));
-  EXPECT_THAT(net.said("limits"), HasSubstr("1800:02 type = 254 is outside the limits 2..240"));
+  EXPECT_THAT(net.declared("limits"), HasSubstr("1800:02 type = 254 is outside the limits 2..240"));
   EXPECT_THAT(step_at(net, "write if differs 6081:00 0x000001F4").purpose,
               HasSubstr("outside the limits 2..240 of the device file"));
 }
@@ -173,7 +174,7 @@ TEST(BootCompiler, ResetPoliciesAreHonoured) {
             NmtCommand::reset_node);
   EXPECT_EQ(steps(compile(arm("reset: none")))[0], "probe 1000:00");
   EXPECT_EQ(steps(compile(arm("reset_communication: false")))[0], "await life");
-  EXPECT_THAT(compile(arm("reset: none, reset_communication: true")).said("duplicate-key"),
+  EXPECT_THAT(compile(arm("reset: none, reset_communication: true")).declared("duplicate-key"),
               HasSubstr("keep one"));
 }
 
@@ -191,7 +192,7 @@ TEST(BootCompiler, RestoringWritesLoadAndResets) {
 
   EXPECT_THAT(part(net, "write 1011:02 0x64616F6C", 4),
               ElementsAre("write 1011:02 0x64616F6C", "NMT", "await boot-up", "probe 1000:00"));
-  EXPECT_THAT(compile(arm("restore_configuration: 1")).said("no-such-object"),
+  EXPECT_THAT(compile(arm("restore_configuration: 1")).declared("no-such-object"),
               HasSubstr("1011:01"));
 }
 
@@ -246,10 +247,10 @@ TEST(BootCompiler, InterpolationPeriodsAreExactOrWarnedOf) {
   EXPECT_THAT(steps(fine), testing::Contains("write if differs 60C2:02 0xFB"));
 
   const auto odd = compile("master: {sync_period: 3001}\narm: {node_id: 5, dcf: x}\n");
-  EXPECT_THAT(odd.said("interpolation-period"), HasSubstr("can't express"));
+  EXPECT_THAT(odd.declared("interpolation-period"), HasSubstr("can't express"));
 
   const auto own = compile(arm("sdo: [{index: 0x60C2, sub_index: 1, value: 50}]"));
-  EXPECT_THAT(own.said("interpolation-period"), HasSubstr("sets 50000 us"));
+  EXPECT_THAT(own.declared("interpolation-period"), HasSubstr("sets 50000 us"));
 }
 
 TEST(BootCompiler, ValuesOfSdoAreCheckedAgainstTheEds) {

@@ -31,8 +31,8 @@ TEST(BootOfDcf, AValueOfADcfOutsideItsLimitsIsAWarningThatNamesItsLine) {
 
   const auto net = compile(arm(), dcf, "tiny.dcf");
 
-  EXPECT_THAT(net.said("limits"), HasSubstr("ParameterValue in line "));
-  EXPECT_THAT(net.said("limits"),
+  EXPECT_THAT(net.declared("limits"), HasSubstr("ParameterValue in line "));
+  EXPECT_THAT(net.declared("limits"),
               HasSubstr("6081:00 Profile velocity = 7 is outside the limits ..5"));
 }
 
@@ -65,7 +65,7 @@ TEST(BootOfDcf, AnInterpolationPeriodOfTheNetworkFileIsReadWithTheExponentOfTheD
       "arm: {node_id: 5, dcf: x, sdo: [{index: 0x60C2, sub_index: 1, value: 20}]}\n";
   const auto net = compile(yaml, tiny_dcf({{"[60C2sub2]", "-4"}}), "tiny.dcf");
 
-  EXPECT_THAT(net.said("interpolation-period"), IsEmpty());
+  EXPECT_THAT(net.declared("interpolation-period"), IsEmpty());
   EXPECT_THAT(steps(net), testing::Contains("write if differs 60C2:01 0x14"));
   EXPECT_THAT(steps(net), testing::Contains("write if differs 60C2:02 0xFC"));
 }
@@ -81,12 +81,12 @@ TEST(BootOfDcf, AConsumerEntryOfADcfThatWatchesAnotherNodeStays) {
   const auto full = compile(arm(), dcf, "tiny.dcf");
   EXPECT_THAT(steps(full), testing::Contains("write if differs 1016:01 0x000300C8"));
   EXPECT_THAT(steps(full), testing::Not(testing::Contains(HasSubstr("0x007F012C"))));
-  EXPECT_THAT(full.said("heartbeat-consumer"), HasSubstr("all entries of 0x1016"));
+  EXPECT_THAT(full.declared("heartbeat-consumer"), HasSubstr("all entries of 0x1016"));
 
   const auto room =
       compile(arm(), dcf + test::entry("1016sub2", "entry", 7, "rw", "0"), "tiny.dcf");
   EXPECT_THAT(steps(room), testing::Contains("write if differs 1016:02 0x007F012C"));
-  EXPECT_THAT(room.said("heartbeat-consumer"), IsEmpty());
+  EXPECT_THAT(room.declared("heartbeat-consumer"), IsEmpty());
 }
 
 TEST(BootOfDcf, APdoThatItSwitchesOffIsSwitchedOffInTheDevice) {

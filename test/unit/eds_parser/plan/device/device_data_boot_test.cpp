@@ -43,16 +43,16 @@ TEST(DeviceDataBoot, WarnsOfAResetOfTheWholeElmoDrive) {
       compile_device_file(node + "communication}\n", "takt_drive402.eds");
 
   EXPECT_EQ(whole.plan.nodes.at(0).device_data, "Elmo drives");
-  EXPECT_NE(whole.said("device-data").find("pulls the CAN lines down"), std::string::npos);
+  EXPECT_NE(whole.declared("device-data").find("pulls the CAN lines down"), std::string::npos);
   EXPECT_EQ(whole.plan.nodes.at(0).boot_plan.steps.at(0).command, NmtCommand::reset_node);
-  EXPECT_EQ(only_communication.said("device-data"), "");
+  EXPECT_EQ(only_communication.declared("device-data"), "");
 }
 
 TEST(DeviceDataBoot, WarnsOfAResetThatASchunkModuleDoesNotTake) {
   const std::string node = "arm: {node_id: 4, dcf: x, device: schunk, reset: ";
   const auto communication = compile_device_file(node + "communication}\n", "takt_drive402.eds");
-  EXPECT_NE(communication.said("device-data").find("whole application"), std::string::npos);
-  EXPECT_EQ(compile_device_file(node + "node}\n", "takt_drive402.eds").said("device-data"), "");
+  EXPECT_NE(communication.declared("device-data").find("whole application"), std::string::npos);
+  EXPECT_EQ(compile_device_file(node + "node}\n", "takt_drive402.eds").declared("device-data"), "");
 }
 
 }  // namespace

@@ -14,8 +14,9 @@ TEST(DeviceDataFirmware, RefusesALenzeBeforeFirmware16AsProducerOfItsOwnSync) {
       "tpdo: {1: {transmission: 1}}, sdo: [{index: 0x1005, value: 0x40000080}], ";
 
   const auto old = lenze8400(producer + "firmware: \"15.02\"");
-  EXPECT_NE(old.said("device-data").find("firmware 15.02.00 does not send the TPDO in this case"),
-            std::string::npos);
+  EXPECT_NE(
+      old.declared("device-data").find("firmware 15.02.00 does not send the TPDO in this case"),
+      std::string::npos);
   EXPECT_TRUE(has_error(old.findings));
   EXPECT_TRUE(
       has_error(lenze8400(producer + "sim: {model: lenze8400, firmware: \"15.99\"}").findings));
@@ -34,12 +35,12 @@ TEST(DeviceDataFirmware, RefusesALenzeThatSendsItsSyncOnAnotherIdentifierThanItR
         "firmware: \"16\", tpdo: {1: {transmission: " + type +
         "}}, sdo: [{index: 0x1005, value: 0x40000080}, {index: 0x5E8F, value: " + code + "}]");
   };
-  const std::string said = producer("0x81").said("device-data");
-  EXPECT_NE(said.find("this node makes the SYNC on 0x081, but receives it on 0x080"),
+  const std::string declared = producer("0x81").declared("device-data");
+  EXPECT_NE(declared.find("this node makes the SYNC on 0x081, but receives it on 0x080"),
             std::string::npos)
-      << said;
-  EXPECT_EQ(producer("0x80").said("device-data"), "");
-  EXPECT_EQ(producer("0x81", "254").said("device-data"), "") << "needs no SYNC";
+      << declared;
+  EXPECT_EQ(producer("0x80").declared("device-data"), "");
+  EXPECT_EQ(producer("0x81", "254").declared("device-data"), "") << "needs no SYNC";
 }
 
 TEST(DeviceDataFirmware, LeavesOutObjectsThatAnOlderFirmwareLacks) {

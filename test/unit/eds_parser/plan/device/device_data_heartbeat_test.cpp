@@ -59,7 +59,7 @@ TEST(DeviceDataHeartbeat, OfTheDeviceIsPlannedAsItKeepsIt) {
   EXPECT_EQ(net.plan.nodes[0].heartbeat_period, 100ms);
   EXPECT_EQ(net.plan.nodes[0].heartbeat_timeout, 300ms);
   EXPECT_THAT(
-      net.said("device-data"),
+      net.declared("device-data"),
       HasSubstr("`heartbeat_producer` of node `arm` is 104 ms; Lenze 9400 counts in steps of 5 ms "
                 "and rounds this time down to 100 ms: the times of 0x1016 and 0x1017"));
   EXPECT_FALSE(has_error(net.findings));
@@ -68,27 +68,28 @@ TEST(DeviceDataHeartbeat, OfTheDeviceIsPlannedAsItKeepsIt) {
 TEST(DeviceDataHeartbeat, ThatTheDeviceTakesForNoneIsRefused) {
   const auto net = drive(", heartbeat_producer: 4");
 
-  EXPECT_THAT(net.said("device-data"), HasSubstr("is 4 ms; Lenze 9400 counts in steps of 5 ms and "
-                                                 "rounds this time down to 0, which means off"));
+  EXPECT_THAT(net.declared("device-data"),
+              HasSubstr("is 4 ms; Lenze 9400 counts in steps of 5 ms and "
+                        "rounds this time down to 0, which means off"));
   EXPECT_TRUE(has_error(net.findings));
-  EXPECT_EQ(drive(", heartbeat_producer: 0").said("device-data"), "");
+  EXPECT_EQ(drive(", heartbeat_producer: 0").declared("device-data"), "");
 }
 
 TEST(DeviceDataHeartbeat, OfAnSdoEntryIsJudgedToo) {
-  const auto said = [](const std::string& object, const std::string& value) {
-    return drive(", sdo: [{" + object + ", value: " + value + "}]").said("device-data");
+  const auto declared = [](const std::string& object, const std::string& value) {
+    return drive(", sdo: [{" + object + ", value: " + value + "}]").declared("device-data");
   };
 
-  EXPECT_THAT(said("index: 0x1016, sub_index: 1", "0x00090067"),
+  EXPECT_THAT(declared("index: 0x1016, sub_index: 1", "0x00090067"),
               HasSubstr("1016:01 is 103 ms; Lenze 9400 counts in steps of 5 ms and rounds this "
                         "time down to 100 ms"));
-  EXPECT_THAT(said("index: 0x1017", "7"), HasSubstr("1017:00 is 7 ms"));
-  EXPECT_EQ(said("index: 0x1016, sub_index: 1", "0x00090064"), "");
-  EXPECT_EQ(said("index: 0x2000", "7"), "");
+  EXPECT_THAT(declared("index: 0x1017", "7"), HasSubstr("1017:00 is 7 ms"));
+  EXPECT_EQ(declared("index: 0x1016, sub_index: 1", "0x00090064"), "");
+  EXPECT_EQ(declared("index: 0x2000", "7"), "");
 }
 
 TEST(DeviceDataHeartbeat, OfALenze8400IsRoundedToo) {
-  EXPECT_THAT(test::lenze8400("heartbeat_producer: 107").said("device-data"),
+  EXPECT_THAT(test::lenze8400("heartbeat_producer: 107").declared("device-data"),
               HasSubstr("rounds this time down to 105 ms"));
 }
 

@@ -57,31 +57,31 @@ TEST(DeviceDataIdentity, OfBeckhoffIsByTheProductCodesOfItsManual) {
 }
 
 TEST(DeviceDataIdentity, LimitsTheNodeIdToThatOfItsSwitches) {
-  const auto said = [](const std::string& id, const std::string& code) {
+  const auto declared = [](const std::string& id, const std::string& code) {
     return compile_device_file(beckhoff("node_id: " + id + ", product_code: " + code),
                                "takt_drive402.eds")
-        .said("device-data");
+        .declared("device-data");
   };
 
-  EXPECT_EQ(said("63", "0x11400"), "");
-  EXPECT_THAT(said("64", "0x11400"),
+  EXPECT_EQ(declared("63", "0x11400"), "");
+  EXPECT_THAT(declared("64", "0x11400"),
               HasSubstr("node `terminals` can't have node id 64 as Beckhoff bus terminals, which "
                         "allows only 1..63: its switches set no other address (beckhoff_io.yaml:"));
-  EXPECT_EQ(said("99", "0x22301"), "");
-  EXPECT_THAT(said("100", "0x22301"), HasSubstr("only 1..99: its two rotary switches"));
+  EXPECT_EQ(declared("99", "0x22301"), "");
+  EXPECT_THAT(declared("100", "0x22301"), HasSubstr("only 1..99: its two rotary switches"));
 }
 
 TEST(DeviceDataIdentity, OfABootRomHasOneNodeId) {
-  const auto said = [](const std::string& id) {
+  const auto declared = [](const std::string& id) {
     return compile_device_file(
                "rom: {dcf: x, boot: false, device: nxp_lpc_boot, node_id: " + id + "}\n",
                "takt_drive402.eds")
-        .said("device-data");
+        .declared("device-data");
   };
 
-  EXPECT_EQ(said("125"), "");
+  EXPECT_EQ(declared("125"), "");
   EXPECT_THAT(
-      said("5"),
+      declared("5"),
       HasSubstr("can't have node id 5 as NXP LPC boot ROM, which allows only 125: the boot ROM"));
 }
 
@@ -100,7 +100,7 @@ TEST(DeviceDataIdentity, OfNodeIdsIsANoteOfThePlan) {
       compile_with_entry("name: Box\nmatch: {vendor_id: 0xABCD}\nnode_ids: {range: [3, 9]}\n",
                          "arm: {node_id: 5, dcf: x}\n");
 
-  EXPECT_EQ(net.said("device-data"), "");
+  EXPECT_EQ(net.declared("device-data"), "");
   EXPECT_THAT(net.plan.nodes.at(0).device_notes, ElementsAre("node ids 3..9"));
 }
 

@@ -26,38 +26,38 @@ test::Compiled controller(const std::string& rest) {
 }
 
 TEST(DeviceDataMapping, OfALenzeControllerMayBeReduced) {
-  EXPECT_EQ(controller("").said("device-data"), "");
-  EXPECT_EQ(controller(", tpdo: {1: {mapping: [{index: 0x6041}]}}").said("device-data"), "");
-  EXPECT_EQ(controller(", tpdo: {2: {mapping: [{index: 0x606C}]}}").said("device-data"), "");
+  EXPECT_EQ(controller("").declared("device-data"), "");
+  EXPECT_EQ(controller(", tpdo: {1: {mapping: [{index: 0x6041}]}}").declared("device-data"), "");
+  EXPECT_EQ(controller(", tpdo: {2: {mapping: [{index: 0x606C}]}}").declared("device-data"), "");
 }
 
 TEST(DeviceDataMapping, OfALenzeControllerTakesNoMoreObjectsThanByDefault) {
   const auto net = controller(", tpdo: {2: {mapping: [{index: 0x6064}, {index: 0x6061}]}}");
 
-  EXPECT_THAT(net.said("device-data"),
+  EXPECT_THAT(net.declared("device-data"),
               HasSubstr("TPDO2 of node `plc` can't map 2 objects on Lenze PLC Designer, CanDevice, "
                         "only the 1 of its default mapping: the master can't add"));
   EXPECT_THAT(net.complaints(), ElementsAre("2:75 error [device-data]"));
   EXPECT_THAT(
       controller(", rpdo: {1: {mapping: [{index: 0x6040}, {index: 0x6060}, {index: 0x607A}]}}")
-          .said("device-data"),
+          .declared("device-data"),
       HasSubstr("RPDO1 of node `plc` can't map 3 objects"));
 }
 
 TEST(DeviceDataMapping, OfALenzeControllerIsUsedWithoutGaps) {
   const std::string third = "3: {mapping: [{index: 0x606C}]}";
 
-  EXPECT_THAT(controller(", tpdo: {" + third + "}").said("device-data"),
+  EXPECT_THAT(controller(", tpdo: {" + third + "}").declared("device-data"),
               HasSubstr("TPDO3 of node `plc` can't be used without TPDO2 on Lenze PLC Designer"));
-  EXPECT_EQ(
-      controller(", tpdo: {2: {mapping: [{index: 0x6064}]}, " + third + "}").said("device-data"),
-      "");
+  EXPECT_EQ(controller(", tpdo: {2: {mapping: [{index: 0x6064}]}, " + third + "}")
+                .declared("device-data"),
+            "");
   EXPECT_THAT(controller(", tpdo: {1: {enabled: false}, 2: {mapping: [{index: 0x6064}]}}")
-                  .said("device-data"),
+                  .declared("device-data"),
               HasSubstr("TPDO2 of node `plc` can't be used without TPDO1"));
 }
 
-TEST(DeviceDataMapping, OfALenzeControllerIsSaidByThePlan) {
+TEST(DeviceDataMapping, OfALenzeControllerIsDeclaredByThePlan) {
   EXPECT_THAT(
       controller("").plan.nodes.at(0).device_notes,
       ElementsAre(

@@ -18,12 +18,12 @@ TEST(DeviceDataPdos, RefusesTransmissionTypesThatADrv28Lacks) {
 
     EXPECT_FALSE(net.complaints().empty()) << type;
   }
-  const std::string said = drv28("tpdo: {2: {transmission: 0}}").said("device-data");
-  EXPECT_NE(said.find("TPDO2 of node `pump` can't have transmission type 0 on Astraada DRV-28, "
-                      "which allows only 1..240, 254, 255"),
+  const std::string declared = drv28("tpdo: {2: {transmission: 0}}").declared("device-data");
+  EXPECT_NE(declared.find("TPDO2 of node `pump` can't have transmission type 0 on Astraada DRV-28, "
+                          "which allows only 1..240, 254, 255"),
             std::string::npos)
-      << said;
-  EXPECT_NE(said.find("astraada_drv28.yaml:"), std::string::npos);
+      << declared;
+  EXPECT_NE(declared.find("astraada_drv28.yaml:"), std::string::npos);
 }
 
 TEST(DeviceDataPdos, RefusesAnotherTypeOrATimerForTheParameterChannelOfADrv28) {
@@ -51,7 +51,7 @@ TEST(DeviceDataPdos, CountsInhibitTimesOfADrv28InMilliseconds) {
 }
 
 TEST(DeviceDataPdos, RefusesInhibitTimesOfADrv28BelowItsLeastOrBetweenMilliseconds) {
-  EXPECT_EQ(drv28("tpdo: {3: {inhibit_time: 490}}").said("device-data").substr(0, 48),
+  EXPECT_EQ(drv28("tpdo: {3: {inhibit_time: 490}}").declared("device-data").substr(0, 48),
             "the inhibit time of TPDO3 of node `pump` is 49 m");
   EXPECT_EQ(drv28("tpdo: {3: {inhibit_time: 500}}").complaints(), Complaints{});
   EXPECT_EQ(drv28("tpdo: {3: {inhibit_time: 1005}}").complaints(),
@@ -69,12 +69,13 @@ TEST(DeviceDataPdos, RefusesReservedTypesOfALenze) {
 TEST(DeviceDataPdos, RefusesTypesThatAreWrittenBySdo) {
   const std::string sdo = "sdo: [{index: 0x1801, sub_index: 2, value: ";
   for (const char* type : {"0", "245", "252", "253"}) {
-    const std::string said = drv28(sdo + type + "}]").said("device-data");
-    EXPECT_NE(said.find("can't have transmission type " + std::string{type}), std::string::npos);
-    EXPECT_NE(drv28(sdo + type + "}], tpdo: {2: {enabled: false}}").said("device-data"), "");
+    const std::string declared = drv28(sdo + type + "}]").declared("device-data");
+    EXPECT_NE(declared.find("can't have transmission type " + std::string{type}),
+              std::string::npos);
+    EXPECT_NE(drv28(sdo + type + "}], tpdo: {2: {enabled: false}}").declared("device-data"), "");
   }
-  EXPECT_EQ(drv28(sdo + "254}]").said("device-data"), "");
-  const std::string reserved = lenze8400(sdo + "245}]").said("device-data");
+  EXPECT_EQ(drv28(sdo + "254}]").declared("device-data"), "");
+  const std::string reserved = lenze8400(sdo + "245}]").declared("device-data");
   EXPECT_NE(reserved.find("types 241 to 251 are reserved"), std::string::npos);
   EXPECT_FALSE(has_error(lenze8400(sdo + "252}]").findings));
 }
@@ -82,10 +83,10 @@ TEST(DeviceDataPdos, RefusesTypesThatAreWrittenBySdo) {
 TEST(DeviceDataPdos, RefusesToPollADrv28) {
   for (const char* poll : {"poll_ms: 100", "poll_syncs: 5"}) {
     const auto net = drv28(std::string{"tpdo: {2: {transmission: 254, "} + poll + "}}");
-    EXPECT_NE(net.said("device-data").find("Astraada DRV-28 answers no remote request"),
+    EXPECT_NE(net.declared("device-data").find("Astraada DRV-28 answers no remote request"),
               std::string::npos);
   }
-  EXPECT_EQ(lenze8400("tpdo: {1: {transmission: 253, poll_ms: 100}}").said("device-data"), "");
+  EXPECT_EQ(lenze8400("tpdo: {1: {transmission: 253, poll_ms: 100}}").declared("device-data"), "");
 }
 
 TEST(DeviceDataPdos, KnowsTheBufferStateOfATechnosoftDriveAndItsInhibitTime) {
@@ -102,13 +103,13 @@ TEST(DeviceDataPdos, KnowsTheBufferStateOfATechnosoftDriveAndItsInhibitTime) {
 
 TEST(DeviceDataPdos, ATpdoOfADrv28ThatOnlyAnswersAnRpdoWhichIsOffIsAWarning) {
   const auto net = drv28("tpdo: {2: {transmission: 255}}, rpdo: {2: {enabled: false}}");
-  const std::string said = net.said("device-data");
+  const std::string declared = net.declared("device-data");
   EXPECT_NE(
-      said.find("TPDO2 of node `pump` of transmission type 255 is sent only as the answer to "
-                "RPDO2, which is off, so the device never sends it. Switch RPDO2 on, or write "
-                "`transmission: 254` (on change)"),
+      declared.find("TPDO2 of node `pump` of transmission type 255 is sent only as the answer to "
+                    "RPDO2, which is off, so the device never sends it. Switch RPDO2 on, or write "
+                    "`transmission: 254` (on change)"),
       std::string::npos)
-      << said;
+      << declared;
 }
 
 TEST(DeviceDataPdos, ATpdoOfADrv28ThatIsSentOtherwiseNeedsNoRpdo) {

@@ -102,7 +102,7 @@ TEST(DeviceData, IsChosenByNameWhereTheNetworkFileNamesIt) {
   EXPECT_EQ(none.plan.nodes.at(0).device_data, "");
   EXPECT_EQ(other.plan.nodes.at(0).device_data, "Lenze 8400");
   EXPECT_EQ(wrong.complaints(), Complaints{"1:36 error [unknown-value]"});
-  EXPECT_NE(wrong.said("unknown-value").find("did you mean `lenze8400`"), std::string::npos);
+  EXPECT_NE(wrong.declared("unknown-value").find("did you mean `lenze8400`"), std::string::npos);
 }
 
 TEST(DeviceData, IsNotChosenForAnotherProductOrRevision) {
@@ -122,7 +122,8 @@ TEST(DeviceData, OfAnUnknownIdentityIsChosenByNameAlone) {
 
   EXPECT_EQ(unnamed.plan.nodes.at(0).device_data, "");
   EXPECT_EQ(named.plan.nodes.at(0).device_data, "Toshiba VF-S15");
-  EXPECT_NE(named.said("device-data").find("types 241 to 251 have no function"), std::string::npos);
+  EXPECT_NE(named.declared("device-data").find("types 241 to 251 have no function"),
+            std::string::npos);
 }
 
 TEST(DeviceData, SaysWhatADeltaDriveDoesWithoutSync) {
@@ -143,7 +144,7 @@ TEST(DeviceData, OfTheUserComesBeforeWhatWasShipped) {
 }
 
 TEST(DeviceData, IsNamedByThePlanOfEachDemo) {
-  for (const auto& [demo, said] :
+  for (const auto& [demo, declared] :
        {std::pair{"lenze8400", "device data: Lenze 8400 (lenze8400.yaml)"},
         std::pair{"beckhoff", "device data: Beckhoff bus terminals (beckhoff_io.yaml)"},
         std::pair{"plain301", "device data: Device of an older CiA 301 (plain301.yaml)"},
@@ -154,7 +155,7 @@ TEST(DeviceData, IsNamedByThePlanOfEachDemo) {
     }
     std::ostringstream text;
     print_plan_text(text, network.plan, {.node = {}, .realtime = {}, .lcm = {}});
-    EXPECT_NE(text.str().find(said), std::string::npos) << text.str();
+    EXPECT_NE(text.str().find(declared), std::string::npos) << text.str();
   }
 }
 

@@ -60,18 +60,18 @@ TEST(DeviceDataValues, ThatTheEdsDoesNotHaveAreLeftOutWithAWarning) {
       compile_with_entry(mine + "sdo: [{index: 0x2F00, value: 1, reason: quirk}]\n", arm(""));
 
   EXPECT_THAT(
-      net.said("device-data"),
+      net.declared("device-data"),
       HasSubstr("node `arm`: 2F00:00, which Mine requires takt to write, is not in tiny.eds: quirk "
                 "(my_drive.yaml:4, after page 7)"));
   EXPECT_TRUE(steps_of(net, {0x2F00, 0}).empty());
   EXPECT_FALSE(has_error(net.findings));
-  EXPECT_THAT(
-      compile_with_entry(mine + "sdo: [{index: 0x6064, value: 1}]\n", arm("")).said("device-data"),
-      HasSubstr("6064:00, which Mine requires takt to write, is read-only in tiny.eds"));
+  EXPECT_THAT(compile_with_entry(mine + "sdo: [{index: 0x6064, value: 1}]\n", arm(""))
+                  .declared("device-data"),
+              HasSubstr("6064:00, which Mine requires takt to write, is read-only in tiny.eds"));
 }
 
 TEST(DeviceDataValues, ThatDoNotFitTheirObjectAreAnError) {
-  EXPECT_THAT(with_value("0x12345").said("out-of-range"), HasSubstr("2000:00 Not mappable"));
+  EXPECT_THAT(with_value("0x12345").declared("out-of-range"), HasSubstr("2000:00 Not mappable"));
 }
 
 TEST(DeviceDataValues, AreANoteOfThePlan) {

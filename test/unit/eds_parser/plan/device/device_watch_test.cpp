@@ -53,7 +53,7 @@ TEST(DeviceWatch, LifeGuardingIsTheGuardTimeSoOften) {
   EXPECT_EQ(net.plan.nodes.at(0).life_guarding, 800ms);
 }
 
-TEST(DeviceWatch, ANodeThatIsOnlyWatchedAndHasNoHeartbeatIsSaidToGoUnnoticed) {
+TEST(DeviceWatch, ANodeThatIsOnlyWatchedAndHasNoHeartbeatIsDeclaredToGoUnnoticed) {
   const auto net = compile("nodes: {arm: {node_id: 5, dcf: x, boot: false}}\n");
 
   std::ostringstream text;

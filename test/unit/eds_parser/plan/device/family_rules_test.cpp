@@ -63,22 +63,22 @@ const Refusal refusals[] = {
 TEST(FamilyRules, RefuseWithTheReasonOfTheManual) {
   for (const Refusal& refusal : refusals) {
     const test::Compiled net = plan_of(refusal.eds, refusal.keys);
-    const std::string said = net.said("device-data");
+    const std::string declared = net.declared("device-data");
 
     EXPECT_TRUE(has_error(net.findings)) << refusal.keys;
-    EXPECT_THAT(said, HasSubstr(refusal.says)) << refusal.keys;
-    EXPECT_THAT(said, HasSubstr(refusal.reason)) << refusal.keys;
-    EXPECT_THAT(said, HasSubstr(std::string{refusal.eds} + ".yaml:")) << refusal.keys;
+    EXPECT_THAT(declared, HasSubstr(refusal.says)) << refusal.keys;
+    EXPECT_THAT(declared, HasSubstr(refusal.reason)) << refusal.keys;
+    EXPECT_THAT(declared, HasSubstr(std::string{refusal.eds} + ".yaml:")) << refusal.keys;
   }
 }
 
-TEST(FamilyRules, TellWhichTypesAreReserved) {
+TEST(FamilyRules, ReportWhichTypesAreReserved) {
   for (const char* eds : {"lenze8400", "beckhoff_io", "plain301", "astraada_drv28"}) {
     for (int type = 241; type <= 251; ++type) {
       const std::string keys = "tpdo: {2: {transmission: " + std::to_string(type) + "}}";
       const test::Compiled net = plan_of(eds, keys);
       EXPECT_TRUE(has_error(net.findings)) << eds << " " << type;
-      EXPECT_THAT(net.said("device-data"),
+      EXPECT_THAT(net.declared("device-data"),
                   HasSubstr("can't have transmission type " + std::to_string(type)))
           << eds;
     }
@@ -100,7 +100,7 @@ TEST(FamilyRules, TakeEachTypeThatAManualHas) {
 TEST(FamilyRules, AskForTheFirmwareOfALenzeThatMakesTheSync) {
   const std::string producer =
       "tpdo: {1: {transmission: 1}}, sdo: [{index: 0x1005, value: 0x40000080}]";
-  EXPECT_EQ(plan_of("lenze8400", producer).said("device-data"), "") << "the EDS tells: 16.00";
+  EXPECT_EQ(plan_of("lenze8400", producer).declared("device-data"), "") << "the EDS tells: 16.00";
   const test::Compiled newer = plan_of("lenze8400", producer + ", firmware: \"17.3\"");
   EXPECT_FALSE(has_error(newer.findings));
 }

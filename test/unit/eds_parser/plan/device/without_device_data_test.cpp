@@ -98,10 +98,10 @@ TEST(WithoutDeviceData, AFileWithoutDeviceTypeIsOfADriveByItsObjects) {
 
   EXPECT_TRUE(drive.plan.nodes.at(0).cia402);
   EXPECT_EQ(drive.devices.at(0).model, "drive402");
-  EXPECT_THAT(drive.said("profile"), testing::HasSubstr("has no value for 1000:00"));
+  EXPECT_THAT(drive.declared("profile"), testing::HasSubstr("has no value for 1000:00"));
   EXPECT_FALSE(stated.plan.nodes.at(0).cia402);
   EXPECT_FALSE(denied.plan.nodes.at(0).cia402);
-  EXPECT_EQ(denied.said("profile"), "");
+  EXPECT_EQ(denied.declared("profile"), "");
 }
 
 // A file from takt learn has the type UNSIGNED8 for the value it saw, so 253 means -3.
@@ -113,7 +113,7 @@ TEST(WithoutDeviceData, AnExponentOfUnsignedTypeHasASign) {
       ", sdo: [{index: 0x60C2, sub_index: 1, value: 20}, {index: 0x60C2, sub_index: 2, value: "
       "253}]";
 
-  EXPECT_THAT(compile(arm(sdo), eds).said("interpolation-period"),
+  EXPECT_THAT(compile(arm(sdo), eds).declared("interpolation-period"),
               testing::HasSubstr("sets 20000 us"));
 }
 

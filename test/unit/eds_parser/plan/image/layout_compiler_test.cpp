@@ -211,9 +211,9 @@ TEST(Fallback, BeginsAfterMillisecondsOrCyclesButNotBothAndNotBeforeThreeCycles)
   EXPECT_EQ(cycles("after: 0"), 0U) << "no limit";
   EXPECT_THAT(two_axes("  on_timeout: {after: 0}\n").complaints(),
               testing::Contains(HasSubstr("warning [no-time-to-live]")));
-  EXPECT_EQ(two_axes("  on_timeout: {after_cycles: 2}\n").said("short-time-to-live"),
+  EXPECT_EQ(two_axes("  on_timeout: {after_cycles: 2}\n").declared("short-time-to-live"),
             "commands last for 3 cycles at least: 3 is used instead of 2\n");
-  EXPECT_EQ(two_axes("  on_timeout: {after_cycles: 3}\n").said("short-time-to-live"), "");
+  EXPECT_EQ(two_axes("  on_timeout: {after_cycles: 3}\n").declared("short-time-to-live"), "");
   EXPECT_THAT(two_axes("  on_timeout: {after: 8, after_cycles: 2}\n").complaints(),
               testing::Contains(HasSubstr("error [duplicate-key]")));
 }
@@ -237,10 +237,10 @@ TEST(Fallback, ANodeThatIsNoDriveHoldsAfterTheSameTime) {
 
 TEST(Fallback, WhatANodeCanNotDoIsAnError) {
   const auto quick = two_axes("  profile: none\n  on_timeout: {fallback: quick_stop}\n");
-  EXPECT_THAT(quick.said("fallback"), HasSubstr("is not a CiA 402 drive"));
+  EXPECT_THAT(quick.declared("fallback"), HasSubstr("is not a CiA 402 drive"));
 
   const auto safe = two_axes("  on_timeout: {fallback: safe}\n");
-  EXPECT_THAT(safe.said("fallback"), HasSubstr("needs `safe_values"));
+  EXPECT_THAT(safe.declared("fallback"), HasSubstr("needs `safe_values"));
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ TEST(Limits, OfAnOffsetInAnotherUnitThanItsTargetHoldForEachAlone) {
           "      objects: [{index: 0x60B1, scale: 1, unit: rpm}]\n"
           "    limits: {velocity: 2}\n",
       tiny_eds() + offsets());
-  EXPECT_THAT(net.said("limits"), HasSubstr("are in rad/s and rpm: takt can't add them"));
+  EXPECT_THAT(net.declared("limits"), HasSubstr("are in rad/s and rpm: takt can't add them"));
   for (const OutputLimit& row : net.plan.limits.outputs) EXPECT_FALSE(row.offset || row.target);
 }
 

@@ -154,7 +154,7 @@ TEST(Limits, ThatMakeNoSenseAreErrorsWhereTheyStand) {
               ElementsAre("12:14 error [unknown-key]"));
   EXPECT_THAT(drive("    limits: {axes: {9: {step: 1}}}\n").complaints(),
               ElementsAre("12:21 error [out-of-range]"));
-  EXPECT_THAT(drive("    limits: {axes: {2: {step: 1}}}\n").said("limits"),
+  EXPECT_THAT(drive("    limits: {axes: {2: {step: 1}}}\n").declared("limits"),
               HasSubstr("carries a set-point of axis 2"));
   EXPECT_THAT(drive("    limits: {objects: [{index: 0x2003, min: 2, max: 1}]}\n").complaints(),
               ElementsAre("12:45 error [out-of-range]"));
@@ -166,19 +166,19 @@ TEST(Limits, ThatMakeNoSenseAreErrorsWhereTheyStand) {
 }
 
 TEST(Limits, OfWhatIsNotCommandedAreErrors) {
-  EXPECT_THAT(drive("    limits: {objects: [{index: 0x2003, max: 1}]}\n").said("limits"),
+  EXPECT_THAT(drive("    limits: {objects: [{index: 0x2003, max: 1}]}\n").declared("limits"),
               HasSubstr("no RPDO carries 2003:00"));
-  EXPECT_THAT(drive("    limits: {step: 1}\n", "{index: 0x2003}").said("limits"),
+  EXPECT_THAT(drive("    limits: {step: 1}\n", "{index: 0x2003}").declared("limits"),
               HasSubstr("no RPDO of node `arm` carries a set-point of a drive"));
 }
 
 TEST(Limits, WithoutAUnitAreErrors) {
   const Compiled net = drive("    limits: {position: [-1, 1]}\n", "{index: 0x607A}", "");
   EXPECT_THAT(net.complaints(), ElementsAre("8:24 error [limits]"));
-  EXPECT_THAT(net.said("limits"), HasSubstr("has no unit"));
+  EXPECT_THAT(net.declared("limits"), HasSubstr("has no unit"));
 }
 
-TEST(Limits, InAnotherUnitThanPositionsAreToldAndNotCompared) {
+TEST(Limits, InAnotherUnitThanPositionsAreReportedAndNotCompared) {
   const Compiled net =
       drive("    limits: {velocity: 3000}\n", "{index: 0x607A}",
             "    units: {position: {scale: 0.001, unit: rad}, velocity: {scale: 1, unit: rpm}}\n");
@@ -191,7 +191,7 @@ TEST(Limits, ThatAFallbackOrASafeValueBreaksAreErrors) {
                     "    safe_values: [{index: 0x2003, value: 20}]\n"
                     "    limits: {objects: [{index: 0x2003, min: 1, max: 10}]}\n",
                     "{index: 0x2003}")
-                  .said("limits"),
+                  .declared("limits"),
               HasSubstr("lies outside its limits"));
 }
 
@@ -250,7 +250,7 @@ std::string start_of(const std::string& tpdo, const std::string& limits) {
       "    rpdo: {2: {enabled: true, cob_id: auto, mapping: [{index: 0x6040}, {index: "
       "0x607A}]}}\n" +
       std::string{units} + "    limits: {" + limits + "}\n");
-  return net.said("limits");
+  return net.declared("limits");
 }
 
 TEST(Limits, ThatWaitForAPositionThatComesByEventAloneHaveAWarning) {

@@ -42,7 +42,7 @@ TEST(CobIds, AbsoluteIdsOfAnEdsThatClashBecomeNodeRelativeWithANote) {
   EXPECT_THAT(net.complaints(), IsEmpty());
   EXPECT_EQ(net.plan.pdos.tpdos.at(0).cob_id, CobId::base(0x181));
   EXPECT_EQ(net.plan.pdos.tpdos.at(1).cob_id, CobId::base(0x182));
-  EXPECT_THAT(net.said("cob-id-moved"),
+  EXPECT_THAT(net.declared("cob-id-moved"),
               HasSubstr("TPDO1 of node `b` has COB-ID 0x181 in tiny.eds, which is used by TPDO1 of "
                         "node `a`; takt uses 0x182"));
 }
@@ -52,8 +52,9 @@ TEST(CobIds, TwoUsersOfOneIdAreAnError) {
       "a: {node_id: 1, dcf: x, tpdo: {1: {transmission: 255, cob_id: 0x190}}}\n"
       "b: {node_id: 2, dcf: x, tpdo: {1: {transmission: 255, cob_id: 0x190}}}\n");
 
-  EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("belongs to TPDO1 of node `a` (line 1) already"));
-  EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("`auto` would give 0x182"));
+  EXPECT_THAT(net.declared("cob-id-clash"),
+              HasSubstr("belongs to TPDO1 of node `a` (line 1) already"));
+  EXPECT_THAT(net.declared("cob-id-clash"), HasSubstr("`auto` would give 0x182"));
 }
 
 TEST(CobIds, RestrictedIdsAndServicesAreRefused) {
@@ -73,7 +74,7 @@ TEST(CobIds, RestrictedIdsAndServicesAreRefused) {
                                    {"0x86", ""}}) {
     const auto net =
         compile(arm_with("tpdo: {1: {transmission: 1, cob_id: " + std::string{id} + "}}"));
-    EXPECT_THAT(net.said("cob-id"), HasSubstr(reason)) << id;
+    EXPECT_THAT(net.declared("cob-id"), HasSubstr(reason)) << id;
     EXPECT_EQ(net.complaints().empty(), std::string_view{reason}.empty()) << id;
   }
 }
@@ -94,7 +95,7 @@ TEST(CobIds, AnRpdoWithTheIdOfATpdoIsFedByThatDevice) {
   EXPECT_THAT(net.complaints(), IsEmpty());
   EXPECT_EQ(net.plan.pdos.rpdos.size(), 1U);
   EXPECT_EQ(net.plan.pdos.rpdos.at(0).node, 1_node);
-  EXPECT_THAT(net.said("linked"), HasSubstr("RPDO1 of node `b` receives TPDO1 of node `a`"));
+  EXPECT_THAT(net.declared("linked"), HasSubstr("RPDO1 of node `b` receives TPDO1 of node `a`"));
 }
 
 /// The RPDO1 of each device receives TPDO1 of node 1.
@@ -113,7 +114,7 @@ TEST(CobIds, ALinkThatOnlyTheEdsStatesIsKept) {
   EXPECT_THAT(net.complaints(), IsEmpty());
   EXPECT_TRUE(net.plan.pdos.rpdos.empty());
   EXPECT_EQ(net.plan.pdos.tpdos.at(0).cob_id, CobId::base(0x181));
-  EXPECT_THAT(net.said("linked"),
+  EXPECT_THAT(net.declared("linked"),
               testing::AllOf(HasSubstr("RPDO1 of node `b` receives TPDO1 of node `a` (both 0x181, "
                                        "which tiny.eds sets); the master does not send this RPDO"),
                              HasSubstr("RPDO1 of node `c` receives TPDO1 of node `a`")));
@@ -128,7 +129,7 @@ TEST(CobIds, ALinkOfTheEdsThatTheNetworkFileCutsIsAWarningWithItsRemedy) {
 
   EXPECT_THAT(net.complaints(), ElementsAre("3:32 warning [cob-id-moved]"));
   EXPECT_EQ(net.plan.pdos.rpdos.at(0).cob_id, CobId::base(0x202));
-  EXPECT_THAT(net.said("cob-id-moved"),
+  EXPECT_THAT(net.declared("cob-id-moved"),
               testing::AllOf(HasSubstr("write `cob_id: 0x181` for both PDOs"),
                              HasSubstr("`cob_id: auto` for this one")));
   EXPECT_THAT(compile("master: {sync_period: 10000}\n"
@@ -143,7 +144,7 @@ TEST(CobIds, ATpdoAndAnRpdoOfOneDeviceWithOneIdAreNoLink) {
   const auto net = compile("master: {sync_period: 10000}\na: {node_id: 1, dcf: x}\n", listener);
 
   EXPECT_THAT(net.complaints(), IsEmpty());
-  EXPECT_THAT(net.said("linked"), IsEmpty());
+  EXPECT_THAT(net.declared("linked"), IsEmpty());
   EXPECT_EQ(net.plan.pdos.rpdos.at(0).cob_id, CobId::base(0x201));
 }
 
@@ -155,7 +156,7 @@ TEST(CobIds, AnIdOfTheNetworkFileAndOneOfAnEdsMakeALinkToo) {
       "c: {node_id: 3, dcf: x, rpdo: {1: {cob_id: 0x182}}}\n");
 
   EXPECT_THAT(net.complaints(), IsEmpty());
-  EXPECT_THAT(net.said("linked"),
+  EXPECT_THAT(net.declared("linked"),
               testing::AllOf(HasSubstr("RPDO1 of node `b` receives TPDO1 of node `a` (both 0x202"),
                              HasSubstr("RPDO1 of node `c` receives TPDO1 of node `b`")));
 }
@@ -167,7 +168,7 @@ TEST(CobIds, AnIdOfATpdoThatIsThePredefinedOneOfAnAutomaticTpdoIsAnError) {
       "b: {node_id: 2, dcf: x, tpdo: {1: {cob_id: 0x181}}}\n");
 
   EXPECT_THAT(net.complaints(), ElementsAre("3:44 error [cob-id-clash]"));
-  EXPECT_THAT(net.said("cob-id-clash"),
+  EXPECT_THAT(net.declared("cob-id-clash"),
               HasSubstr("`cob_id` 0x181 of TPDO1 of node `b` is the predefined COB-ID of TPDO1 of "
                         "node `a`, which has no `cob_id` of its own: write `cob_id: 0x183` for "
                         "TPDO1 of node `a`, or another `cob_id` for TPDO1 of node `b`"));
@@ -182,7 +183,7 @@ TEST(CobIds, AnIdOfAnRpdoThatIsThePredefinedOneOfAnAutomaticTpdoMakesALink) {
   EXPECT_THAT(net.complaints(), IsEmpty());
   EXPECT_EQ(net.plan.pdos.tpdos.at(0).cob_id, CobId::base(0x181));
   EXPECT_EQ(net.plan.pdos.rpdos.size(), 1U);
-  EXPECT_THAT(net.said("linked"), HasSubstr("RPDO1 of node `b` receives TPDO1 of node `a`"));
+  EXPECT_THAT(net.declared("linked"), HasSubstr("RPDO1 of node `b` receives TPDO1 of node `a`"));
 }
 
 TEST(CobIds, ALinkOfTheEdsIsKeptWithAnAutomaticTpdo) {
@@ -193,7 +194,7 @@ TEST(CobIds, ALinkOfTheEdsIsKeptWithAnAutomaticTpdo) {
       listener);
 
   EXPECT_EQ(net.plan.pdos.tpdos.at(0).cob_id, CobId::base(0x181));
-  EXPECT_THAT(net.said("linked"), HasSubstr("RPDO1 of node `b` receives TPDO1 of node `a`"));
+  EXPECT_THAT(net.declared("linked"), HasSubstr("RPDO1 of node `b` receives TPDO1 of node `a`"));
 }
 
 TEST(CobIds, AnAutomaticTpdoHasItsPredefinedIdBeforeAnEdsThatUsesItForAnotherNode) {
@@ -214,12 +215,12 @@ TEST(CobIds, AnAutomaticIdThatIsNotThePredefinedOneIsANote) {
                    "}\nb: {node_id: 2, dcf: x, " + of_b + "}\n");
   };
   const auto service = with("tpdo: {1: {cob_id: auto}}", "emcy_cob_id: 0x181");
-  EXPECT_THAT(service.said("cob-id-moved"),
+  EXPECT_THAT(service.declared("cob-id-moved"),
               HasSubstr("the predefined COB-ID 0x181 of TPDO1 of node `a` is EMCY of node `b`; "
                         "takt uses 0x183"));
   const auto rpdos = with("rpdo: {1: {cob_id: auto}}", "rpdo: {1: {cob_id: 0x201}}");
   EXPECT_THAT(rpdos.complaints(), IsEmpty());
-  EXPECT_THAT(rpdos.said("cob-id-moved"),
+  EXPECT_THAT(rpdos.declared("cob-id-moved"),
               HasSubstr("the predefined COB-ID 0x201 of RPDO1 of node `a` is used by RPDO1 of node "
                         "`b`; takt uses 0x183"));
 }
@@ -242,9 +243,11 @@ TEST(NodeIds, AreUsedOnce) {
       "c: {node_id: 3, dcf: x}\n"
       "A: {node_id: 4, dcf: x}\n");
 
-  EXPECT_THAT(net.said("node-id-clash"), HasSubstr("node id 1 of `b` belongs to `a` (line 2)"));
-  EXPECT_THAT(net.said("node-id-clash"), HasSubstr("node id 3 of `c` is the master's (line 1)"));
-  EXPECT_THAT(net.said("name"), HasSubstr("`A` and `a` (line 2) would share their LCM channels"));
+  EXPECT_THAT(net.declared("node-id-clash"), HasSubstr("node id 1 of `b` belongs to `a` (line 2)"));
+  EXPECT_THAT(net.declared("node-id-clash"),
+              HasSubstr("node id 3 of `c` is the master's (line 1)"));
+  EXPECT_THAT(net.declared("name"),
+              HasSubstr("`A` and `a` (line 2) would share their LCM channels"));
 }
 
 }  // namespace

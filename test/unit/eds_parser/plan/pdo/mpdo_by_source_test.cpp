@@ -85,34 +85,34 @@ TEST(MpdoBySource, TakesTheListAsTheNetworkFileWritesIt) {
   EXPECT_THAT(compile(arm("{index: 0x6081}", written), eds()).complaints(), IsEmpty());
 }
 
-TEST(MpdoBySource, TellsWhatToWriteWhereTheDeviceAwaitsNothing) {
+TEST(MpdoBySource, ReportsWhatToWriteWhereTheDeviceAwaitsNothing) {
   const auto net = compile(arm("{index: 0x6081}"), eds("0x0160810060810006"));
   EXPECT_THAT(net.complaints(), ElementsAre("6:56 error [dispatching-list]"));
-  EXPECT_THAT(net.said("dispatching-list"),
+  EXPECT_THAT(net.declared("dispatching-list"),
               HasSubstr("takes 6081:00 from the master, node 127: write one under `sdo:`, "
                         "`{index: 0x1FD0, sub_index: 2, value: 0x016081006081007F}`"));
 }
 
 TEST(MpdoBySource, ProposesAPlaceForEachObjectAsLongAsThereIsOne) {
   const auto net = compile(arm("{index: 0x6081}, {index: 0x607A}, {index: 0x60FF}"), eds());
-  const std::string said = net.said("dispatching-list");
-  EXPECT_THAT(said, HasSubstr("sub_index: 1, value: 0x016081006081007F"));
-  EXPECT_THAT(said, HasSubstr("sub_index: 2, value: 0x01607A00607A007F"));
-  EXPECT_THAT(said,
+  const std::string declared = net.declared("dispatching-list");
+  EXPECT_THAT(declared, HasSubstr("sub_index: 1, value: 0x016081006081007F"));
+  EXPECT_THAT(declared, HasSubstr("sub_index: 2, value: 0x01607A00607A007F"));
+  EXPECT_THAT(declared,
               HasSubstr("takes 60FF:00 from the master, node 127: the list has no free entry"));
 }
 
 TEST(MpdoBySource, NeedsADispatchingList) {
-  EXPECT_THAT(compile(arm("{index: 0x6081}")).said("dispatching-list"),
+  EXPECT_THAT(compile(arm("{index: 0x6081}")).declared("dispatching-list"),
               HasSubstr("tiny.eds has no object dispatching list"));
-  EXPECT_THAT(compile(arm("{index: 0x6081}"), eds("0", "0", "ro")).said("dispatching-list"),
+  EXPECT_THAT(compile(arm("{index: 0x6081}"), eds("0", "0", "ro")).declared("dispatching-list"),
               HasSubstr("tiny.eds has no object dispatching list"));
 }
 
 TEST(MpdoBySource, DoesNotSendTwoObjectsUnderOneName) {
   const auto net = compile(arm("{index: 0x6081}, {index: 0x607A}"),
                            eds("0x016081002100037F", "0x01607A002100037F"));
-  EXPECT_THAT(net.said("dispatching-list"), HasSubstr("both would overwrite each other"));
+  EXPECT_THAT(net.declared("dispatching-list"), HasSubstr("both would overwrite each other"));
 }
 
 }  // namespace

@@ -70,11 +70,12 @@ TEST(PdoCompiler, ReportsEveryBadMappingAtItsPlace) {
                                     "8:3 error [dummy]", "9:3 error [wrong-width]",
                                     "11:3 warning [mapped-twice]", "13:3 error [wrong-direction]",
                                     "14:3 error [dummy]", "15:3 error [not-mappable]"));
-  EXPECT_THAT(net.said("no-such-object"), HasSubstr("did you mean 0x6064 Position actual value?"));
-  EXPECT_THAT(net.said("no-such-object"), HasSubstr("0x6041 Statusword has sub-index 00"));
-  EXPECT_THAT(net.said("wrong-direction"), HasSubstr("belongs in a TPDO (device to master)"));
-  EXPECT_THAT(net.said("not-mappable"), HasSubstr("PDOMapping=0"));
-  EXPECT_THAT(net.said("wrong-width"), HasSubstr("16 bits wide, not 8"));
+  EXPECT_THAT(net.declared("no-such-object"),
+              HasSubstr("did you mean 0x6064 Position actual value?"));
+  EXPECT_THAT(net.declared("no-such-object"), HasSubstr("0x6041 Statusword has sub-index 00"));
+  EXPECT_THAT(net.declared("wrong-direction"), HasSubstr("belongs in a TPDO (device to master)"));
+  EXPECT_THAT(net.declared("not-mappable"), HasSubstr("PDOMapping=0"));
+  EXPECT_THAT(net.declared("wrong-width"), HasSubstr("16 bits wide, not 8"));
 }
 
 TEST(PdoCompiler, MoreThan64BitsAreAnError) {
@@ -82,7 +83,7 @@ TEST(PdoCompiler, MoreThan64BitsAreAnError) {
       arm_with("rpdo: {1: {mapping: [{index: 0x607A}, {index: 0x60FF}, {index: 0x6060}]}}"));
 
   EXPECT_THAT(net.complaints(), ElementsAre("3:21 error [too-long]"));
-  EXPECT_THAT(net.said("too-long"), HasSubstr("72 bits, a PDO holds 64: move 8 bits"));
+  EXPECT_THAT(net.declared("too-long"), HasSubstr("72 bits, a PDO holds 64: move 8 bits"));
 }
 
 TEST(PdoCompiler, GapsOfAnRpdoHaveNoField) {
@@ -101,7 +102,7 @@ TEST(PdoCompiler, APdoThatTheDeviceLacksIsAnError) {
       compile(arm_with("tpdo: {6: {mapping: [{index: 0x6041}]}, 7: {enabled: false}}"));
 
   EXPECT_THAT(net.complaints(), ElementsAre("3:8 error [no-such-pdo]"));
-  EXPECT_THAT(net.said("no-such-pdo"), HasSubstr("its 5 TPDOs end with number 5"));
+  EXPECT_THAT(net.declared("no-such-pdo"), HasSubstr("its 5 TPDOs end with number 5"));
 }
 
 TEST(PdoCompiler, APdoWithoutMappingIsAnErrorUnlessOff) {
@@ -119,15 +120,15 @@ TEST(PdoCompiler, AFixedMappingCanOnlyBeRepeated) {
               IsEmpty());
   const auto net = compile(arm_with("tpdo: {1: {mapping: [{index: 0x6064}]}}"), eds);
   EXPECT_THAT(net.complaints(), ElementsAre("3:21 error [fixed-mapping]"));
-  EXPECT_THAT(net.said("fixed-mapping"), HasSubstr("6041:00 Statusword"));
+  EXPECT_THAT(net.declared("fixed-mapping"), HasSubstr("6041:00 Statusword"));
 }
 
-TEST(PdoCompiler, AMappingThatIsFixedEmptyIsSaidToBeEmpty) {
+TEST(PdoCompiler, AMappingThatIsFixedEmptyIsDeclaredToBeEmpty) {
   const std::string eds =
       test::tiny_objects() + test::pdo(true, 1, "$NODEID+0x180", 1, {}, "const");
 
   EXPECT_THAT(
-      compile(arm_with("tpdo: {1: {mapping: [{index: 0x6064}]}}"), eds).said("fixed-mapping"),
+      compile(arm_with("tpdo: {1: {mapping: [{index: 0x6064}]}}"), eds).declared("fixed-mapping"),
       HasSubstr("can't be remapped, it is fixed in the device without objects\n"));
 }
 
@@ -153,10 +154,10 @@ TEST(PdoCompiler, RemoteRequestAndMultiplexedPdosOfTheEdsAreLeftOutWithANote) {
   const auto net = compile(arm_with(""), eds);
 
   EXPECT_TRUE(net.plan.pdos.tpdos.empty());
-  EXPECT_THAT(net.said("pdo-left-out"),
+  EXPECT_THAT(net.declared("pdo-left-out"),
               HasSubstr("TPDO1 of node `arm` is valid in tiny.eds but has "
                         "transmission type 253"));
-  EXPECT_THAT(net.said("pdo-left-out"),
+  EXPECT_THAT(net.declared("pdo-left-out"),
               HasSubstr("TPDO2 of node `arm`: valid in tiny.eds, but without mapped objects"));
 }
 

@@ -57,7 +57,7 @@ TEST(PdoKinds, RemoteRequestsAreAllowedInTheDevice) {
 
 TEST(PdoKinds, WithoutAPollARemoteTypeIsNoted) {
   const auto net = compile(arm("tpdo: {1: {transmission: 253}}"));
-  EXPECT_THAT(net.said("not-polled"), HasSubstr("is sent on remote request only"));
+  EXPECT_THAT(net.declared("not-polled"), HasSubstr("is sent on remote request only"));
 }
 
 TEST(PdoKinds, ReservedAndWrongKeysAreRefusedAtTheirPlace) {
@@ -82,10 +82,12 @@ TEST(PdoKinds, ReservedTypesAreRefusedAlsoWhereTheyAreWrittenBySdo) {
     return compile(
         arm(std::string{"sdo: [{index: "} + index + ", sub_index: 2, value: " + type + "}]"));
   };
-  EXPECT_THAT(sdo("0x1800", "245").said("transmission-type"), HasSubstr("241..251 are reserved"));
-  EXPECT_THAT(sdo("0x1400", "241").said("transmission-type"), HasSubstr("241..251 are reserved"));
-  EXPECT_THAT(sdo("0x1400", "252").said("transmission-type"), HasSubstr("only a TPDO"));
-  EXPECT_THAT(sdo("0x1800", "252").said("transmission-type"), IsEmpty());
+  EXPECT_THAT(sdo("0x1800", "245").declared("transmission-type"),
+              HasSubstr("241..251 are reserved"));
+  EXPECT_THAT(sdo("0x1400", "241").declared("transmission-type"),
+              HasSubstr("241..251 are reserved"));
+  EXPECT_THAT(sdo("0x1400", "252").declared("transmission-type"), HasSubstr("only a TPDO"));
+  EXPECT_THAT(sdo("0x1800", "252").declared("transmission-type"), IsEmpty());
 }
 
 TEST(PdoKinds, LateFramesAreDroppedWhereTheFileSaysSo) {
@@ -108,7 +110,7 @@ TEST(PdoKinds, APairOnRequestIsNoPartOfTheImage) {
 
 TEST(PdoKinds, AnRpdoOnRequestNeedsTheTpdoThatAnswers) {
   const auto net = compile(arm("tpdo: {1: {enabled: false}}, rpdo: {1: {request: true}}"));
-  EXPECT_THAT(net.said("request-pair"), HasSubstr("TPDO1, which answers it, is off"));
+  EXPECT_THAT(net.declared("request-pair"), HasSubstr("TPDO1, which answers it, is off"));
 }
 
 TEST(PdoKinds, ASamPdoHasARowForEachObject) {
@@ -150,8 +152,8 @@ TEST(PdoKinds, AMultiplexedPdoCarries32BitsByEvent) {
   const auto net =
       compile(arm("tpdo: {3: {mpdo: dam, transmission: 1, cob_id: 0x385, mapping: "
                   "[{index: 0x2000, sub_index: 1, bits: 33}]}}"));
-  EXPECT_THAT(net.said("wrong-width"), HasSubstr("up to 32 bits"));
-  EXPECT_THAT(net.said("transmission-type"), HasSubstr("by event"));
+  EXPECT_THAT(net.declared("wrong-width"), HasSubstr("up to 32 bits"));
+  EXPECT_THAT(net.declared("transmission-type"), HasSubstr("by event"));
 }
 
 TEST(PdoKinds, FiveHundredAndTwelvePdosOfANodeAreTaken) {

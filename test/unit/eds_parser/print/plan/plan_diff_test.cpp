@@ -155,7 +155,7 @@ TEST_F(PlanDiff, AnotherLimitIsADifference) {
   EXPECT_THAT(text, Not(HasSubstr("-  arm  step")));
 }
 
-TEST_F(PlanDiff, ALimitThatTheDeviceTellsFromNowOnIsADifference) {
+TEST_F(PlanDiff, ALimitThatTheDeviceReportsFromNowOnIsADifference) {
   const LoadedNetwork before = load(limited + "position: [-1, 1], step: 0.1}}\n");
   const LoadedNetwork after = load(limited + "step: 0.1}}\n");
   const auto changes = plan_changes({before.plan, "old"}, {after.plan, "new"}, std::nullopt);

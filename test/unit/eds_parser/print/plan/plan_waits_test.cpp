@@ -61,21 +61,21 @@ TEST(PlanWaits, NameTheNodesWhereTheyDiffer) {
   EXPECT_TRUE(waits[1].what.starts_with("SDO answer of leg;")) << waits[1].what;
 }
 
-TEST(PlanWaits, TellTheTimeOutsOfObjectsAndNotThoseThatNeverCount) {
+TEST(PlanWaits, ReportTheTimeOutsOfObjectsAndNotThoseThatNeverCount) {
   const auto net = compile(
       "nodes:\n"
       "  arm: {node_id: 5, dcf: x}\n"
       "  leg: {node_id: 6, dcf: x, sdo_timeouts: [{index: 0x1010, timeout_ms: 9000},\n"
       "                                          {index: 0x1F50, sub_index: 1, timeout_ms: "
       "5000}]}\n");
-  std::vector<std::pair<Time, std::string>> told;
+  std::vector<std::pair<Time, std::string>> reported;
   for (const PlanWait& wait : named(net.plan, "sdo_object"))
-    told.emplace_back(wait.limit, wait.what);
+    reported.emplace_back(wait.limit, wait.what);
 
-  EXPECT_THAT(told, ElementsAre(Pair(Time{5s}, "SDO answer of arm for 1010"),
-                                Pair(Time{5s}, "SDO answer of every node for 1011"),
-                                Pair(Time{5s}, "SDO answer of leg for 1F50:01"),
-                                Pair(Time{9s}, "SDO answer of leg for 1010")));
+  EXPECT_THAT(reported, ElementsAre(Pair(Time{5s}, "SDO answer of arm for 1010"),
+                                    Pair(Time{5s}, "SDO answer of every node for 1011"),
+                                    Pair(Time{5s}, "SDO answer of leg for 1F50:01"),
+                                    Pair(Time{9s}, "SDO answer of leg for 1010")));
 }
 
 TEST(PlanWaits, OfASyncThatAnotherDeviceMakesAreOthers) {

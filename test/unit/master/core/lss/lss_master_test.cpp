@@ -128,7 +128,7 @@ TEST(LssMaster, SaysThatNobodyAnsweredASelection) {
             "configuration state, with LSS, on this bus?");
 }
 
-TEST(LssMaster, ConfiguresANodeIdAndTellsTheRefusal) {
+TEST(LssMaster, ConfiguresANodeIdAndReportsTheRefusal) {
   Talk talk;
   talk.slave = [](const Bytes& frame) {
     const std::uint8_t error = frame[1] == 5 ? 0 : 1;
@@ -165,7 +165,7 @@ TEST(LssMaster, ConfiguresAndActivatesBitTiming) {
   EXPECT_EQ(talk.sent, (std::vector<Bytes>{{0x13, 0, 3}, {0x13, 0, 5}, {0x15, 0xE8, 0x03}}));
 }
 
-TEST(LssMaster, TellsWhyStoringFailed) {
+TEST(LssMaster, ReportsWhyStoringFailed) {
   Talk talk;
   Bytes says{0x17, 2};
   talk.slave = [&says](const Bytes&) { return std::vector<Bytes>{says}; };

@@ -39,7 +39,7 @@ TEST_F(NetworkTest, BootsOneNodeWhileAnotherIsMute) {
   EXPECT_TRUE(network->exchanges_pdos(1));
 }
 
-TEST_F(NetworkTest, TellsALostHeartbeatAtItsDeadlineAndBootsTheNodeAgain) {
+TEST_F(NetworkTest, ReportsALostHeartbeatAtItsDeadlineAndBootsTheNodeAgain) {
   add_drive();
   start();
   run(200ms);
@@ -93,7 +93,7 @@ TEST_F(NetworkTest, BootsANodeThatRestartedWithoutResettingItAgain) {
   EXPECT_EQ(status().boot, BootState::ready);
 }
 
-TEST_F(NetworkTest, TellsEachBootUpMessage) {
+TEST_F(NetworkTest, ReportsEachBootUpMessage) {
   add_drive();
   start();
   const auto bootups = [&] {
@@ -122,7 +122,7 @@ TEST_F(NetworkTest, BootsAFailedNodeAtOnceWithItsNextBootUpMessage) {
   EXPECT_EQ(status().boot, BootState::ready);
 }
 
-TEST_F(NetworkTest, TellsOfANodeThatStaysAwayMoreAndMoreRarely) {
+TEST_F(NetworkTest, ReportsOfANodeThatStaysAwayMoreAndMoreRarely) {
   add_drive();
   device().on = false;
   start();
@@ -251,7 +251,7 @@ TEST_F(NetworkTest, ProducesTheHeartbeatOfTheMaster) {
 
 // EMCY
 
-TEST_F(NetworkTest, TellsAnEmcyWithItsBytes) {
+TEST_F(NetworkTest, ReportsAnEmcyWithItsBytes) {
   add_drive();
   start();
   hear(make_frame(CobId::base(0x85), {0x10, 0x73, 0x21, 1, 2, 3, 4, 5}));
@@ -276,7 +276,7 @@ TEST_F(NetworkTest, TakesAnEmcyOfOneByteForNoErrorCode) {
   EXPECT_EQ(status().emcy_count, 2U);
 }
 
-TEST_F(NetworkTest, KeepsTheErrorRegisterThatAShortEmcyDoesNotTell) {
+TEST_F(NetworkTest, KeepsTheErrorRegisterThatAShortEmcyDoesNotReport) {
   add_drive();
   start();
   hear(make_frame(CobId::base(0x85), {0x10, 0x73, 0x21, 1, 2, 3, 4, 5}));
@@ -296,7 +296,7 @@ TEST_F(NetworkTest, TakesAFrameWithoutBytesForNoEmcy) {
   EXPECT_EQ(status().emcy_count, 1U);
 }
 
-TEST_F(NetworkTest, CountsAFloodOfEmcysButTellsOnlySome) {
+TEST_F(NetworkTest, CountsAFloodOfEmcysButReportsOnlySome) {
   add_drive();
   start();
   for (int i = 0; i < 1000; ++i) hear(make_frame(CobId::base(0x85), {0x10, 0x73, 0x21}));

@@ -85,7 +85,7 @@ TEST(OrderedStop, DoesNotDisableAMovingAxisAsLongAsThereIsTime) {
   }
 }
 
-TEST(OrderedStop, TellsAtWhichVelocityAnAxisWasDisabled) {
+TEST(OrderedStop, ReportsAtWhichVelocityAnAxisWasDisabled) {
   Stop stop;
   stop.speed = {150, 0};
   stop.step_until(StopStage::disable);
@@ -98,14 +98,14 @@ TEST(OrderedStop, TellsAtWhichVelocityAnAxisWasDisabled) {
   EXPECT_EQ(stop.machine.axis(0).velocity(), 75'000);
 }
 
-TEST(OrderedStop, TellsAnAxisThatStaysEnabled) {
+TEST(OrderedStop, ReportsAnAxisThatStaysEnabled) {
   Stop stop;
   stop.step_until(StopStage::nmt);
   EXPECT_EQ(stop.machine.result(), StopResult::unconfirmed);
   EXPECT_EQ(stop.verdict(0), AxisVerdict::enabled);
 }
 
-TEST(OrderedStop, TellsForHowLongAnAxisGaveNoAnswer) {
+TEST(OrderedStop, ReportsForHowLongAnAxisGaveNoAnswer) {
   Stop stop;
   stop.words[0] = switch_on_disabled;
   stop.step(10);

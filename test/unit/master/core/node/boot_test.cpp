@@ -114,7 +114,7 @@ TEST_F(Boot, TakesANodeWithoutHeartbeatAsStartedAfterTheWait) {
   EXPECT_TRUE(network->exchanges_pdos(0));
 }
 
-TEST_F(Boot, TellsWhenANodeWasOperationalAlready) {
+TEST_F(Boot, ReportsWhenANodeWasOperationalAlready) {
   Steps steps;
   steps.object(BootAction::probe, 'B', {0x1000, 0});
   add(5, std::move(steps.plan));

@@ -16,7 +16,7 @@ TEST(NodeWatch, IsArmedByTheFirstHeartbeatOnly) {
   EXPECT_EQ(watch.deadline(), 100s + 150ms);
 }
 
-TEST(NodeWatch, TellsSilenceOnce) {
+TEST(NodeWatch, ReportsSilenceOnce) {
   NodeWatch watch{150ms};
   NodeStatus status;
   watch.on_heartbeat(NmtState::operational, 1s, status);

@@ -19,7 +19,7 @@ Steps identity_steps() {
   return steps;
 }
 
-TEST_F(OddAnswers, LateOnesAreToldWithTheirTimeAndTheKey) {
+TEST_F(OddAnswers, LateOnesAreReportedWithTheirTimeAndTheKey) {
   prepare = [](FakeNode& node) {
     node.latency = 120ms;  // the time-out is 100 ms
     node.answers_in_turn = true;
@@ -34,7 +34,7 @@ TEST_F(OddAnswers, LateOnesAreToldWithTheirTimeAndTheKey) {
   EXPECT_EQ(count(EventKind::duplicate_node), 0);
 }
 
-TEST_F(OddAnswers, AnAnswerToTheSubIndexNextToItIsToldAsThat) {
+TEST_F(OddAnswers, AnAnswerToTheSubIndexNextToItIsReportedAsThat) {
   prepare = [](FakeNode& node) {
     node.tamper = [](Frame& frame) {
       if (frame.data[1] == 0x18 && frame.data[3] == 1) frame.data[3] = 2;
@@ -90,7 +90,7 @@ TEST_F(OddAnswers, SegmentsWithoutTheirBeginningAreAbortedAtOnce) {
   EXPECT_EQ(failure().abort_code, 0x0504'0001U);
 }
 
-TEST_F(OddAnswers, AToggleBitThatStandsStillIsTheCauseThatIsTold) {
+TEST_F(OddAnswers, AToggleBitThatStandsStillIsTheCauseThatIsReported) {
   prepare = [](FakeNode& node) {
     node.objects[{0x1008, 0}] = bytes({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
     node.tamper = [](Frame& frame) {
@@ -125,7 +125,7 @@ TEST_F(OddAnswers, ALostAnswerBeforeASilentObjectIsNotTakenForSlowness) {
 }
 
 // The time-out is 100 ms. The last late answer comes 200 ms before the boot fails.
-TEST_F(OddAnswers, SilenceAfterOneLateAnswerIsToldAsSilence) {
+TEST_F(OddAnswers, SilenceAfterOneLateAnswerIsReportedAsSilence) {
   prepare = [](FakeNode& node) {
     node.heartbeats(10s, 20ms);
     node.tamper = [&node, answers = 0](Frame& frame) mutable {
@@ -202,7 +202,7 @@ Steps long_value_steps(BootAction action) {
   return steps;
 }
 
-TEST_F(OddAnswers, SegmentsThatComeLateAreToldAsLate) {
+TEST_F(OddAnswers, SegmentsThatComeLateAreReportedAsLate) {
   prepare = [](FakeNode& node) {
     node.objects[{0x2200, 0}] = FakeNode::Bytes(26, std::byte{'a'});
     node.tamper = [&node](Frame& frame) {  // the time-out is 100 ms

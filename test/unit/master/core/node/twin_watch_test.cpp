@@ -10,11 +10,11 @@ namespace {
 
 constexpr CobId own_request = CobId::base(0x605);
 
-TEST(TwinWatch, TellsTwiceAsManyHeartbeats) {
+TEST(TwinWatch, ReportsTwiceAsManyHeartbeats) {
   TwinWatch watch{100ms, own_request};
-  int told = 0;
-  for (Time now = 10s; now < 14s; now += 50ms) told += watch.on_heartbeat(now).has_value();
-  EXPECT_EQ(told, 1) << "once in ten seconds";
+  int reported = 0;
+  for (Time now = 10s; now < 14s; now += 50ms) reported += watch.on_heartbeat(now).has_value();
+  EXPECT_EQ(reported, 1) << "once in ten seconds";
 }
 
 TEST(TwinWatch, TakesHeartbeatsOfOneDeviceForOne) {
@@ -56,7 +56,7 @@ class Twins : public testing::Test, public NetworkRig {
   }
 };
 
-TEST_F(Twins, AreToldByTheirAnswersToOneRequest) {
+TEST_F(Twins, AreReportedByTheirAnswersToOneRequest) {
   boot();
   devices.push_back(devices[0]);
   devices[1].latency = 3ms;

@@ -13,7 +13,7 @@ constexpr ObjectKey fastest{0x607F, 0};
 
 /// The device gives 607D in counts of 1 mrad and 607F in units of 0.01 rad/s, which are 0.02 counts
 /// in 2 ms.
-void told_by_the_device(BusPlan& plan) {
+void reported_by_the_device(BusPlan& plan) {
   const SignalIndex target = plan.limits.outputs[0].signal;
   plan.limits.outputs[0].range = LimitKind::position;
   plan.limits.lines = {{.axis = 1,
@@ -35,21 +35,21 @@ void told_by_the_device(BusPlan& plan) {
       {.object = fastest, .signal = target, .bound = DeviceBound::rate, .factor = 0.02, .line = 1}};
 }
 
-LimitedAxes axis() { return LimitedAxes{1, {.wraps = true}, told_by_the_device}; }
+LimitedAxes axis() { return LimitedAxes{1, {.wraps = true}, reported_by_the_device}; }
 
-std::string told(LimitedAxes& axes, const std::vector<LimitReading>& readings) {
+std::string reported(LimitedAxes& axes, const std::vector<LimitReading>& readings) {
   axes.learn(0, readings);
   std::string lines;
-  for (const Event& event : axes.told()) {
+  for (const Event& event : axes.reported()) {
     EXPECT_EQ(event.kind, EventKind::limit_read);
     lines += describe(axes.plan(), event) + "\n";
   }
   return lines;
 }
 
-TEST(DeviceLimits, HoldCommandsAndAreTold) {
+TEST(DeviceLimits, HoldCommandsAndAreReported) {
   LimitedAxes axes = axis();
-  EXPECT_EQ(told(axes, {{lowest, 0xFFFF'FC18}, {highest, 2000}, {fastest, 500}}),
+  EXPECT_EQ(reported(axes, {{lowest, 0xFFFF'FC18}, {highest, 2000}, {fastest, 500}}),
             "node 1 'axis1': limit: position -1 .. 2 rad, read from the device (607D:01)\n"
             "node 1 'axis1': limit: velocity 5 rad/s, read from the device (607F:00)\n");
 
@@ -69,7 +69,7 @@ TEST(DeviceLimits, OfARangeHoldCommandsThatComeSlowly) {
   EXPECT_EQ(axes.controlword(), quick_stop);
 }
 
-TEST(DeviceLimits, ThatAreImplausibleAreIgnoredAndThatIsTold) {
+TEST(DeviceLimits, ThatAreImplausibleAreIgnoredAndThatIsReported) {
   const std::vector<std::vector<LimitReading>> cases{
       {{lowest, 0}, {highest, 0}},
       {{lowest, 5}, {highest, 5}},
@@ -83,7 +83,7 @@ TEST(DeviceLimits, ThatAreImplausibleAreIgnoredAndThatIsTold) {
   };
   for (const auto& readings : cases) {
     LimitedAxes axes = axis();
-    EXPECT_NE(told(axes, readings).find("is implausible and is ignored; write `limits: {"),
+    EXPECT_NE(reported(axes, readings).find("is implausible and is ignored; write `limits: {"),
               std::string::npos);
     axes.cycle_with(0, 10);
     axes.cycle_with(0, 500'000);
@@ -94,7 +94,7 @@ TEST(DeviceLimits, ThatAreImplausibleAreIgnoredAndThatIsTold) {
 
 TEST(DeviceLimits, MayLeaveOneEndOpen) {
   LimitedAxes above = axis();
-  EXPECT_EQ(told(above, {{lowest, 0}, {highest, 0x7FFF'FFFF}}),
+  EXPECT_EQ(reported(above, {{lowest, 0}, {highest, 0x7FFF'FFFF}}),
             "node 1 'axis1': limit: position from 0 rad, read from the device (607D:01)\n");
   above.cycle_with(0, 500'000);
   above.cycle_with(0, -1);
@@ -102,7 +102,7 @@ TEST(DeviceLimits, MayLeaveOneEndOpen) {
   EXPECT_EQ(above.refusals(), 1U);
 
   LimitedAxes below = axis();
-  EXPECT_EQ(told(below, {{lowest, 0x8000'0000}, {highest, 1000}}),
+  EXPECT_EQ(reported(below, {{lowest, 0x8000'0000}, {highest, 1000}}),
             "node 1 'axis1': limit: position up to 1 rad, read from the device (607D:01)\n");
   below.cycle_with(0, -500'000);
   below.cycle_with(0, 1001);
@@ -112,12 +112,12 @@ TEST(DeviceLimits, MayLeaveOneEndOpen) {
 
 TEST(DeviceLimits, OfHalfARangeAreNone) {
   LimitedAxes axes = axis();
-  EXPECT_EQ(told(axes, {{highest, 15}}), "");
+  EXPECT_EQ(reported(axes, {{highest, 15}}), "");
   axes.cycle_with(0, 16);
   EXPECT_EQ(axes.position(), 16);
 }
 
-TEST(DeviceLimits, EndWhenTheNodeBootsAgainAndTellsOthers) {
+TEST(DeviceLimits, EndWhenTheNodeBootsAgainAndReportsOthers) {
   LimitedAxes axes = axis();
   axes.learn(0, std::vector<LimitReading>{{lowest, 0xFFFF'FC18}, {highest, 15}});
   axes.open(0);
@@ -126,7 +126,7 @@ TEST(DeviceLimits, EndWhenTheNodeBootsAgainAndTellsOthers) {
 }
 
 TEST(DeviceLimits, StandBesideThoseOfTheFile) {
-  LimitedAxes axes{1, {.high = 12, .wraps = true}, told_by_the_device};
+  LimitedAxes axes{1, {.high = 12, .wraps = true}, reported_by_the_device};
   axes.learn(0, std::vector<LimitReading>{{lowest, 0xFFFF'FC18}, {highest, 15}, {fastest, 500}});
   axes.cycle_with(0, 10);
   axes.cycle_with(0, 13);

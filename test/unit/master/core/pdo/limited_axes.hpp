@@ -88,14 +88,14 @@ class LimitedAxes {
     std::memcpy(&position, sent_[axis].data.data() + 2, 4);
     return position;
   }
-  std::vector<Event> told() {
+  std::vector<Event> reported() {
     std::vector<Event> all;
     for (Event event; events_.pop(event);) all.push_back(event);
     return all;
   }
   unsigned refusals() {
     unsigned count = 0;
-    for (const Event& event : told()) count += event.kind == EventKind::limit_exceeded;
+    for (const Event& event : reported()) count += event.kind == EventKind::limit_exceeded;
     return count;
   }
 

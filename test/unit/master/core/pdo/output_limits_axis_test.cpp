@@ -54,10 +54,10 @@ TEST(LimitsAtEnabling, RefuseTheControlwordIfTheTargetIsNotAtTheActualPosition) 
     EXPECT_EQ(axes.controlword(), quick_stop) << statusword;
     EXPECT_EQ(axes.position(), 8);
 
-    std::vector<Event> told = axes.told();
-    std::erase_if(told, [](const Event& one) { return one.kind != EventKind::limit_exceeded; });
-    ASSERT_EQ(told.size(), 1U);
-    EXPECT_THAT(describe(axes.plan(), told[0]),
+    std::vector<Event> reported = axes.reported();
+    std::erase_if(reported, [](const Event& one) { return one.kind != EventKind::limit_exceeded; });
+    ASSERT_EQ(reported.size(), 1U);
+    EXPECT_THAT(describe(axes.plan(), reported[0]),
                 HasSubstr("the set-point 0.008 rad that signal (607A:00) still has is outside its "
                           "limits: step 0.492, limit 0.01; takt does not send the command that "
                           "would make the axis follow it"));

@@ -34,10 +34,10 @@ TEST(OutputLimits, HoldTheSumOfTargetAndPositionOffsetInTheRange) {
   axis.cycle();
   EXPECT_EQ(axis.offset(), 40);
   EXPECT_EQ(axis.controlword(), quick_stop);
-  const auto told = axis.refusals();
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_THAT(told[0], HasSubstr("command 0.041 rad to signal (60B0:00) is outside its limits: "
-                                 "position 0.101, limit 0.1;"));
+  const auto reported = axis.refusals();
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_THAT(reported[0], HasSubstr("command 0.041 rad to signal (60B0:00) is outside its limits: "
+                                     "position 0.101, limit 0.1;"));
 
   axis.set(offset_output, 30);
   axis.set(target_output, 71);

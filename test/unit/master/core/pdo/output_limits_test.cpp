@@ -35,17 +35,17 @@ TEST(OutputLimits, DoNotSendAJumpAndStopTheAxisInTheSameCycle) {
   EXPECT_EQ(axes.position(), 5);
   EXPECT_EQ(axes.controlword(), quick_stop);
 
-  const std::vector<Event> told = axes.told();
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_EQ(told[0].kind, EventKind::limit_exceeded);
-  EXPECT_EQ(told[0].node, 1);
-  EXPECT_EQ(told[0].value, 505);
-  EXPECT_EQ(told[0].detail, 3U << 8U | static_cast<unsigned>(LimitKind::step));
-  EXPECT_FLOAT_EQ(float_at(told[0], 0), 0.5F);  // rad
-  EXPECT_FLOAT_EQ(float_at(told[0], 4), 0.01F);
+  const std::vector<Event> reported = axes.reported();
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_EQ(reported[0].kind, EventKind::limit_exceeded);
+  EXPECT_EQ(reported[0].node, 1);
+  EXPECT_EQ(reported[0].value, 505);
+  EXPECT_EQ(reported[0].detail, 3U << 8U | static_cast<unsigned>(LimitKind::step));
+  EXPECT_FLOAT_EQ(float_at(reported[0], 0), 0.5F);  // rad
+  EXPECT_FLOAT_EQ(float_at(reported[0], 4), 0.01F);
 }
 
-TEST(OutputLimits, TellAStreamOutsideOnceAndHearNothingOfItsNodeMeanwhile) {
+TEST(OutputLimits, ReportAStreamOutsideOnceAndHearNothingOfItsNodeMeanwhile) {
   LimitedAxes axes{1, stepping};
   axes.cycle_with(0, 5);
   for (int i = 0; i < 40; ++i) axes.cycle_with(0, 505 + i);
@@ -157,12 +157,12 @@ TEST(OutputLimits, LetTheFirstCommandWaitForTheActualPosition) {
   EXPECT_EQ(axes.refusals(), 0U);
 }
 
-TEST(OutputLimits, TellWhichActualPositionTheFirstCommandWaitsFor) {
+TEST(OutputLimits, ReportWhichActualPositionTheFirstCommandWaitsFor) {
   const auto text_with = [](std::uint8_t transmission) {
     LimitedAxes axes{1, stepping};
     axes.boot(0);
     for (int i = 0; i < 12; ++i) axes.cycle_with(0, 1500);
-    for (const Event& event : axes.told()) {
+    for (const Event& event : axes.reported()) {
       if (event.kind != EventKind::outputs_held) continue;
       BusPlan plan = axes.plan();
       plan.pdos.tpdos[0].transmission = transmission;
@@ -355,17 +355,17 @@ TEST(OutputLimits, ForgetWhatWasSentBeforeTheNodeCameBack) {
   EXPECT_EQ(axes.position(), 700);
 }
 
-TEST(OutputLimits, TellAMagnitudeWithoutTheOffsetOfItsUnit) {
-  const auto told = [](LimitKind kind) {
+TEST(OutputLimits, ReportAMagnitudeWithoutTheOffsetOfItsUnit) {
+  const auto reported = [](LimitKind kind) {
     LimitedAxes axes{1, {.low = -100, .high = 100, .range = kind}, [](BusPlan& plan) {
                        plan.layout.signals[3].offset = 5;
                      }};
     axes.cycle_with(0, 101);
-    const auto events = axes.told();
+    const auto events = axes.reported();
     return events.empty() ? std::string{} : describe(axes.plan(), events[0]);
   };
-  EXPECT_THAT(told(LimitKind::velocity), testing::HasSubstr("velocity 0.101, limit 0.1;"));
-  EXPECT_THAT(told(LimitKind::position), testing::HasSubstr("position 5.101, limit 5.1;"));
+  EXPECT_THAT(reported(LimitKind::velocity), testing::HasSubstr("velocity 0.101, limit 0.1;"));
+  EXPECT_THAT(reported(LimitKind::position), testing::HasSubstr("position 5.101, limit 5.1;"));
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ class Inputs {
     for (const unsigned node : nodes) frame(0x180 + node, {0x37, 0x02, 0x01, 0, 0, 0});
     return close();
   }
-  std::vector<Event> told() {
+  std::vector<Event> reported() {
     std::vector<Event> all;
     for (Event event; events.pop(event);) all.push_back(event);
     return all;
@@ -93,7 +93,7 @@ TEST(PdoInputs, TakeExtendedIdentifiers) {
   EXPECT_EQ(in.image.values[0], 0x21);
 }
 
-TEST(PdoInputs, IgnoreAShortFrameWholeAndTellItOnce) {
+TEST(PdoInputs, IgnoreAShortFrameWholeAndReportItOnce) {
   Inputs in{test::axes({.nodes = 1})};
   in.beat_with({1});
 
@@ -103,7 +103,7 @@ TEST(PdoInputs, IgnoreAShortFrameWholeAndTellItOnce) {
 
   EXPECT_EQ(in.image.values[0], 0x0237);
   EXPECT_EQ(in.pdos.status(0).length_errors, 2U);
-  const auto events = in.told();
+  const auto events = in.reported();
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].kind, EventKind::pdo_length);
   EXPECT_EQ(events[0].node, 1);
@@ -152,7 +152,7 @@ TEST(PdoInputs, AreCompleteWhenTheLastExpectedHasCome) {
   EXPECT_EQ(in.pdos.last_arrival(), 4ms + 410us);
 }
 
-TEST(PdoInputs, TellWhenAPdoBeginsToBeMissingAndWhenItIsBack) {
+TEST(PdoInputs, ReportWhenAPdoBeginsToBeMissingAndWhenItIsBack) {
   Inputs in{test::axes()};
   in.beat_with({1, 2});
   EXPECT_EQ(in.beat_with({1}), 1U);
@@ -164,7 +164,7 @@ TEST(PdoInputs, TellWhenAPdoBeginsToBeMissingAndWhenItIsBack) {
 
   EXPECT_EQ(in.beat_with({1, 2}), 0U);
 
-  const auto events = in.told();
+  const auto events = in.reported();
   ASSERT_EQ(events.size(), 2U);
   EXPECT_EQ(events[0].kind, EventKind::pdo_missing);
   EXPECT_EQ(events[0].node, 2);
@@ -215,7 +215,7 @@ TEST(PdoInputs, LearnThePhaseOfEveryRateFromTheFirstFrame) {
       if (sends) in.frame(0x181, {0, 0, 0, 0, 0, 0});
       EXPECT_EQ(in.close(), 0U) << n << " at " << beat;
     }
-    EXPECT_TRUE(in.told().empty()) << n;
+    EXPECT_TRUE(in.reported().empty()) << n;
   }
 }
 
@@ -223,7 +223,7 @@ TEST(PdoInputs, MissASilentPdoOfRateNAfterTwoRounds) {
   Inputs in{test::axes({.nodes = 1, .tpdo_type = 5})};
   for (int beat = 1; beat < 10; ++beat) EXPECT_EQ(in.beat_with({}), 0U);
   EXPECT_EQ(in.beat_with({}), 1U);
-  EXPECT_EQ(in.told().size(), 1U);
+  EXPECT_EQ(in.reported().size(), 1U);
 }
 
 TEST(PdoInputs, WaitForTheSyncStartValueAsLongAsTheCounterTakes) {
@@ -256,15 +256,15 @@ TEST(PdoInputs, NeverExpectEventDrivenPdosButWatchTheirDeadline) {
       EXPECT_EQ(in.pdos.expected(), 0U);
       in.close();
     }
-    EXPECT_TRUE(in.told().empty());  // 10 ms + 1.2 ms - 2.3 ms
+    EXPECT_TRUE(in.reported().empty());  // 10 ms + 1.2 ms - 2.3 ms
     in.beat_with({});
     in.beat_with({});
-    const auto events = in.told();
+    const auto events = in.reported();
     ASSERT_EQ(events.size(), 1U);
     EXPECT_EQ(events[0].kind, EventKind::pdo_missing);
     EXPECT_TRUE(in.image.is_stale(0));
     in.beat_with({1});
-    EXPECT_EQ(in.told().size(), 1U);
+    EXPECT_EQ(in.reported().size(), 1U);
     EXPECT_FALSE(in.image.is_stale(0));
   }
 }
@@ -287,7 +287,7 @@ TEST(PdoInputs, GrowStaleWhenTheirNodeLeaves) {
   in.pdos.set_reception(0, Reception::off);
   EXPECT_TRUE(in.image.is_stale(0));
   for (int i = 0; i < 5; ++i) EXPECT_EQ(in.beat_with({}), 0U);
-  EXPECT_TRUE(in.told().empty());
+  EXPECT_TRUE(in.reported().empty());
 }
 
 TEST(PdoInputs, WhileListeningWaitForNobodyButNoticeSilence) {

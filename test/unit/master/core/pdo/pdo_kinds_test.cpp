@@ -37,7 +37,7 @@ class Bus {
     pdos.forget_marks();
     return mark;
   }
-  std::vector<EventKind> told() {
+  std::vector<EventKind> reported() {
     std::vector<EventKind> all;
     for (Event event; events->pop(event);) all.push_back(event.kind);
     return all;
@@ -56,7 +56,7 @@ class Bus {
 
 BusPlan one_axis(std::uint8_t type = 1) { return test::axes({.nodes = 1, .tpdo_type = type}); }
 
-TEST(PdoMarks, TellWhatArrivedAndTheAgeOfWhatDidNot) {
+TEST(PdoMarks, ReportWhatArrivedAndTheAgeOfWhatDidNot) {
   Bus bus{one_axis()};
   bus.beat();
   bus.frame();
@@ -79,7 +79,7 @@ TEST(PdoMarks, TellWhatArrivedAndTheAgeOfWhatDidNot) {
   EXPECT_FALSE(third.toggle());
 }
 
-TEST(PdoMarks, TellShortAndLongFramesApart) {
+TEST(PdoMarks, ReportShortAndLongFramesApart) {
   Bus bus{one_axis()};
   bus.beat();
   bus.frame(CobId::base(0x181), {1, 2, 3});
@@ -104,7 +104,7 @@ TEST(PdoMarks, OfAFrameBetweenTwoImagesAreInTheSecond) {
   EXPECT_EQ(mark.cycle, 1U);
 }
 
-TEST(SynchronousWindow, CountsAndTellsLateFramesOnceAndUsesThem) {
+TEST(SynchronousWindow, CountsAndReportsLateFramesOnceAndUsesThem) {
   BusPlan plan = one_axis();
   plan.cycle.sync_window = 500us;
   Bus bus{plan};
@@ -118,14 +118,14 @@ TEST(SynchronousWindow, CountsAndTellsLateFramesOnceAndUsesThem) {
   }
   EXPECT_EQ(bus.pdos.status(0).late, 3U);
   EXPECT_EQ(bus.pdos.status(0).missing, 0U);
-  EXPECT_EQ(bus.told(), std::vector{EventKind::pdo_late});
+  EXPECT_EQ(bus.reported(), std::vector{EventKind::pdo_late});
 
   bus.beat();
   bus.frame(400us);
   bus.close();
   bus.beat();
   bus.frame(600us);
-  EXPECT_EQ(bus.told(), std::vector{EventKind::pdo_late}) << "it began anew";
+  EXPECT_EQ(bus.reported(), std::vector{EventKind::pdo_late}) << "it began anew";
 }
 
 TEST(SynchronousWindow, DropsLateFramesWhereThatIsChosen) {
@@ -156,7 +156,7 @@ TEST(SynchronousWindow, IsTheReceiveWindowWhereNoneIsGiven) {
   bus.frame();
   const PdoMark mark = bus.close();
   EXPECT_EQ(mark.flags, PdoMark::arrived | PdoMark::late);
-  EXPECT_EQ(bus.told(), (std::vector{EventKind::pdo_missing, EventKind::pdo_back}))
+  EXPECT_EQ(bus.reported(), (std::vector{EventKind::pdo_missing, EventKind::pdo_back}))
       << "what is missing is not told to be late as well";
 }
 
@@ -179,7 +179,7 @@ TEST(Deadline, IsArmedByTheFirstFrame) {
     bus.beat();
     EXPECT_EQ(bus.close().flags, 0);
   }
-  EXPECT_TRUE(bus.told().empty());
+  EXPECT_TRUE(bus.reported().empty());
 
   bus.beat();
   bus.frame();
@@ -190,7 +190,7 @@ TEST(Deadline, IsArmedByTheFirstFrame) {
     missing += bus.close().is(PdoMark::missing);
   }
   EXPECT_EQ(missing, 1);
-  EXPECT_EQ(bus.told(), std::vector{EventKind::pdo_missing});
+  EXPECT_EQ(bus.reported(), std::vector{EventKind::pdo_missing});
 }
 
 /// Node 1 sends 6041 and 6064 by source address on 0x281.

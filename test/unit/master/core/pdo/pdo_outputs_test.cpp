@@ -38,7 +38,7 @@ class Outputs {
     return copy;
   }
   void skip(std::uint64_t cycles) { cycle_ += cycles; }
-  std::vector<EventKind> told() {
+  std::vector<EventKind> reported() {
     std::vector<EventKind> all;
     for (Event event; events.pop(event);) all.push_back(event.kind);
     return all;
@@ -85,13 +85,13 @@ TEST(PdoOutputs, NeverSendAHalfCommandedRpdo) {
   EXPECT_EQ(out.pack().size(), 1U);
 }
 
-TEST(PdoOutputs, TellAnRpdoThatStaysHalfCommandedOnce) {
+TEST(PdoOutputs, ReportAnRpdoThatStaysHalfCommandedOnce) {
   BusPlan plan = one_axis();
   for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;
   Outputs out{plan};
   out.command(controlword, 0x000F);
   for (int i = 0; i < 30; ++i) out.pack();
-  EXPECT_EQ(out.told(), std::vector{EventKind::outputs_held});
+  EXPECT_EQ(out.reported(), std::vector{EventKind::outputs_held});
 }
 
 TEST(PdoOutputs, SendASafeValueBeforeTheFirstCommand) {
@@ -153,16 +153,16 @@ TEST(PdoOutputs, FallBackWhenTheCommandOutlivesItsTime) {
   out.command(controlword, 0x000F);
   out.command(target, 5);
   for (int age = 0; age < 3; ++age) EXPECT_EQ(out.pack().at(0).data[0], 0x0F);
-  EXPECT_TRUE(out.told().empty());
+  EXPECT_TRUE(out.reported().empty());
 
   const auto frames = out.pack();
 
   EXPECT_EQ(frames.at(0), make_frame(CobId::base(0x201), {0x02, 0, 5, 0, 0, 0}));
   out.pack();
-  EXPECT_EQ(out.told(), std::vector{EventKind::fallback_begun});
+  EXPECT_EQ(out.reported(), std::vector{EventKind::fallback_begun});
   out.command(controlword, 0x000F);
   EXPECT_EQ(out.pack().at(0).data[0], 0x0F);
-  EXPECT_EQ(out.told(), std::vector{EventKind::fallback_ended});
+  EXPECT_EQ(out.reported(), std::vector{EventKind::fallback_ended});
 }
 
 TEST(PdoOutputs, TakeTheShorterOfTwoTimesToLive) {
@@ -172,9 +172,9 @@ TEST(PdoOutputs, TakeTheShorterOfTwoTimesToLive) {
   EXPECT_EQ(out.pack().at(0).data[0], 0x0F);
   EXPECT_EQ(out.pack().at(0).data[0], 0x02);
   out.pack();
-  out.told();
+  out.reported();
   out.pack();
-  EXPECT_EQ(out.told(), std::vector{EventKind::fallback_begun});  // the target, after 3
+  EXPECT_EQ(out.reported(), std::vector{EventKind::fallback_begun});  // the target, after 3
 }
 
 TEST(PdoOutputs, CountMissedPeriodsAsAge) {
@@ -197,7 +197,7 @@ TEST(PdoOutputs, NeverSendACommandThatWasTooOldWhenItWasSeen) {
   const auto frames = out.pack();
   EXPECT_EQ(frames.at(0), make_frame(CobId::base(0x201), {0x02, 0, 5, 0, 0, 0}))
       << "the target is held as it was sent last";
-  EXPECT_EQ(out.told(), std::vector{EventKind::fallback_begun});
+  EXPECT_EQ(out.reported(), std::vector{EventKind::fallback_begun});
 }
 
 TEST(PdoOutputs, ALatchedCommandHasASecondUntilItIsSeen) {
@@ -228,7 +228,7 @@ TEST(PdoOutputs, ReleasedOutputsTakeTheirFallbackWithoutAWarning) {
   out.pack();
   out.command(controlword, 0x0006);
   EXPECT_EQ(out.pack().at(0).data[0], 0x06);
-  EXPECT_TRUE(out.told().empty());
+  EXPECT_TRUE(out.reported().empty());
 }
 
 TEST(PdoOutputs, CommandWithoutTimeToLiveNeverGrowsOld) {
@@ -388,11 +388,11 @@ TEST(PdoOutputs, KeepWhatWasForcedUntilTheNextCommandHoweverLateItComes) {
   out.pack();
   out.pdos.outputs().force(2, 0x0002);
   for (int i = 0; i < 20; ++i) out.pack();
-  out.told();
+  out.reported();
 
   out.pdos.outputs().release(2);
   EXPECT_EQ(out.pack().at(0).data[0], 0x02);
-  EXPECT_TRUE(out.told().empty());
+  EXPECT_TRUE(out.reported().empty());
 }
 
 TEST(PdoOutputs, HearNoCommandFromTheTimeOfAForcedValue) {

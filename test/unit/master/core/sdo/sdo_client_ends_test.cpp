@@ -194,13 +194,14 @@ TEST_P(SdoClientEnds, BySilenceWhereverItWaits) {
 
     EXPECT_LE(client.deadline(), now + 500ms);
     now = client.deadline();
-    std::vector<Frame> said = sends();
-    if (!said.empty() && said[0].data[0] == 0xA2) {  // a block: received segments are confirmed
+    std::vector<Frame> declared = sends();
+    if (!declared.empty() &&
+        declared[0].data[0] == 0xA2) {  // a block: received segments are confirmed
       EXPECT_EQ(client.deadline(), now + 500ms);
       now = client.deadline();
-      said = sends();
+      declared = sends();
     }
-    EXPECT_EQ(said, std::vector{abort});
+    EXPECT_EQ(declared, std::vector{abort});
     const bool by_block = transfer.mode == SdoMode::block || transfer.size >= 128;
     if (by_block && point.exchange == 0 && point.answers == 0) {  // now by segments
       EXPECT_EQ(sends().size(), 1U);

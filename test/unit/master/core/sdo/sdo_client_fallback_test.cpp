@@ -65,10 +65,10 @@ TEST_F(SdoClientFallback, GoesBySegmentsWhereADownloadFindsNoAnswer) {
   hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));  // late answer of the abandoned transfer
   EXPECT_FALSE(client.take_no_block()) << "it may be mute altogether";
   hears(rx({0x60, 0x50, 0x1F, 0x01}));
-  const auto told = client.take_no_block();
-  ASSERT_TRUE(told);
-  EXPECT_EQ(told->object, (ObjectKey{0x1F50, 1}));
-  EXPECT_EQ(told->abort_code, 0U);
+  const auto reported = client.take_no_block();
+  ASSERT_TRUE(reported);
+  EXPECT_EQ(reported->object, (ObjectKey{0x1F50, 1}));
+  EXPECT_EQ(reported->abort_code, 0U);
   EXPECT_FALSE(client.take_no_block());
   for (int i = 0; i < 19; ++i) {
     const bool toggle = i % 2 != 0;
@@ -124,7 +124,7 @@ TEST_F(SdoClientFallback, CanBeCancelledBetweenBlockAndSegments) {
   sends_nothing();
 }
 
-TEST_F(SdoClientFallback, TellsOnceThatTheServerRefusesBlock) {
+TEST_F(SdoClientFallback, ReportsOnceThatTheServerRefusesBlock) {
   download(128);
   sends_some(1);
   hears(rx({0x80, 0x50, 0x1F, 0x01, 0x01, 0x00, 0x04, 0x05}));

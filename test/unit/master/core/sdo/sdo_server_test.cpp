@@ -60,7 +60,7 @@ class OwnServer : public testing::Test {
   Time now = 1s;
 };
 
-TEST_F(OwnServer, TellsItsCommunicationParameters) {
+TEST_F(OwnServer, ReportsItsCommunicationParameters) {
   EXPECT_EQ(ask({0x40, 0x00, 0x10, 0x00}), Frames{answer({0x43, 0x00, 0x10, 0x00})});
   EXPECT_EQ(ask({0x40, 0x05, 0x10, 0x00}),
             Frames{answer({0x43, 0x05, 0x10, 0x00, 0x80, 0x00, 0x00, 0x40})});
@@ -73,7 +73,7 @@ TEST_F(OwnServer, TellsItsCommunicationParameters) {
             Frames{answer({0x43, 0x16, 0x10, 0x01, 0x2C, 0x01, 0x05, 0x00})});
 }
 
-TEST_F(OwnServer, TellsItsNameInSegments) {
+TEST_F(OwnServer, ReportsItsNameInSegments) {
   EXPECT_EQ(ask({0x40, 0x08, 0x10, 0x00}), Frames{answer({0x41, 0x08, 0x10, 0x00, 0x13})});
   EXPECT_EQ(ask({0x60}), Frames{answer({0x00, 't', 'a', 'k', 't', ' ', 'C', 'A'})});
   EXPECT_EQ(ask({0x70}), Frames{answer({0x10, 'N', 'o', 'p', 'e', 'n', ' ', 'm'})});
@@ -81,7 +81,7 @@ TEST_F(OwnServer, TellsItsNameInSegments) {
   EXPECT_EQ(ask({0x60}), Frames{answer({0x80, 0x00, 0x00, 0x00, 0x01, 0x00, 0x04, 0x05})});
 }
 
-TEST_F(OwnServer, TellsItsNameAsABlock) {
+TEST_F(OwnServer, ReportsItsNameAsABlock) {
   EXPECT_EQ(ask({0xA4, 0x08, 0x10, 0x00, 0x02}), Frames{answer({0xC6, 0x08, 0x10, 0x00, 0x13})});
   EXPECT_EQ(ask({0xA3}), (Frames{answer({0x01, 't', 'a', 'k', 't', ' ', 'C', 'A'}),
                                  answer({0x02, 'N', 'o', 'p', 'e', 'n', ' ', 'm'})}));
@@ -94,7 +94,7 @@ TEST_F(OwnServer, TellsItsNameAsABlock) {
   EXPECT_EQ(server.deadline(), never);
 }
 
-TEST_F(OwnServer, TellsTheNodesThatItManages) {
+TEST_F(OwnServer, ReportsTheNodesThatItManages) {
   EXPECT_EQ(ask({0x40, 0x80, 0x1F, 0x00}), Frames{answer({0x43, 0x80, 0x1F, 0x00, 0x01})});
   EXPECT_EQ(ask({0x40, 0x81, 0x1F, 0x05}), Frames{answer({0x43, 0x81, 0x1F, 0x05, 0x0D})});
   EXPECT_EQ(ask({0x40, 0x81, 0x1F, 0x06}), Frames{answer({0x43, 0x81, 0x1F, 0x06})});
@@ -105,7 +105,7 @@ TEST_F(OwnServer, TellsTheNodesThatItManages) {
   EXPECT_EQ(ask({0x40, 0x82, 0x1F, 0x05}), Frames{answer({0x4F, 0x82, 0x1F, 0x05, 0x01})});
 }
 
-TEST_F(OwnServer, TellsHowItStartsTheNetwork) {
+TEST_F(OwnServer, ReportsHowItStartsTheNetwork) {
   EXPECT_EQ(ask({0x40, 0x89, 0x1F, 0x00}), Frames{answer({0x43, 0x89, 0x1F, 0x00})});
   EXPECT_EQ(ask({0x40, 0x2A, 0x10, 0x00}), Frames{answer({0x4B, 0x2A, 0x10, 0x00})});
   plan.start_up = {
@@ -119,7 +119,7 @@ TEST_F(OwnServer, TellsHowItStartsTheNetwork) {
   EXPECT_EQ(ask({0x40, 0x80, 0x1F, 0x00}), Frames{answer({0x43, 0x80, 0x1F, 0x00, 0x4D})});
 }
 
-TEST_F(OwnServer, TellsHowItBootsEachNode) {
+TEST_F(OwnServer, ReportsHowItBootsEachNode) {
   const auto word = [](std::uint8_t low) {
     return std::vector{std::byte{low}, std::byte{2}, std::byte{}, std::byte{}};
   };
@@ -143,7 +143,7 @@ TEST_F(OwnServer, TellsHowItBootsEachNode) {
   EXPECT_EQ(ask({0x40, 0x55, 0x1F, 0x00}), Frames{answer({0x4F, 0x55, 0x1F, 0x00, 0x7F})});
 }
 
-TEST_F(OwnServer, TellsWhatItExpectsOfANodesIdentity) {
+TEST_F(OwnServer, ReportsWhatItExpectsOfANodesIdentity) {
   const auto word = [](std::uint8_t low) {
     return std::vector{std::byte{low}, std::byte{1}, std::byte{2}, std::byte{3}};
   };

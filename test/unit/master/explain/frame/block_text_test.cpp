@@ -39,7 +39,7 @@ TEST_F(BlockTextTest, ABlockUploadShowsItsValueAndItsCrc) {
             "SDO node 5 is asked: read 1018:01 vendor id");
 }
 
-TEST_F(BlockTextTest, ABlockDownloadTellsWhatIsRepeatedAndAWrongCrc) {
+TEST_F(BlockTextTest, ABlockDownloadReportsWhatIsRepeatedAndAWrongCrc) {
   plain(0x605, {0xC6, 0x50, 0x1F, 0x01, 0x09, 0, 0, 0});
   EXPECT_EQ(plain(0x585, {0xA4, 0x50, 0x1F, 0x01, 0x02, 0, 0, 0}),
             "SDO node 5 answers: block download 1F50:01 program data accepted, 2 segments a block");

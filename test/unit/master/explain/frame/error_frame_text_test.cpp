@@ -15,7 +15,7 @@ std::string read(const char* text) {
   return error_frame_text(line->frame.id.id(), line->frame.payload());
 }
 
-TEST(ErrorFrameText, ChangesOfTheControllersStateAreTold) {
+TEST(ErrorFrameText, ChangesOfTheControllersStateAreReported) {
   EXPECT_EQ(read("(1.0) can0 20000004#000C000000006000"),
             "receive errors reach the warning level, transmit errors reach the warning level; "
             "error counters: transmit 96, receive 0");

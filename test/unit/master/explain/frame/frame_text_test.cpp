@@ -30,7 +30,7 @@ TEST_F(FrameTextTest, HeartbeatsNameTheState) {
   EXPECT_EQ(plain(0x705, {0x42}), "HEARTBEAT node 5 unknown state 0x42");
 }
 
-TEST_F(FrameTextTest, AnEmcyIsToldInWords) {
+TEST_F(FrameTextTest, AnEmcyIsReportedInWords) {
   const std::string text = named(0x085, {0x30, 0x81, 0x11, 0x05, 0, 0, 0, 0});
 
   EXPECT_TRUE(text.starts_with("EMCY shoulder 8130 ")) << text;
@@ -98,11 +98,11 @@ TEST_F(FrameTextTest, AnEmcyHasTheWordsOfItsDeviceData) {
   network_.plan.nodes[0].emcy_texts.push_back({0x5441, "CANopen time-out (E.CAN)"});
   network_.plan.nodes[0].emcy_cob_id = CobId::extended(0x12345);
 
-  const auto told =
+  const auto reported =
       named_.meaning(make_frame(CobId::extended(0x12345), {0x41, 0x54, 0x81, 0, 0, 0, 0, 0}));
 
-  EXPECT_EQ(told.service, "EMCY");
-  EXPECT_EQ(told.text,
+  EXPECT_EQ(reported.service, "EMCY");
+  EXPECT_EQ(reported.text,
             "shoulder 5441 CANopen time-out (E.CAN), error register 81 (generic, manufacturer)");
 }
 
@@ -117,7 +117,7 @@ TEST_F(FrameTextTest, SyncAndTimeMayHaveLongIdentifiers) {
   EXPECT_EQ(plain(0x080, {1, 2}), "SYNC 1 (2 bytes instead of at most 1)");
 }
 
-TEST_F(FrameTextTest, RequestsToAnNmtMasterAreTold) {
+TEST_F(FrameTextTest, RequestsToAnNmtMasterAreReported) {
   EXPECT_EQ(named(0x67F, {0x2F, 0x82, 0x1F, 0x05, 0x05, 0, 0, 0}),
             "SDO master is asked: write 1F82:05 request NMT = 5: start shoulder");
   EXPECT_EQ(named(0x67F, {0x2F, 0x82, 0x1F, 0x80, 0x06, 0, 0, 0}),
@@ -131,8 +131,8 @@ TEST_F(FrameTextTest, RemoteRequestsAreNotReadAsData) {
   const auto remote = [&](std::uint32_t id) {
     Frame frame = make_frame(CobId::base(id), {});
     frame.rtr = true;
-    const FrameMeaning told = named_.meaning(frame);
-    return std::string{told.service} + " " + told.text;
+    const FrameMeaning reported = named_.meaning(frame);
+    return std::string{reported.service} + " " + reported.text;
   };
 
   EXPECT_EQ(remote(0x185), "TPDO 1 shoulder remote request");

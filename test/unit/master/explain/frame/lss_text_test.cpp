@@ -56,7 +56,7 @@ TEST_F(LssTextTest, EveryAnswerOfAnLssSlaveIsNamed) {
   EXPECT_EQ(plain(0x7E4, {0x50, 0, 0, 0, 0, 0, 0, 0}), "LSS a device without node id answers");
 }
 
-TEST_F(LssTextTest, AFastscanTellsWhatItAsks) {
+TEST_F(LssTextTest, AFastscanReportsWhatItAsks) {
   EXPECT_EQ(plain(0x7E5, {0x51, 0, 0, 0, 0, 0x80, 0, 0}),
             "LSS fastscan: which device has no node id?");
   EXPECT_EQ(plain(0x7E5, {0x51, 0x50, 0x01, 0, 0, 0x03, 0, 0}),

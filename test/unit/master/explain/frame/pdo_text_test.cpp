@@ -58,7 +58,7 @@ TEST_F(PdoTextTest, MultiplexedPdosNameTheirObject) {
             "plan)");
 }
 
-TEST_F(PdoTextTest, TheParameterChannelOfAConverterIsTold) {
+TEST_F(PdoTextTest, TheParameterChannelOfAConverterIsReported) {
   network_.plan.nodes[0].device_data = "Astraada DRV-28";
   const PdoRow row{.cob_id = CobId::base(0x205), .node = 5_node, .length = 8, .on_request = true};
   network_.plan.pdos.rpdos.push_back(row);

@@ -20,7 +20,7 @@ TEST_F(SdoTextTest, ADownloadIsShownWithTheTypeOfTheEds) {
             "SDO shoulder answers: written 6083:00");
 }
 
-TEST_F(SdoTextTest, AnAbortIsToldInWords) {
+TEST_F(SdoTextTest, AnAbortIsReportedInWords) {
   EXPECT_EQ(named(0x585, {0x80, 0x83, 0x60, 0x00, 0x30, 0x00, 0x09, 0x06}).substr(0, 46),
             "SDO shoulder answers: ABORT 6083:00: 0609 0030");
 }
@@ -92,8 +92,8 @@ TEST_F(SdoTextTest, SdoChannelsOfTheDescriptionAreFollowedApart) {
   server(2, {0xC5, 0x05, 0x00, 0x20});
   FrameText reader{network_.plan, network_.devices};
   const auto long_id = [&](std::uint32_t id, std::initializer_list<std::uint8_t> bytes) {
-    const FrameMeaning told = reader.meaning(make_frame(CobId::extended(id), bytes));
-    return std::string{told.service} + " " + told.text;
+    const FrameMeaning reported = reader.meaning(make_frame(CobId::extended(id), bytes));
+    return std::string{reported.service} + " " + reported.text;
   };
 
   EXPECT_EQ(long_id(0x645, {0x40, 0x08, 0x10, 0, 0, 0, 0, 0}),
@@ -123,7 +123,7 @@ TEST_F(SdoTextTest, ParametersOfAPdoHaveItsNumber) {
   EXPECT_EQ(asked(0x1016, 1), "SDO node 5 is asked: read 1016:01 consumer heartbeat time");
 }
 
-TEST_F(SdoTextTest, ARepeatedToggleBitOfSegmentsIsTold) {
+TEST_F(SdoTextTest, ARepeatedToggleBitOfSegmentsIsReported) {
   plain(0x605, {0x21, 0x08, 0x10, 0, 0x0E, 0, 0, 0});
   EXPECT_EQ(plain(0x585, {0x60, 0x08, 0x10, 0, 0, 0, 0, 0}),
             "SDO node 5 answers: write 1008:00 manufacturer device name accepted, segments follow");
@@ -136,7 +136,7 @@ TEST_F(SdoTextTest, ARepeatedToggleBitOfSegmentsIsTold) {
             "bit is wrong");
 }
 
-TEST_F(SdoTextTest, AnAnswerOfAnotherLengthThanAnnouncedIsTold) {
+TEST_F(SdoTextTest, AnAnswerOfAnotherLengthThanAnnouncedIsReported) {
   plain(0x605, {0x40, 0x08, 0x10, 0, 0, 0, 0, 0});
   plain(0x585, {0x41, 0x08, 0x10, 0, 0x05, 0, 0, 0});
   plain(0x605, {0x60, 0, 0, 0, 0, 0, 0, 0});

@@ -29,7 +29,7 @@ class GatewayRig {
                        rig.master->publish_outputs(rig.world->now());
                        return true;
                      },
-                 .send = [this](int, const std::string& line) { said.push_back(line); }}} {
+                 .send = [this](int, const std::string& line) { declared.push_back(line); }}} {
     rig.on_image = [this](const ImageView& image) { gateway.see(image); };
   }
   void connect() { gateway.connect(1); }
@@ -41,16 +41,16 @@ class GatewayRig {
   }
   /// Returns the next line, or a text that tells what came instead.
   std::string next_line() {
-    for (int i = 0; i < 20'000 && said.empty(); ++i) cycle();
-    if (said.empty()) return "(nothing)";
-    std::string line = said.front();
-    said.pop_front();
+    for (int i = 0; i < 20'000 && declared.empty(); ++i) cycle();
+    if (declared.empty()) return "(nothing)";
+    std::string line = declared.front();
+    declared.pop_front();
     return line;
   }
 
   Rig rig;
   AsciiGateway gateway;
-  std::deque<std::string> said;
+  std::deque<std::string> declared;
 };
 
 void harm(GatewayRig& rig, const std::string& words) {
@@ -85,7 +85,7 @@ void play(const std::string& name, GatewayRig& rig) {
     if (line[0] == '!') harm(rig, rest);
     for (int i = line[0] == '.' ? std::stoi(rest) : 0; i > 0; --i) rig.cycle();
   }
-  EXPECT_TRUE(rig.said.empty()) << rig.said.front();
+  EXPECT_TRUE(rig.declared.empty()) << rig.declared.front();
 }
 
 DeviceTable lss_device(const BusPlan& plan, std::size_t row, std::uint32_t serial) {
@@ -140,7 +140,7 @@ TEST(AsciiDialogue, Lss) {
   play("lss.txt", rig);
 }
 
-TEST(AsciiGateway, TellsBootUpsUnlessAClientDoesNotWantThem) {
+TEST(AsciiGateway, ReportsBootUpsUnlessAClientDoesNotWantThem) {
   GatewayRig rig{axes({.nodes = 1})};
   ASSERT_TRUE(rig.rig.boot());
   rig.connect();
@@ -149,37 +149,37 @@ TEST(AsciiGateway, TellsBootUpsUnlessAClientDoesNotWantThem) {
   EXPECT_EQ(rig.next_line(), "1 1 BOOT_UP");
   rig.gateway.command(1, "[1] boot_up_indication Disable");
   rig.gateway.hear(event);
-  EXPECT_EQ(rig.said, (std::deque<std::string>{"[1] OK"}));
+  EXPECT_EQ(rig.declared, (std::deque<std::string>{"[1] OK"}));
 }
 
-TEST(AsciiGateway, TellsTheBootUpOfANodeThatItResets) {
+TEST(AsciiGateway, ReportsTheBootUpOfANodeThatItResets) {
   GatewayRig rig{axes({.nodes = 2})};
   ASSERT_TRUE(rig.rig.boot());
   rig.connect();
   rig.gateway.command(1, "[1] 1 reset node");
   for (int i = 0; i < 500; ++i) rig.cycle();
   EXPECT_TRUE(rig.rig.all_ready());
-  const auto at = [&](const char* line) { return std::ranges::find(rig.said, line); };
-  EXPECT_EQ(std::ranges::count(rig.said, "1 1 BOOT_UP"), 1);
+  const auto at = [&](const char* line) { return std::ranges::find(rig.declared, line); };
+  EXPECT_EQ(std::ranges::count(rig.declared, "1 1 BOOT_UP"), 1);
   EXPECT_LT(at("[1] OK"), at("1 1 BOOT_UP"));
   EXPECT_LT(at("1 1 BOOT_UP"), at("1 1 USER BOOT OK"));
-  EXPECT_NE(at("1 1 USER BOOT OK"), rig.said.end());
+  EXPECT_NE(at("1 1 USER BOOT OK"), rig.declared.end());
 }
 
 TEST(AsciiGateway, HelpsInLines) {
   GatewayRig rig{axes({.nodes = 1})};
   rig.connect();
   rig.gateway.command(1, "[3] help");
-  ASSERT_GT(rig.said.size(), 10U);
-  EXPECT_EQ(rig.said.back(), "[3] OK");
-  rig.said.pop_back();
-  for (const std::string& line : rig.said) {
+  ASSERT_GT(rig.declared.size(), 10U);
+  EXPECT_EQ(rig.declared.back(), "[3] OK");
+  rig.declared.pop_back();
+  for (const std::string& line : rig.declared) {
     EXPECT_TRUE(line.starts_with("# ")) << line;
     EXPECT_EQ(line.find('\n'), std::string::npos) << line;
   }
 }
 
-TEST(AsciiGateway, TellsErrorControlAndBusErrors) {
+TEST(AsciiGateway, ReportsErrorControlAndBusErrors) {
   GatewayRig rig{axes({.nodes = 1})};
   rig.connect();
   Event failed{.kind = EventKind::boot_failed, .node = 1};
@@ -190,9 +190,10 @@ TEST(AsciiGateway, TellsErrorControlAndBusErrors) {
   rig.gateway.hear({.kind = EventKind::boot_done, .node = 1});
   rig.gateway.hear({.kind = EventKind::bus_off});
   rig.gateway.hear({.kind = EventKind::cycles_missed});
-  EXPECT_EQ(rig.said, (std::deque<std::string>{"1 1 USER BOOT D", "1 1 ERROR 203 (heartbeat lost)",
-                                               "1 1 ERROR 200 (lost guarding message)",
-                                               "1 1 USER BOOT OK", "1 ERROR 301 (bus off)"}));
+  EXPECT_EQ(rig.declared,
+            (std::deque<std::string>{"1 1 USER BOOT D", "1 1 ERROR 203 (heartbeat lost)",
+                                     "1 1 ERROR 200 (lost guarding message)", "1 1 USER BOOT OK",
+                                     "1 ERROR 301 (bus off)"}));
 }
 
 TEST(AsciiGateway, RefusesMoreThanSixteenCommandsAtOnce) {
@@ -203,7 +204,7 @@ TEST(AsciiGateway, RefusesMoreThanSixteenCommandsAtOnce) {
     rig.gateway.command(1, "[" + std::to_string(i) + "] 1 r 0x1000 0 u32");
   }
   EXPECT_EQ(
-      rig.said,
+      rig.declared,
       (std::deque<std::string>{"[17] ERROR: 102 (request not processed due to internal state)"}));
 }
 
@@ -214,10 +215,11 @@ TEST(AsciiGateway, DoesNothingOfALineThatWaitedAndSaysSo) {
   rig.gateway.refuse_waited(1, "", 2500ms);
   rig.gateway.refuse_waited(1, "[8] 1 nonsense", 2500ms);
 
-  ASSERT_EQ(rig.said.size(), 2U);
-  EXPECT_EQ(rig.said[0].find("[7] ERROR: 102 ("), 0U) << rig.said[0];
-  EXPECT_NE(rig.said[0].find("taktd did not run for 2500 ms"), std::string::npos) << rig.said[0];
-  EXPECT_EQ(rig.said[1].find("[8] ERROR: 101 ("), 0U) << rig.said[1];
+  ASSERT_EQ(rig.declared.size(), 2U);
+  EXPECT_EQ(rig.declared[0].find("[7] ERROR: 102 ("), 0U) << rig.declared[0];
+  EXPECT_NE(rig.declared[0].find("taktd did not run for 2500 ms"), std::string::npos)
+      << rig.declared[0];
+  EXPECT_EQ(rig.declared[1].find("[8] ERROR: 101 ("), 0U) << rig.declared[1];
   EXPECT_FALSE(rig.gateway.owes(1));
 }
 
@@ -230,7 +232,7 @@ TEST(AsciiGateway, AfterAShortGapRefusesSetPointsThatWaitedAndTakesRequests) {
   rig.gateway.refuse_waited_outputs(1, "[9] 1 r 0x1000 0 u32", 950ms);
 
   EXPECT_EQ(
-      rig.said,
+      rig.declared,
       (std::deque<std::string>{
           "[7] ERROR: 102 (request not processed due to internal state: taktd did not run for 950 "
           "ms, and this line may have waited as long: send it again)",
@@ -246,7 +248,7 @@ TEST(AsciiGateway, ForgetsAClientThatHasLeft) {
   rig.gateway.disconnect(1);
   for (int i = 0; i < 100; ++i) rig.cycle();
   rig.gateway.command(1, "[2] 1 r 0x1000 0 u32");
-  EXPECT_TRUE(rig.said.empty());
+  EXPECT_TRUE(rig.declared.empty());
 }
 
 TEST(AsciiGateway, AnswersAnyGarbageWithOneLineOrNone) {
@@ -259,13 +261,13 @@ TEST(AsciiGateway, AnswersAnyGarbageWithOneLineOrNone) {
     std::string line{i % 3 == 0 ? "[5] " : ""};
     for (auto left = random() % 60; left != 0; --left) line += letters[random() % letters.size()];
     rig.gateway.command(1, line);
-    ASSERT_LE(rig.said.size(), 1U) << line;
-    for (const std::string& answer : rig.said) {
+    ASSERT_LE(rig.declared.size(), 1U) << line;
+    for (const std::string& answer : rig.declared) {
       EXPECT_EQ(answer.find_first_of("\r\n\x01"), std::string::npos) << line;
     }
-    rig.said.clear();
+    rig.declared.clear();
     if (i % 10 == 0) rig.cycle();
-    rig.said.clear();
+    rig.declared.clear();
   }
 }
 

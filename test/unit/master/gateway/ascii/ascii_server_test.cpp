@@ -34,7 +34,7 @@ TEST_F(AsciiServerTest, DropsALineThatIsTooLongAndGoesOn) {
   EXPECT_EQ(too_long, 1);
 }
 
-TEST_F(AsciiServerTest, TellsThatAClientHasGone) {
+TEST_F(AsciiServerTest, ReportsThatAClientHasGone) {
   listen();
   {
     const FileDescriptor client = connect();

@@ -46,7 +46,7 @@ class CommandsTest : public testing::Test {
     message.time_to_live = 0;
     return message;
   }
-  bool told(const std::string& part) const {
+  bool reported(const std::string& part) const {
     return !notices.empty() && notices.back().text.find(part) != std::string::npos;
   }
 
@@ -80,14 +80,14 @@ TEST_F(CommandsTest, InputsAndSignalsThatAreNotThereAreRefusedAsAWhole) {
   }
 
   EXPECT_TRUE(outputs.empty());
-  EXPECT_TRUE(told("not an output"));
+  EXPECT_TRUE(reported("not an output"));
 }
 
 TEST_F(CommandsTest, ValueThatDoesNotFitItsBitsIsRefusedAsAWhole) {
   EXPECT_FALSE(take(command({2, 1}, {5, 65536})));
 
   EXPECT_TRUE(outputs.empty());
-  EXPECT_TRUE(told("does not fit its 16 bits"));
+  EXPECT_TRUE(reported("does not fit its 16 bits"));
 }
 
 TEST_F(CommandsTest, RefusalsAreCountedByTheirReason) {
@@ -113,21 +113,21 @@ TEST_F(CommandsTest, ReplayedLogDoesNotMoveTheMachine) {
 
   EXPECT_FALSE(take(replayed));
   EXPECT_TRUE(outputs.empty());
-  EXPECT_TRUE(told("another session"));
+  EXPECT_TRUE(reported("another session"));
 }
 
-TEST_F(CommandsTest, AProgramOfAnotherSchemaIsToldWhatToDo) {
+TEST_F(CommandsTest, AProgramOfAnotherSchemaIsReportedWhatToDo) {
   command_t old = command({1}, {0x0F});
   old.schema = 1;
 
   EXPECT_FALSE(take(old));
-  EXPECT_TRUE(told("message of schema 1: rebuild the application against this takt"));
+  EXPECT_TRUE(reported("message of schema 1: rebuild the application against this takt"));
 }
 
 TEST_F(CommandsTest, CommandThatWaitedLongerThanItsTimeToLiveIsRefused) {
   EXPECT_FALSE(take(command({1}, {0x0F}), 105));
 
-  EXPECT_TRUE(told("too old"));
+  EXPECT_TRUE(reported("too old"));
 }
 
 TEST_F(CommandsTest, NodeThatIsNotReadyTakesNothingAndTheOtherNodeDoes) {
@@ -136,7 +136,7 @@ TEST_F(CommandsTest, NodeThatIsNotReadyTakesNothingAndTheOtherNodeDoes) {
   EXPECT_TRUE(take(command({1, 3}, {0x0F, 1})));
 
   EXPECT_EQ(outputs, (std::map<SignalIndex, std::int64_t>{{3, 1}}));
-  EXPECT_TRUE(told("node 5 (shoulder): the node has not booted"));
+  EXPECT_TRUE(reported("node 5 (shoulder): the node has not booted"));
 }
 
 TEST_F(CommandsTest, SecondSenderWaitsForTheEndOfTheLease) {
@@ -146,13 +146,13 @@ TEST_F(CommandsTest, SecondSenderWaitsForTheEndOfTheLease) {
   other.instance = 2;
 
   EXPECT_FALSE(take(other, 101));
-  EXPECT_TRUE(told("belong to 'move'"));
+  EXPECT_TRUE(reported("belong to 'move'"));
   other.cycle = 105;
   EXPECT_TRUE(take(other, 105));
   EXPECT_EQ(outputs[1], 0x0F);
 }
 
-TEST_F(CommandsTest, SecondProgramOfTheSameNameIsRefusedAndToldSo) {
+TEST_F(CommandsTest, SecondProgramOfTheSameNameIsRefusedAndReportedSo) {
   EXPECT_TRUE(take(command({1}, {0x06})));
   command_t other = command({1}, {0x0F});
   other.instance = 2;
@@ -160,7 +160,7 @@ TEST_F(CommandsTest, SecondProgramOfTheSameNameIsRefusedAndToldSo) {
   EXPECT_FALSE(take(other, 101));
 
   EXPECT_EQ(outputs[1], 0x06);
-  EXPECT_TRUE(told("belong to another program of the same name, 'move'"));
+  EXPECT_TRUE(reported("belong to another program of the same name, 'move'"));
 }
 
 TEST_F(CommandsTest, SenderWithoutAnInstanceIsRefused) {
@@ -168,7 +168,7 @@ TEST_F(CommandsTest, SenderWithoutAnInstanceIsRefused) {
   nobody.instance = 0;
 
   EXPECT_FALSE(take(nobody));
-  EXPECT_TRUE(told("the command has instance 0"));
+  EXPECT_TRUE(reported("the command has instance 0"));
 }
 
 TEST_F(CommandsTest, CommandOfNoCycleIsRefused) {
@@ -179,7 +179,7 @@ TEST_F(CommandsTest, CommandOfNoCycleIsRefused) {
   }
 
   EXPECT_TRUE(outputs.empty());
-  EXPECT_TRUE(told("computed from cycle"));
+  EXPECT_TRUE(reported("computed from cycle"));
 }
 
 TEST_F(CommandsTest, CommandFromTheFutureIsRefused) {
@@ -191,7 +191,7 @@ TEST_F(CommandsTest, CommandFromTheFutureIsRefused) {
   }
 
   EXPECT_EQ(outputs[1], 0x0F);
-  EXPECT_TRUE(told("the command comes from the future"));
+  EXPECT_TRUE(reported("the command comes from the future"));
 }
 
 TEST_F(CommandsTest, LongestTimeToLiveGivesALeaseOfOneSecond) {
@@ -216,7 +216,7 @@ TEST_F(CommandsTest, ReleasedOutputsAreGivenUpAtOnce) {
 
   EXPECT_EQ(last_time_to_live, output_released);
   EXPECT_EQ(commands.holder(0, 101), "");
-  EXPECT_TRUE(told("'move' has released the outputs of shoulder"));
+  EXPECT_TRUE(reported("'move' has released the outputs of shoulder"));
   EXPECT_EQ(notices.back().weight, Weight::note);
 }
 
@@ -227,13 +227,13 @@ TEST_F(CommandsTest, AnOldReleaseReleasesNothing) {
   EXPECT_TRUE(take(fresh, 103));
 
   EXPECT_FALSE(take(release(102), 103)) << "a later command has overtaken it";
-  EXPECT_TRUE(told(
+  EXPECT_TRUE(reported(
       "node 5 (shoulder): the command is older than the newest one of the node: it is computed "
       "from cycle 102"));
   EXPECT_FALSE(take(release(0), 103));
-  EXPECT_TRUE(told("is computed from cycle 0"));
+  EXPECT_TRUE(reported("is computed from cycle 0"));
   EXPECT_FALSE(take(release(105), 103));
-  EXPECT_TRUE(told("the command comes from the future"));
+  EXPECT_TRUE(reported("the command comes from the future"));
 
   EXPECT_EQ(commands.holder(0, 103), "move");
   EXPECT_EQ(last_time_to_live, 5U);
@@ -246,9 +246,9 @@ TEST_F(CommandsTest, ACommandOfTheCycleOfItsReleaseIsNotCalledOlder) {
 
   EXPECT_FALSE(take(command({1}, {0x0F})));
 
-  EXPECT_TRUE(
-      told("node 5 (shoulder): the command is not newer than the release of its sender: both are "
-           "computed from cycle 100"));
+  EXPECT_TRUE(reported(
+      "node 5 (shoulder): the command is not newer than the release of its sender: both are "
+      "computed from cycle 100"));
   EXPECT_EQ(commands.refusals()[std::to_underlying(CommandRefusal::overtaken)], 1U);
 }
 
@@ -260,7 +260,7 @@ TEST_F(CommandsTest, AReleaseHasATimeToLiveToo) {
   EXPECT_FALSE(take(end, 103));
 
   EXPECT_TRUE(
-      told("the command is too old: it is computed from cycle 100, the present cycle is 103"));
+      reported("the command is too old: it is computed from cycle 100, the present cycle is 103"));
   EXPECT_EQ(commands.holder(0, 103), "move");
 }
 
@@ -272,8 +272,8 @@ TEST_F(CommandsTest, AReleaseOnTheChannelOfOneNodeReachesThisNodeOnly) {
 
   EXPECT_EQ(commands.holder(0, 101), "move");
   EXPECT_EQ(commands.holder(1, 101), "");
-  EXPECT_TRUE(told("'move' has released the outputs of")) << notices.back().text;
-  EXPECT_FALSE(told("shoulder"));
+  EXPECT_TRUE(reported("'move' has released the outputs of")) << notices.back().text;
+  EXPECT_FALSE(reported("shoulder"));
 }
 
 TEST_F(CommandsTest, AnOlderCommandDoesNotOvertakeANewerOne) {
@@ -285,8 +285,8 @@ TEST_F(CommandsTest, AnOlderCommandDoesNotOvertakeANewerOne) {
   EXPECT_FALSE(take(command({1}, {1}), 102)) << "a copy of the first one, within its time to live";
 
   EXPECT_EQ(outputs[1], 2);
-  EXPECT_TRUE(
-      told("the command is older than the newest one of the node: it is computed from cycle 100"));
+  EXPECT_TRUE(reported(
+      "the command is older than the newest one of the node: it is computed from cycle 100"));
   for (int i = 0; i < 100; ++i) take(command({1}, {1}), 102);
   EXPECT_EQ(notices.size(), 1U) << "at most one a second";
   newer.values = {3};
@@ -311,10 +311,10 @@ TEST_F(CommandsTest, ControlCharactersOfASenderReachNoTerminal) {
   message.sender = "a\n\x1b[2Jb";
 
   EXPECT_FALSE(take(message));
-  EXPECT_TRUE(told("command of 'a??[2Jb' refused"));
+  EXPECT_TRUE(reported("command of 'a??[2Jb' refused"));
 }
 
-TEST_F(CommandsTest, SameRefusalIsToldOnceASecond) {
+TEST_F(CommandsTest, SameRefusalIsReportedOnceASecond) {
   command_t replayed = command({1}, {0x0F});
   replayed.session = 41;
   for (int i = 0; i < 500; ++i) take(replayed);
@@ -324,7 +324,7 @@ TEST_F(CommandsTest, SameRefusalIsToldOnceASecond) {
 
   now += std::chrono::seconds{2};
   take(replayed);
-  EXPECT_TRUE(told("499 more"));
+  EXPECT_TRUE(reported("499 more"));
 }
 
 TEST_F(CommandsTest, ObservingTakesNothing) {
@@ -334,7 +334,7 @@ TEST_F(CommandsTest, ObservingTakesNothing) {
                      [this](const Notice& notice) { notices.push_back(notice); }};
 
   EXPECT_FALSE(observing.take(command({1}, {1}), {.cycle = 100, .now = now, .nodes = nodes}));
-  EXPECT_TRUE(told("only observes"));
+  EXPECT_TRUE(reported("only observes"));
 }
 
 }  // namespace

@@ -200,7 +200,7 @@ TEST_F(RequestsTest, RemembersABoundedNumber) {
   EXPECT_TRUE(requests.take(upload(1000), now));
 }
 
-TEST_F(RequestsTest, AbortIsToldInWords) {
+TEST_F(RequestsTest, AbortIsReportedInWords) {
   requests.take(upload(1), now);
 
   const auto answer = requests.finish(

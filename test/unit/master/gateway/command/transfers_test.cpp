@@ -126,7 +126,7 @@ TEST_F(TransfersTest, AnUploadIsFetchedInParts) {
   EXPECT_EQ(states[2].data[0], 2048 % 251);
 }
 
-TEST_F(TransfersTest, AnUploadOnItsWayTellsWhatTheDeviceAnnounced) {
+TEST_F(TransfersTest, AnUploadOnItsWayReportsWhatTheDeviceAnnounced) {
   begin("upload", 4096);
   EXPECT_EQ(last().total, 0);
   buffers[0].announced = 2500;
@@ -142,7 +142,7 @@ TEST_F(TransfersTest, AnUploadOnItsWayTellsWhatTheDeviceAnnounced) {
   EXPECT_EQ(last().total, 0) << "of another transfer";
 }
 
-TEST_F(TransfersTest, AFailureIsToldInWords) {
+TEST_F(TransfersTest, AFailureIsReportedInWords) {
   begin("upload", 100);
   reply(SdoFault::aborted_by_device, 0x0601'0001);
   EXPECT_EQ(last().stage, "failed");
@@ -223,7 +223,7 @@ TEST_F(TransfersTest, WaitsForRoomInTheRing) {
   EXPECT_EQ(submitted.size(), 1U);
 }
 
-TEST_F(TransfersTest, TellsProgressTwiceASecond) {
+TEST_F(TransfersTest, ReportsProgressTwiceASecond) {
   begin("upload", 100);
   states.clear();
   for (int i = 0; i < 20; ++i) {

@@ -51,7 +51,7 @@ TEST(Diagnosis, CountsNodesThatAreNotReadyOrNotOperational) {
   EXPECT_EQ(diagnosis.fill(snapshot).nodes_not_ok, 2);
 }
 
-TEST(Diagnosis, TellsTheStateOfTheBus) {
+TEST(Diagnosis, ReportsTheStateOfTheBus) {
   const BusPlan plan = two_nodes();
   Diagnosis diagnosis{plan};
 
@@ -64,7 +64,7 @@ TEST(Diagnosis, TellsTheStateOfTheBus) {
   EXPECT_EQ(diagnosis.fill(snapshot).state, 3);
 }
 
-TEST(Diagnosis, TellsOverrunsOnceAndTheWarningLimitWhileItLasts) {
+TEST(Diagnosis, ReportsOverrunsOnceAndTheWarningLimitWhileItLasts) {
   const BusPlan plan = two_nodes();
   Diagnosis diagnosis{plan};
   StatusSnapshot snapshot = good();
@@ -122,7 +122,7 @@ TEST(EmcyHistory, KeepsTheNewestTenOfANode) {
   EXPECT_EQ(history.of(1).back(), 3);
 }
 
-TEST(StatusMessages, OfANodeThatHasBeenSilentForAMonthTellTheLongestAge) {
+TEST(StatusMessages, OfANodeThatHasBeenSilentForAMonthReportTheLongestAge) {
   const BusPlan plan = two_nodes();
   StatusMessages messages{plan, {}};
   StatusSnapshot snapshot = good();

@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-TEST(PdoMessages, TellAgeCountAndTroubleOfEachPdo) {
+TEST(PdoMessages, ReportAgeCountAndTroubleOfEachPdo) {
   const BusPlan plan = test::axes({.nodes = 1});
   StatusSnapshot snapshot;
   snapshot.tpdos = {{.missing = 3, .late = 2, .length_errors = 5, .too_long = 1, .stale = true}};

@@ -27,7 +27,7 @@ BusStatus in(SyncState state) {
   return bus;
 }
 
-TEST(SyncMessage, TellsWhomTheCycleIsLockedTo) {
+TEST(SyncMessage, ReportsWhomTheCycleIsLockedTo) {
   BusStatus bus = in(SyncState::locked);
   bus.beats = 77;
   bus.sync_losses = 2;

@@ -105,13 +105,13 @@ class TypedRelease : public testing::Test {
   test::RigClocks clocks{rig};
   TwoChannels lcm;
   std::vector<TypedMessage> types;
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   Bridge bridge{*rig.master,
                 lcm,
                 clocks,
                 {.session = 7, .interface = {}, .realtime = {}},
                 [this](const Notice& notice) {
-                  if (notice.kind == "outputs_released") told.push_back(notice.text);
+                  if (notice.kind == "outputs_released") reported.push_back(notice.text);
                 }};
 };
 
@@ -124,11 +124,11 @@ TEST_F(TypedRelease, ReachesTheNodeOfItsChannelOnly) {
   send(1, Release::yes);
   cycle();
 
-  EXPECT_EQ(told, std::vector<std::string>{"'app' has released the outputs of axis2"});
+  EXPECT_EQ(reported, std::vector<std::string>{"'app' has released the outputs of axis2"});
   send(0, Release::yes);
   cycle();
-  ASSERT_EQ(told.size(), 2U) << "the first node was held until now";
-  EXPECT_EQ(told[1], "'app' has released the outputs of axis1");
+  ASSERT_EQ(reported.size(), 2U) << "the first node was held until now";
+  EXPECT_EQ(reported[1], "'app' has released the outputs of axis1");
 }
 
 }  // namespace

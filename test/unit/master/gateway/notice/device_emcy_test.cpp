@@ -6,7 +6,7 @@
 namespace takt {
 namespace {
 
-TEST(DeviceEmcy, IsToldInTheWordsOfTheDeviceData) {
+TEST(DeviceEmcy, IsReportedInTheWordsOfTheDeviceData) {
   BusPlan plan = test::a_plan();
   plan.nodes.at(0).emcy_texts = {{0x2310, "overcurrent of the inverter"}};
   Event event{.kind = EventKind::emcy, .node = 5};

@@ -11,7 +11,7 @@ Notice notice(const char* kind, std::uint8_t node, int at_ms) {
   return {.when = milliseconds{at_ms}, .node = node, .kind = kind, .text = {}};
 }
 
-TEST(NoticeLimit, SixteenAtOncePassThenTwoASecondAreToldWithTheNumberKeptBack) {
+TEST(NoticeLimit, SixteenAtOncePassThenTwoASecondAreReportedWithTheNumberKeptBack) {
   NoticeLimit limit;
   for (int i = 0; i < 16; ++i) EXPECT_EQ(limit.allow(notice("emcy", 5, 1000)), 0U) << i;
 
@@ -29,13 +29,13 @@ TEST(NoticeLimit, AFloodOfOneKindLeavesOtherKindsAndNodesAlone) {
   EXPECT_EQ(limit.allow(notice("cycles_missed", 5, 1000)), 0U);
 }
 
-TEST(NoticeLimit, AFloodOfAMinuteIsToldAtMostTwiceASecond) {
+TEST(NoticeLimit, AFloodOfAMinuteIsReportedAtMostTwiceASecond) {
   NoticeLimit limit;
-  int told = 0;
+  int reported = 0;
   for (int at = 0; at < 60000; ++at)
-    told += limit.allow(notice("cycles_missed", 0, at)).has_value();
+    reported += limit.allow(notice("cycles_missed", 0, at)).has_value();
 
-  EXPECT_EQ(told, 16 + 119);
+  EXPECT_EQ(reported, 16 + 119);
 }
 
 }  // namespace

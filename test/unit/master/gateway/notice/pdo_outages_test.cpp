@@ -43,7 +43,7 @@ class PdoOutagesTest : public testing::Test {
   PdoOutages outages_{plan_};
 };
 
-TEST_F(PdoOutagesTest, AFirstOutageIsToldAtOnceAndSoIsItsEnd) {
+TEST_F(PdoOutagesTest, AFirstOutageIsReportedAtOnceAndSoIsItsEnd) {
   EXPECT_EQ(missing(5000), "node 5 'shoulder': TPDO1 is missing");
   EXPECT_EQ(back(35000), "node 5 'shoulder': TPDO1 is back");
 
@@ -125,7 +125,7 @@ TEST_F(PdoOutagesTest, AFloodOfAMinuteMakesAtMostALineASecondAndPdo) {
   EXPECT_GE(lines, 2U * (2 + 58));
 }
 
-TEST_F(PdoOutagesTest, TheRestIsToldAtTheEnd) {
+TEST_F(PdoOutagesTest, TheRestIsReportedAtTheEnd) {
   missing(5000);
   back(5001);
   missing(5002);

@@ -136,7 +136,7 @@ TEST_F(KeyFileTest, IsReadAgainWhenItChangesAndKeepsItsKeysWhenItCantBe) {
   EXPECT_EQ(file->keys()[0].name, "desk");
 }
 
-TEST_F(KeyFileTest, IsTriedAgainWhileNoDescriptorIsLeftAndTheErrorIsToldOnce) {
+TEST_F(KeyFileTest, IsTriedAgainWhileNoDescriptorIsLeftAndTheErrorIsReportedOnce) {
   write("plant " + zeros + "\n");
   auto file = WatchedKeyFile::open(path);
   ASSERT_TRUE(file) << file.error();

@@ -68,7 +68,7 @@ class SecuredTransportTest : public testing::Test {
   HandClocks clocks;
   FakeLcm lcm;
   std::vector<std::string> heard;
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   EnvelopeSeal seal{{.name = "plant"}, 7};
   SecuredTransport secured = [this] {
     write(std::string(64, '0'));
@@ -78,7 +78,7 @@ class SecuredTransportTest : public testing::Test {
                             {.bus = "lift",
                              .session = 42,
                              .guarded = {"LIFT_COMMAND", "LIFT_REQUEST"},
-                             .say = [this](const std::string& s) { told.push_back(s); }}};
+                             .say = [this](const std::string& s) { reported.push_back(s); }}};
   }();
 };
 
@@ -86,10 +86,10 @@ TEST_F(SecuredTransportTest, HandsOverWhatIsInGoodEnvelopes) {
   bring_sealed("LIFT_COMMAND");
   bring_sealed("LIFT_REQUEST");
   EXPECT_EQ(heard, (std::vector<std::string>{"LIFT_COMMAND:5", "LIFT_REQUEST:5"}));
-  EXPECT_TRUE(told.empty());
+  EXPECT_TRUE(reported.empty());
 }
 
-TEST_F(SecuredTransportTest, RefusesWhatComesWithoutAnEnvelopeAndTellsItOnceASecond) {
+TEST_F(SecuredTransportTest, RefusesWhatComesWithoutAnEnvelopeAndReportsItOnceASecond) {
   for (int i = 0; i < 100; ++i) bring("LIFT_COMMAND", message);
   EXPECT_TRUE(heard.empty());
   clocks.pass(1s);
@@ -97,11 +97,11 @@ TEST_F(SecuredTransportTest, RefusesWhatComesWithoutAnEnvelopeAndTellsItOnceASec
   const std::string sentence =
       "a message on LIFT_COMMAND was refused: this bus has `keys`, and the message came without an "
       "envelope";
-  EXPECT_EQ(told, (std::vector<std::string>{sentence,
-                                            sentence + " (99 earlier ones were not reported)"}));
+  EXPECT_EQ(reported, (std::vector<std::string>{
+                          sentence, sentence + " (99 earlier ones were not reported)"}));
 }
 
-TEST_F(SecuredTransportTest, ForgedRepeatedAndDelayedEnvelopesChangeNothingAndAreTold) {
+TEST_F(SecuredTransportTest, ForgedRepeatedAndDelayedEnvelopesChangeNothingAndAreReported) {
   const Bytes first = seal.seal("LIFT_COMMAND", message, 42, clocks.wall());
   const Octets kept(first.begin(), first.end());
   bring("LIFT_SECURED", kept);
@@ -110,7 +110,7 @@ TEST_F(SecuredTransportTest, ForgedRepeatedAndDelayedEnvelopesChangeNothingAndAr
   altered[altered.size() - 33] ^= std::byte{1};
 
   bring("LIFT_SECURED", kept);
-  EXPECT_TRUE(told.empty()) << "the hub and multicast may both bring it";
+  EXPECT_TRUE(reported.empty()) << "the hub and multicast may both bring it";
   clocks.pass(60ms);
   bring("LIFT_SECURED", altered);
   bring("LIFT_SECURED", kept);
@@ -119,7 +119,7 @@ TEST_F(SecuredTransportTest, ForgedRepeatedAndDelayedEnvelopesChangeNothingAndAr
   bring_sealed("LIFT_IMAGE");
 
   EXPECT_TRUE(heard.empty());
-  EXPECT_EQ(told,
+  EXPECT_EQ(reported,
             (std::vector<std::string>{
                 "an envelope was refused: its MAC is wrong: it was forged or altered, or its "
                 "sender has another secret",
@@ -142,8 +142,8 @@ TEST_F(SecuredTransportTest, TakesNewKeysWithoutAStop) {
 
   EXPECT_EQ(heard, (std::vector<std::string>{"LIFT_COMMAND:5"}))
       << "the old secret is good no more";
-  ASSERT_EQ(told.size(), 2U);
-  EXPECT_EQ(told[0], path + " has changed: 1 keys are valid from now on");
+  ASSERT_EQ(reported.size(), 2U);
+  EXPECT_EQ(reported[0], path + " has changed: 1 keys are valid from now on");
 }
 
 TEST_F(SecuredTransportTest, SignsNothingThatItPublishesUnlessAsked) {

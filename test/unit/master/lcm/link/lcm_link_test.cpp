@@ -29,12 +29,12 @@ class LcmLinkTest : public testing::Test {
   }
   LcmLink::Say say() {
     return [this](Weight weight, const std::string& sentence) {
-      said.push_back(std::string{name(weight)} + ": " + sentence);
+      declared.push_back(std::string{name(weight)} + ": " + sentence);
     };
   }
 
   std::unique_ptr<TcpqBroker> other = TcpqBroker::listen(0).value();
-  std::vector<std::string> said;
+  std::vector<std::string> declared;
 };
 
 TEST_F(LcmLinkTest, IsNobodysClientWhereItsOwnHubFindsThePortTaken) {
@@ -44,8 +44,8 @@ TEST_F(LcmLinkTest, IsNobodysClientWhereItsOwnHubFindsThePortTaken) {
 
   EXPECT_EQ(other->clients(), 0U);
   EXPECT_THAT(link.url(), IsEmpty());
-  EXPECT_THAT(
-      said, ElementsAre(AllOf(StartsWith("warning: "), HasSubstr(" is used by another program"))));
+  EXPECT_THAT(declared, ElementsAre(AllOf(StartsWith("warning: "),
+                                          HasSubstr(" is used by another program"))));
   EXPECT_FALSE(link.publish("LIFT_IMAGE", {}));
 }
 
@@ -56,8 +56,8 @@ TEST_F(LcmLinkTest, IsTheClientOfTheHubThatTheUrlNames) {
 
   EXPECT_EQ(link.url(), other->url());
   EXPECT_GE(other->clients(), 1U);
-  EXPECT_THAT(said, ElementsAre("warning: LCM: no hub answers at " + other->url() +
-                                "; taktd keeps trying"));
+  EXPECT_THAT(declared, ElementsAre("warning: LCM: no hub answers at " + other->url() +
+                                    "; taktd keeps trying"));
 }
 
 TEST_F(LcmLinkTest, WarnsOfAHubThatOnlyTheEnvironmentNames) {
@@ -66,8 +66,8 @@ TEST_F(LcmLinkTest, WarnsOfAHubThatOnlyTheEnvironmentNames) {
   serve(link);
 
   EXPECT_EQ(link.url(), other->url());
-  EXPECT_THAT(said, ElementsAre(AllOf(StartsWith("warning: LCM: "),
-                                      HasSubstr(". LCM_DEFAULT_URL names it: the program"))));
+  EXPECT_THAT(declared, ElementsAre(AllOf(StartsWith("warning: LCM: "),
+                                          HasSubstr(". LCM_DEFAULT_URL names it: the program"))));
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ class TcpqLimits : public testing::Test {
   std::unique_ptr<TcpqBroker> make(Time step) {
     clock = test::StepClock{step};
     return TcpqBroker::listen(0, {.clock = clock,
-                                  .say = [this](const std::string& s) { told.push_back(s); },
+                                  .say = [this](const std::string& s) { reported.push_back(s); },
                                   .warn = [this](const std::string& s) { warnings.push_back(s); }})
         .value();
   }
@@ -90,7 +90,7 @@ class TcpqLimits : public testing::Test {
   }
 
   test::StepClock clock{0us};
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   std::vector<std::string> warnings;
 };
 
@@ -164,12 +164,12 @@ TEST_F(TcpqLimits, HundredElevenKilobytesOfEvilPatternsEndTheirConnectionAndNoth
   const std::string pattern = "((a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|a)*)*b";
   for (std::size_t sent = 0; sent < 111'000; sent += pattern.size()) evil.subscribe(pattern);
 
-  EXPECT_TRUE(serve_until(*broker, [&] { return !told.empty() && broker->clients() == 0; }));
+  EXPECT_TRUE(serve_until(*broker, [&] { return !reported.empty() && broker->clients() == 0; }));
 
-  EXPECT_EQ(told, (std::vector<std::string>{
-                      "LCM hub: a connection was closed: its pattern "
-                      "'((a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|' is refused: the patterns "
-                      "together have more than 8192 characters"}));
+  EXPECT_EQ(reported, (std::vector<std::string>{
+                          "LCM hub: a connection was closed: its pattern "
+                          "'((a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|' is refused: the patterns "
+                          "together have more than 8192 characters"}));
 }
 
 TEST_F(TcpqLimits, PatternsThatAreRefusedCloseTheConnectionWithASentence) {
@@ -177,11 +177,11 @@ TEST_F(TcpqLimits, PatternsThatAreRefusedCloseTheConnectionWithASentence) {
   Peer peer{broker->port()};
   peer.open().subscribe("(a)\x1B\\1");
 
-  EXPECT_TRUE(serve_until(*broker, [&] { return !told.empty(); }));
+  EXPECT_TRUE(serve_until(*broker, [&] { return !reported.empty(); }));
 
   EXPECT_EQ(broker->clients(), 0U);
-  EXPECT_EQ(told, (std::vector<std::string>{"LCM hub: a connection was closed: its pattern "
-                                            "'(a)?\\1' is refused: '\\1' is not supported"}));
+  EXPECT_EQ(reported, (std::vector<std::string>{"LCM hub: a connection was closed: its pattern "
+                                                "'(a)?\\1' is refused: '\\1' is not supported"}));
 }
 
 TEST_F(TcpqLimits, PatternsOfAllConnectionsTogetherAreBounded) {
@@ -192,11 +192,12 @@ TEST_F(TcpqLimits, PatternsOfAllConnectionsTogetherAreBounded) {
     for (int k = 0; k < 60; ++k) peers.back().subscribe(std::string(128, 'a'));
     const std::string last = "LAST_" + std::to_string(i);
     peers.back().subscribe(last);
-    ASSERT_TRUE(serve_until(*broker, [&] { return broker->wanted(last) || !told.empty(); }));
+    ASSERT_TRUE(serve_until(*broker, [&] { return broker->wanted(last) || !reported.empty(); }));
   }
 
   EXPECT_EQ(broker->clients(), 4U);
-  EXPECT_NE(told[0].find("of all connections together have more than 32768"), std::string::npos);
+  EXPECT_NE(reported[0].find("of all connections together have more than 32768"),
+            std::string::npos);
 }
 
 TEST_F(TcpqLimits, AnOpeningThatIsIncompleteAfterTwoSecondsIsClosed) {
@@ -218,8 +219,8 @@ TEST_F(TcpqLimits, AnOpeningThatIsIncompleteAfterTwoSecondsIsClosed) {
 
   EXPECT_EQ(broker->clients(), 1U);
   EXPECT_TRUE(broker->wanted("A"));
-  EXPECT_EQ(told, (std::vector<std::string>{"LCM hub: a connection was closed: its opening was "
-                                            "incomplete after 2 s"}));
+  EXPECT_EQ(reported, (std::vector<std::string>{"LCM hub: a connection was closed: its opening was "
+                                                "incomplete after 2 s"}));
 }
 
 TEST_F(TcpqLimits, SixtyFourSilentConnectionsLockNobodyOut) {
@@ -261,12 +262,12 @@ class FullHouse : public TcpqLimits {
   }
   bool gets_in(const std::string& channel) {
     peers.emplace_back(broker->port()).open().subscribe(channel);
-    told.clear();
-    return serve_until(*broker, [&] { return broker->wanted(channel) || !told.empty(); }) &&
+    reported.clear();
+    return serve_until(*broker, [&] { return broker->wanted(channel) || !reported.empty(); }) &&
            serve_until(*broker,
                        [&] {
                          return broker->wanted(channel) ||
-                                told.back().find("refused") != std::string::npos;
+                                reported.back().find("refused") != std::string::npos;
                        }) &&
            broker->wanted(channel);
   }
@@ -279,7 +280,7 @@ class FullHouse : public TcpqLimits {
 TEST_F(FullHouse, KeepsWhoHasSentSomethingWithinTenSeconds) {
   clock.pass(9999ms);
   EXPECT_FALSE(gets_in("LATE"));
-  EXPECT_EQ(told,
+  EXPECT_EQ(reported,
             (std::vector<std::string>{
                 "LCM hub: a new connection was refused: the hub has 64 connections already"}));
   for (int i = 0; i < 64; ++i) EXPECT_TRUE(broker->wanted(name(i)));
@@ -334,7 +335,7 @@ TEST_F(TcpqLimits, AConnectionThatReadsNothingForTenSecondsIsClosed) {
   EXPECT_EQ(broker->clients(), 1U);
   EXPECT_TRUE(broker->wanted("SMALL"));
   EXPECT_EQ(
-      told,
+      reported,
       (std::vector<std::string>{"LCM hub: a connection was closed: it has read nothing for 10 s"}));
 }
 
@@ -361,7 +362,7 @@ TEST_F(TcpqLimits, AChannelNameThatLcmDoesNotHaveEndsTheConnection) {
   Peer peer{broker->port()};
   peer.open().publish(std::string(64, 'x'));
 
-  EXPECT_TRUE(serve_until(*broker, [&] { return !told.empty() && broker->clients() == 0; }));
+  EXPECT_TRUE(serve_until(*broker, [&] { return !reported.empty() && broker->clients() == 0; }));
 }
 
 TEST_F(TcpqLimits, WithoutADescriptorLeftTheWaitingConnectionDoesNotWakeTheHubForAWhile) {

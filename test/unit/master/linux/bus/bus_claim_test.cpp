@@ -73,7 +73,7 @@ TEST_F(BusClaimTest, OfARelativePathIsForItsFolder) {
   EXPECT_FALSE(same) << "the same bus by its absolute path";
 }
 
-TEST_F(BusClaimTest, TellsLongPathsApart) {
+TEST_F(BusClaimTest, ReportsLongPathsApart) {
   const std::string folder(150, 'x');
   const auto first = BusClaim::take(bus(folder + "/1"));
   ASSERT_TRUE(first) << first.error().message;

@@ -28,7 +28,7 @@ class DiagnosticSocketOnUnixBus : public testing::Test {
   std::unique_ptr<SentFrames> sent_ = std::make_unique<SentFrames>();
 };
 
-TEST_F(DiagnosticSocketOnUnixBus, HearsTheBusThreadAndTellsItFromAStranger) {
+TEST_F(DiagnosticSocketOnUnixBus, HearsTheBusThreadAndReportsItFromAStranger) {
   auto port = UnixBusPort::open({.path = path_, .sent = sent_.get()});
   ASSERT_TRUE(port);
   auto socket = DiagnosticSocket::open("unix:" + path_, BusPlan{}, *sent_);

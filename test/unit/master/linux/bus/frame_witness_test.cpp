@@ -33,9 +33,11 @@ TEST(InterfaceBitrate, IsNoTroubleWhereThereIsNone) {
 }
 
 TEST(InterfaceBitrate, IsFoundOutBeforeAnythingChanges) {
-  const std::string said = interface_bitrate_trouble(CanLink{.name = "takt-none", .kind = "can"});
-  EXPECT_NE(said.find("the bit rate of takt-none can't be changed"), std::string::npos) << said;
-  EXPECT_NE(said.find("no device was changed"), std::string::npos);
+  const std::string declared =
+      interface_bitrate_trouble(CanLink{.name = "takt-none", .kind = "can"});
+  EXPECT_NE(declared.find("the bit rate of takt-none can't be changed"), std::string::npos)
+      << declared;
+  EXPECT_NE(declared.find("no device was changed"), std::string::npos);
 }
 
 }  // namespace

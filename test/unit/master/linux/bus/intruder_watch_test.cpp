@@ -54,18 +54,18 @@ TEST_F(IntruderWatchTest, IsSilentOverItsOwnTraffic) {
   }
 }
 
-TEST_F(IntruderWatchTest, TellsASyncFromTheWireAtOnce) {
+TEST_F(IntruderWatchTest, ReportsASyncFromTheWireAtOnce) {
   events();
 
   see(sync_frame, Origin::wire);
 
-  const auto told = events();
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_EQ(told[0].kind, EventKind::foreign_sync);
-  EXPECT_EQ(told[0].when, 1000 * ms);
+  const auto reported = events();
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_EQ(reported[0].kind, EventKind::foreign_sync);
+  EXPECT_EQ(reported[0].when, 1000 * ms);
 }
 
-TEST_F(IntruderWatchTest, TellsASyncOfAnotherProgramHereByCounting) {
+TEST_F(IntruderWatchTest, ReportsASyncOfAnotherProgramHereByCounting) {
   events();
   send(sync_frame);
   EXPECT_TRUE(events().empty());
@@ -73,32 +73,32 @@ TEST_F(IntruderWatchTest, TellsASyncOfAnotherProgramHereByCounting) {
   send(sync_frame);
   see(sync_frame);
 
-  const auto told = events();
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_EQ(told[0].kind, EventKind::foreign_sync);
+  const auto reported = events();
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_EQ(reported[0].kind, EventKind::foreign_sync);
 }
 
-TEST_F(IntruderWatchTest, TellsTheCommandOfAForeignNmtMaster) {
+TEST_F(IntruderWatchTest, ReportsTheCommandOfAForeignNmtMaster) {
   events();
 
   see(start_all);
 
-  const auto told = events();
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_EQ(told[0].kind, EventKind::foreign_nmt);
-  EXPECT_EQ(told[0].bytes[0], 0x01);
+  const auto reported = events();
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_EQ(reported[0].kind, EventKind::foreign_nmt);
+  EXPECT_EQ(reported[0].bytes[0], 0x01);
 }
 
-TEST_F(IntruderWatchTest, TellsASecondSenderOfAnRpdoWithItsCobId) {
+TEST_F(IntruderWatchTest, ReportsASecondSenderOfAnRpdoWithItsCobId) {
   events();
   send(rpdo);
 
   see(rpdo, Origin::wire);
 
-  const auto told = events();
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_EQ(told[0].kind, EventKind::duplicate_cob_id);
-  EXPECT_EQ(told[0].value, 0x205);
+  const auto reported = events();
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_EQ(reported[0].kind, EventKind::duplicate_cob_id);
+  EXPECT_EQ(reported[0].value, 0x205);
 }
 
 TEST_F(IntruderWatchTest, DoesNotMistakeFramesUnderWayForIntruders) {
@@ -131,32 +131,32 @@ TEST_F(IntruderWatchTest, StillFindsIntrudersAfterTheSocketHasLostFrames) {
   EXPECT_EQ(events().size(), 1U);
 }
 
-TEST_F(IntruderWatchTest, TellsTheSameIntruderOnlyOnceInTenSeconds) {
+TEST_F(IntruderWatchTest, ReportsTheSameIntruderOnlyOnceInTenSeconds) {
   events();
-  int told = 0;
+  int reported = 0;
   for (int i = 0; i < 2100; ++i) {  // 21 s
     now_ += 10 * ms;
     see(sync_frame, Origin::wire);
-    told += static_cast<int>(events().size());
+    reported += static_cast<int>(events().size());
   }
-  EXPECT_EQ(told, 3);
+  EXPECT_EQ(reported, 3);
 }
 
-TEST_F(IntruderWatchTest, TellsTwoSendersOfOneTpdo) {
+TEST_F(IntruderWatchTest, ReportsTwoSendersOfOneTpdo) {
   events();
-  std::vector<Event> told;
+  std::vector<Event> reported;
   for (int cycle = 0; cycle < 40; ++cycle) {
     now_ += 4 * ms;
     send(sync_frame);
     see(tpdo, Origin::wire);
     see(tpdo, Origin::wire);
-    for (const Event& event : events()) told.push_back(event);
+    for (const Event& event : events()) reported.push_back(event);
   }
 
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_EQ(told[0].kind, EventKind::duplicate_cob_id);
-  EXPECT_EQ(told[0].value, 0x185);
-  EXPECT_EQ(told[0].node, 5);
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_EQ(reported[0].kind, EventKind::duplicate_cob_id);
+  EXPECT_EQ(reported[0].value, 0x185);
+  EXPECT_EQ(reported[0].node, 5);
 }
 
 TEST_F(IntruderWatchTest, ATpdoThatIsLateAndThenTwiceInACycleIsNoDuplicate) {
@@ -172,7 +172,7 @@ TEST_F(IntruderWatchTest, ATpdoThatIsLateAndThenTwiceInACycleIsNoDuplicate) {
   }
 }
 
-TEST_F(IntruderWatchTest, TellsTwoNodesThatBothAnswerSdoRequests) {
+TEST_F(IntruderWatchTest, ReportsTwoNodesThatBothAnswerSdoRequests) {
   events();
   for (int i = 0; i < 3; ++i) {
     send(make_frame(CobId::base(0x605), {0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0}));
@@ -182,11 +182,11 @@ TEST_F(IntruderWatchTest, TellsTwoNodesThatBothAnswerSdoRequests) {
         Origin::wire);
   }
 
-  const auto told = events();
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_EQ(told[0].kind, EventKind::duplicate_cob_id);
-  EXPECT_EQ(told[0].value, 0x585);
-  EXPECT_EQ(told[0].node, 5);
+  const auto reported = events();
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_EQ(reported[0].kind, EventKind::duplicate_cob_id);
+  EXPECT_EQ(reported[0].value, 0x585);
+  EXPECT_EQ(reported[0].node, 5);
 }
 
 TEST_F(IntruderWatchTest, LateAnswersOfASlowNodeAreNoSecondNode) {

@@ -45,7 +45,7 @@ TEST(CanLink, NamesBothBitRatesAndTheCommand) {
                           "can0 down && ip link set can0 up type can bitrate 1000000"));
 }
 
-TEST(CanLink, ASendQueueShorterThanACycleIsTold) {
+TEST(CanLink, ASendQueueShorterThanACycleIsReported) {
   CanLink link = good_link();
   link.tx_queue_length = 10;
 
@@ -53,7 +53,7 @@ TEST(CanLink, ASendQueueShorterThanACycleIsTold) {
               ElementsAre(HasSubstr("ip link set can0 txqueuelen 128")));
 }
 
-TEST(CanLink, AControllerThatStaysOffAndOneThatOnlyListensAreTold) {
+TEST(CanLink, AControllerThatStaysOffAndOneThatOnlyListensAreReported) {
   CanLink link = good_link();
   link.restart_ms = 0;
   link.listen_only = true;
@@ -71,7 +71,7 @@ TEST(CanLink, TheLoopbackIsRead) {
   EXPECT_FALSE(link->bitrate);
 }
 
-TEST(CanLink, AnInterfaceThatIsNotThereIsSaidSo) {
+TEST(CanLink, AnInterfaceThatIsNotThereIsDeclaredSo) {
   const auto link = read_can_link("nosuchcan");
 
   ASSERT_FALSE(link);

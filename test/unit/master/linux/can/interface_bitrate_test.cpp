@@ -48,10 +48,10 @@ TEST_F(InterfaceRights, AreTriedByACommandThatChangesNothing) {
 
 TEST_F(InterfaceRights, ThatAreMissingAreExplainedBeforeAnyDeviceChanges) {
   ip_ends_with(2);  // RTNETLINK answers: Operation not permitted
-  const std::string said = interface_bitrate_trouble(link);
-  EXPECT_THAT(said, HasSubstr("the bit rate of can7 can't be changed"));
-  EXPECT_THAT(said, HasSubstr("needs root, or CAP_NET_ADMIN"));
-  EXPECT_THAT(said, HasSubstr("no device was changed"));
+  const std::string declared = interface_bitrate_trouble(link);
+  EXPECT_THAT(declared, HasSubstr("the bit rate of can7 can't be changed"));
+  EXPECT_THAT(declared, HasSubstr("needs root, or CAP_NET_ADMIN"));
+  EXPECT_THAT(declared, HasSubstr("no device was changed"));
   EXPECT_EQ(asked(), "link set can7 txqueuelen 10\n");
 }
 

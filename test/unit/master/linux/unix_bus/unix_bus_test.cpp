@@ -29,7 +29,7 @@ TEST_F(UnixBus, CarriesAFrameUnchangedToTheOthersButNotToItsSender) {
   EXPECT_EQ(a.receive(own), 0U);
 }
 
-TEST_F(UnixBus, TellsWhenTheOwnSyncWasOnTheWire) {
+TEST_F(UnixBus, ReportsWhenTheOwnSyncWasOnTheWire) {
   UnixBusPort a = port();
   const Time before = a.now();
 
@@ -73,7 +73,7 @@ TEST_F(UnixBus, KeepsTheOrderOfALargeBatch) {
   for (std::size_t i = 0; i < got.size(); ++i) EXPECT_EQ(got[i].frame, batch[i]) << i;
 }
 
-TEST_F(UnixBus, ASlowReaderLosesFramesIsToldHowManyAndBlocksNobody) {
+TEST_F(UnixBus, ASlowReaderLosesFramesIsReportedHowManyAndBlocksNobody) {
   UnixBusPort a = port();
   UnixBusPort b = port();
   UnixBusPort slow = port();
@@ -100,7 +100,7 @@ TEST_F(UnixBus, ASlowReaderLosesFramesIsToldHowManyAndBlocksNobody) {
   EXPECT_EQ(b.news().receive_overruns, 0U);
 }
 
-TEST_F(UnixBus, AFullSocketIsToldAsNoBuffers) {
+TEST_F(UnixBus, AFullSocketIsReportedAsNoBuffers) {
   auto [a, b] = make_socket_pair_bus();
 
   SendResult result;

@@ -228,7 +228,7 @@ TEST_F(RecordedLinkTest, OnlyForwardsWithoutAJournal) {
   exchange->set_points.publish(Time{1000});
   EXPECT_EQ(plain.set_points().when, Time{1000});
   EXPECT_FALSE(plain.checkpoint_due());
-  plain.tell({.kind = EventKind::stopping});
+  plain.announce({.kind = EventKind::stopping});
   Event event;
   ASSERT_TRUE(exchange->events.pop(event));
   EXPECT_EQ(event.kind, EventKind::stopping);

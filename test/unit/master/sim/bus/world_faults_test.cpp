@@ -220,7 +220,7 @@ TEST_F(WorldFaults, MasterBusOffIsNewsAndEnds) {
   EXPECT_EQ(port_->send({&frame, 1}).sent, 1u);
 }
 
-TEST_F(WorldFaults, DeviceBusOffReactsAs1029SaysAndTellsItsReturn) {
+TEST_F(WorldFaults, DeviceBusOffReactsAs1029SaysAndReportsItsReturn) {
   build({{.kind = FaultKind::bus_off, .node = 5_node, .at = 200ms}});
   port_->sleep_until(100ms);
   start_all();

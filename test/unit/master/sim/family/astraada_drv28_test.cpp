@@ -170,7 +170,7 @@ TEST(AstraadaDrv28, AnswersParameterRequests) {
   EXPECT_EQ(device.of(0x185)[2], make_frame(id, {0x00, 0, 0, 0, 0x00, 0, 0, 0}));
 }
 
-TEST(AstraadaDrv28, TellsByErrorCodeWhyARequestFails) {
+TEST(AstraadaDrv28, ReportsByErrorCodeWhyARequestFails) {
   struct Case {
     std::initializer_list<std::uint8_t> request;
     std::uint8_t error;

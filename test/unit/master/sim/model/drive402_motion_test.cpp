@@ -161,7 +161,7 @@ TEST_F(Drive, FollowsCyclicVelocities) {
   EXPECT_NEAR(static_cast<double>(get(0x606C)), -1'000, 10);
 }
 
-TEST_F(Drive, TellsTorqueOfTheSignOfItsAcceleration) {
+TEST_F(Drive, ReportsTorqueOfTheSignOfItsAcceleration) {
   enable(9);
   set(0x60FF, 100'000);
   run(1ms);

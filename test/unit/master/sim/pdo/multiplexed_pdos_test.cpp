@@ -83,7 +83,7 @@ TEST(MultiplexedPdos, ByDestinationWriteTheObjectOfTheNodeThatIsAddressed) {
   EXPECT_EQ(device.get(0x2010), 1u) << "for all";
 }
 
-TEST(MultiplexedPdos, ForAnObjectThatDoesNotExistAreTold) {
+TEST(MultiplexedPdos, ForAnObjectThatDoesNotExistAreReported) {
   Sender device{multiplexed(0x1400, 0x305, 0xFF)};
   device.take(CobId::base(0x085));
   device.receive(0x305, {0x85, 0x00, 0x30, 0x01, 0, 0, 0, 0});

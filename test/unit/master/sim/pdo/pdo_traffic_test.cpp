@@ -230,7 +230,7 @@ TEST(Rpdo, OfAnEventTypeActsAtOnce) {
   }
 }
 
-TEST(Rpdo, ThatIsShortIsThrownAwayAndToldOnce) {
+TEST(Rpdo, ThatIsShortIsThrownAwayAndReportedOnce) {
   Traffic device{with_rpdo(255)};
   device.start();
   device.receive(make_frame(CobId::base(0x205), {1, 0, 0, 0, 2}));
@@ -246,7 +246,7 @@ TEST(Rpdo, ThatIsShortIsThrownAwayAndToldOnce) {
   EXPECT_EQ(device.of(0x085)[1].frame, make_frame(CobId::base(0x085), {0, 0, 0, 0, 0, 0, 0, 0}));
 }
 
-TEST(Rpdo, ThatIsLongIsUsedAndTold) {
+TEST(Rpdo, ThatIsLongIsUsedAndReported) {
   Traffic device{with_rpdo(255)};
   device.start();
   device.receive(make_frame(CobId::base(0x205), {1, 0, 0, 0, 2, 0, 3}));
@@ -272,7 +272,7 @@ TEST(Rpdo, IsMissedAfterItsDeadlineOnceItHasCome) {
   EXPECT_EQ(device.of(0x085)[0].frame.data[1], 0x82);
 }
 
-TEST(Sync, OfAnUnexpectedLengthIsToldOnce) {
+TEST(Sync, OfAnUnexpectedLengthIsReportedOnce) {
   Traffic device{with_tpdo(1)};
   device.start();
   for (int i = 0; i < 5; ++i) device.sync(5);

@@ -39,16 +39,16 @@ class LssSlaveTest : public ::testing::Test {
     now = until;
   }
   void collect() {
-    for (const Transmission& item : device->out().pending()) said.push_back(item.frame);
+    for (const Transmission& item : device->out().pending()) declared.push_back(item.frame);
     device->out().clear();
   }
   /// Returns the answer to one request; all bytes are zero if there is none.
   Bytes ask(Bytes request) {
-    said.clear();
+    declared.clear();
     device->on_frame({.id = CobId::base(0x7E5), .length = 8, .data = request}, now);
     collect();
     run(5ms);
-    for (const Frame& frame : said) {
+    for (const Frame& frame : declared) {
       if (frame.id == CobId::base(0x7E4)) return frame.data;
     }
     return {};
@@ -59,12 +59,13 @@ class LssSlaveTest : public ::testing::Test {
     run(100ms);
   }
   bool booted_as(std::uint8_t node) const {
-    return std::ranges::find(said, make_frame(CobId::base(0x700u + node), {0})) != said.end();
+    return std::ranges::find(declared, make_frame(CobId::base(0x700u + node), {0})) !=
+           declared.end();
   }
 
   std::optional<Device> device;
   Time now = 1s;
-  std::vector<Frame> said;
+  std::vector<Frame> declared;
   const Bytes silence{};
 };
 
@@ -73,7 +74,7 @@ TEST_F(LssSlaveTest, SaysNothingWithoutNodeId) {
   nmt(1, 0);
   device->on_frame(make_frame(CobId::base(0x605), {0x40, 0x00, 0x10, 0, 0, 0, 0, 0}), now);
   run(1s);
-  EXPECT_TRUE(said.empty());
+  EXPECT_TRUE(declared.empty());
   EXPECT_FALSE(device->address());
 }
 
@@ -156,11 +157,11 @@ TEST_F(LssSlaveTest, SaysThatItCannotStore) {
   build("no_node_id");
   device->lss()->faults().refuses_store = true;
   ask({0x04, 0x01});
-  said.clear();
+  declared.clear();
   device->on_frame({.id = CobId::base(0x7E5), .length = 8, .data = {0x17}}, now);
   collect();
-  ASSERT_EQ(said.size(), 1U);
-  EXPECT_EQ(said[0].data, (Bytes{0x17, 0x02}));
+  ASSERT_EQ(declared.size(), 1U);
+  EXPECT_EQ(declared[0].data, (Bytes{0x17, 0x02}));
 }
 
 TEST_F(LssSlaveTest, AnswersTheLastFrameOfAnIdentification) {

@@ -108,7 +108,7 @@ TEST_F(SdoConversation, AbortsWhenTheToggleBitRepeats) {
   EXPECT_EQ(ask({0x60}), (Bytes{0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x03, 0x05}));
 }
 
-TEST_F(SdoConversation, AbortsWhenMoreBytesComeThanWereTold) {
+TEST_F(SdoConversation, AbortsWhenMoreBytesComeThanWereReported) {
   ask({0x21, 0x04, 0x20, 0x00, 0x05});
 
   EXPECT_EQ(ask({0x01, 1, 2, 3, 4, 5, 6, 7}), (Bytes{0x80, 0x04, 0x20, 0, 0x12, 0, 0x07, 0x06}));
