@@ -1,9 +1,9 @@
 #pragma once
 #include "master/core/network/ordered_stop.hpp"
-#include "master/rt/beat.hpp"
-#include "master/rt/bus_machines.hpp"
+#include "master/rt/beat/beat.hpp"
 #include "master/rt/exchange/exchange.hpp"
 #include "master/rt/exchange/front_link.hpp"
+#include "master/rt/machines/bus_machines.hpp"
 
 namespace takt {
 

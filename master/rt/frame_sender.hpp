@@ -3,7 +3,7 @@
 #include <span>
 
 #include "master/core/event_queue.hpp"
-#include "master/rt/beat.hpp"
+#include "master/rt/beat/beat.hpp"
 #include "master/rt/exchange/status_board.hpp"
 #include "master/rt/port.hpp"
 #include "master/rt/port_watch.hpp"

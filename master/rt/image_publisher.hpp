@@ -1,10 +1,10 @@
 #pragma once
 #include <algorithm>
 
-#include "master/rt/beat.hpp"
-#include "master/rt/bus_machines.hpp"
+#include "master/rt/beat/beat.hpp"
 #include "master/rt/controller.hpp"
 #include "master/rt/exchange/exchange.hpp"
+#include "master/rt/machines/bus_machines.hpp"
 #include "master/rt/port.hpp"
 
 namespace takt {

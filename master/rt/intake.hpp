@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "master/rt/arrival_prediction.hpp"
-#include "master/rt/beat.hpp"
-#include "master/rt/bus_machines.hpp"
+#include "master/rt/beat/beat.hpp"
 #include "master/rt/exchange/exchange.hpp"
+#include "master/rt/machines/bus_machines.hpp"
 #include "master/rt/port.hpp"
 #include "master/wire/wire_time.hpp"
 

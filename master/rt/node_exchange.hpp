@@ -2,11 +2,11 @@
 #include <cstddef>
 #include <span>
 
-#include "master/rt/axis_memories.hpp"
-#include "master/rt/beat.hpp"
-#include "master/rt/bus_machines.hpp"
+#include "master/rt/beat/beat.hpp"
 #include "master/rt/exchange/front_link.hpp"
+#include "master/rt/machines/bus_machines.hpp"
 #include "master/rt/port.hpp"
+#include "master/rt/stop/axis_memories.hpp"
 
 namespace takt {
 

@@ -1,11 +1,11 @@
 #pragma once
 #include <span>
 
-#include "master/rt/beat.hpp"
-#include "master/rt/bus_machines.hpp"
+#include "master/rt/beat/beat.hpp"
 #include "master/rt/exchange/exchange.hpp"
 #include "master/rt/exchange/front_link.hpp"
 #include "master/rt/frame_sender.hpp"
+#include "master/rt/machines/bus_machines.hpp"
 #include "master/rt/port.hpp"
 #include "master/wire/wire_time.hpp"
 

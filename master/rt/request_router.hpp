@@ -2,11 +2,11 @@
 #include "master/core/pdo/fallback_writer.hpp"
 #include "master/core/pdo/pdo_requests.hpp"
 #include "master/core/request.hpp"
-#include "master/rt/axis_memories.hpp"
-#include "master/rt/axis_stops.hpp"
-#include "master/rt/bus_machines.hpp"
 #include "master/rt/exchange/front_link.hpp"
+#include "master/rt/machines/bus_machines.hpp"
 #include "master/rt/port.hpp"
+#include "master/rt/stop/axis_memories.hpp"
+#include "master/rt/stop/axis_stops.hpp"
 
 namespace takt {
 

@@ -6,10 +6,10 @@
 
 #include "eds_parser/table/waits.hpp"
 #include "master/core/network/time_producer.hpp"
-#include "master/rt/beat.hpp"
-#include "master/rt/bus_machines.hpp"
+#include "master/rt/beat/beat.hpp"
 #include "master/rt/frame_sender.hpp"
 #include "master/rt/intake.hpp"
+#include "master/rt/machines/bus_machines.hpp"
 #include "master/rt/port.hpp"
 #include "master/wire/nmt.hpp"
 

@@ -74,8 +74,16 @@ ROOMS = {
     "master/rt/exchange": ("what crosses between the bus thread and the front thread", "master/core master/rt/port.hpp"),
     "master/rt/journal": ("records everything that decides a run, and plays it back",
                           "master/wire master/core master/rt/exchange master/rt/port.hpp"),
-    "master/rt": ("the cycle of the bus thread",
-                  "master/wire master/rt/exchange master/core master/core/pdo master/core/network"),
+    "master/rt/machines": ("the protocol machines of one bus, and what the cycle asks of them",
+                           "master/wire master/core master/core/pdo master/core/network master/rt/exchange"),
+    "master/rt/beat": ("when a cycle begins: by the clock of the master, or by the SYNC of another device",
+                       "master/wire master/core master/rt/exchange master/rt/machines master/rt/port.hpp"),
+    "master/rt/stop": ("everything that stops axes",
+                       "master/core master/core/pdo master/core/network master/rt/exchange master/rt/machines "
+                       "master/rt/port.hpp"),
+    "master/rt": ("the cycle of the bus thread, and its parts",
+                  "master/wire master/core master/core/pdo master/core/network master/rt/exchange master/rt/machines "
+                  "master/rt/beat master/rt/stop"),
     "master/linux": ("threads, clocks, files and sockets", "master/wire"),
     "master/linux/can": ("SocketCAN", "master/wire master/linux master/rt/port.hpp"),
     "master/linux/unix_bus": ("the bus between processes", "master/linux master/linux/can/can_frame.hpp master/rt/port.hpp"),

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "master/core/network/network.hpp"
+#include "master/rt/machines/services.hpp"
 #include "master/rt/port.hpp"
-#include "master/rt/services.hpp"
 
 namespace takt::test {
 

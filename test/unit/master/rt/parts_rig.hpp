@@ -3,11 +3,11 @@
 #include <utility>
 #include <vector>
 
-#include "master/rt/beat.hpp"
-#include "master/rt/bus_machines.hpp"
+#include "master/rt/beat/beat.hpp"
 #include "master/rt/exchange/exchange.hpp"
 #include "master/rt/frame_sender.hpp"
 #include "master/rt/intake.hpp"
+#include "master/rt/machines/bus_machines.hpp"
 #include "master/rt/slack.hpp"
 #include "test/unit/master/core/pdo/small_plan.hpp"
 #include "test/unit/master/rt/fake_port.hpp"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "master/rt/stop_control.hpp"
+#include "master/rt/stop/stop_control.hpp"
 #include "test/unit/master/rt/parts_rig.hpp"
 
 namespace takt {

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "master/rt/arrival_prediction.hpp"
-#include "master/rt/beat_clock.hpp"
+#include "master/rt/beat/beat_clock.hpp"
+#include "master/rt/beat/sync_gate.hpp"
 #include "master/rt/exchange/histogram.hpp"
 #include "master/rt/exchange/spsc_ring.hpp"
 #include "master/rt/exchange/status_board.hpp"
+#include "master/rt/machines/service_queue.hpp"
 #include "master/rt/port_watch.hpp"
-#include "master/rt/service_queue.hpp"
-#include "master/rt/sync_gate.hpp"
 #include "master/wire/wire_time.hpp"
 
 namespace takt {

@@ -2,9 +2,9 @@
 #include <cstdint>
 
 #include "master/core/pdo/fallback_writer.hpp"
-#include "master/rt/axis_memories.hpp"
-#include "master/rt/axis_stops.hpp"
-#include "master/rt/bus_machines.hpp"
+#include "master/rt/machines/bus_machines.hpp"
+#include "master/rt/stop/axis_memories.hpp"
+#include "master/rt/stop/axis_stops.hpp"
 
 namespace takt {
 

@@ -1,9 +1,9 @@
 #pragma once
 #include "master/core/network/ordered_stop.hpp"
-#include "master/rt/axis_memories.hpp"
-#include "master/rt/axis_stops.hpp"
-#include "master/rt/bus_machines.hpp"
-#include "master/rt/sync_loss_reaction.hpp"
+#include "master/rt/machines/bus_machines.hpp"
+#include "master/rt/stop/axis_memories.hpp"
+#include "master/rt/stop/axis_stops.hpp"
+#include "master/rt/stop/sync_loss_reaction.hpp"
 
 namespace takt {
 

@@ -1,4 +1,4 @@
-#include "master/rt/stop_control.hpp"
+#include "master/rt/stop/stop_control.hpp"
 
 #include <gtest/gtest.h>
 #include <memory>

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "master/core/network/ordered_stop.hpp"
-#include "master/rt/axis_memories.hpp"
-#include "master/rt/axis_stops.hpp"
-#include "master/rt/bus_machines.hpp"
+#include "master/rt/machines/bus_machines.hpp"
+#include "master/rt/stop/axis_memories.hpp"
+#include "master/rt/stop/axis_stops.hpp"
 
 namespace takt {
 

@@ -6,8 +6,8 @@
 #include "master/core/pdo/pdo_exchange.hpp"
 #include "master/core/pdo/pdo_requests.hpp"
 #include "master/rt/exchange/status_board.hpp"
-#include "master/rt/service_queue.hpp"
-#include "master/rt/services.hpp"
+#include "master/rt/machines/service_queue.hpp"
+#include "master/rt/machines/services.hpp"
 #include "master/wire/wire_time.hpp"
 
 namespace takt {

@@ -1,13 +1,13 @@
 #pragma once
-#include "master/rt/axis_memories.hpp"
-#include "master/rt/axis_stops.hpp"
-#include "master/rt/bus_machines.hpp"
 #include "master/rt/exchange/front_link.hpp"
-#include "master/rt/loss_stop.hpp"
-#include "master/rt/nmt_halt.hpp"
+#include "master/rt/machines/bus_machines.hpp"
 #include "master/rt/port.hpp"
-#include "master/rt/stop_sequence.hpp"
-#include "master/rt/sync_loss_reaction.hpp"
+#include "master/rt/stop/axis_memories.hpp"
+#include "master/rt/stop/axis_stops.hpp"
+#include "master/rt/stop/loss_stop.hpp"
+#include "master/rt/stop/nmt_halt.hpp"
+#include "master/rt/stop/stop_sequence.hpp"
+#include "master/rt/stop/sync_loss_reaction.hpp"
 
 namespace takt {
 

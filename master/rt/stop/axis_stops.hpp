@@ -4,8 +4,8 @@
 
 #include "master/core/network/ordered_stop.hpp"
 #include "master/core/network/stop_requests.hpp"
-#include "master/rt/axis_memories.hpp"
-#include "master/rt/bus_machines.hpp"
+#include "master/rt/machines/bus_machines.hpp"
+#include "master/rt/stop/axis_memories.hpp"
 
 namespace takt {
 

@@ -1,4 +1,4 @@
-#include "master/rt/beat.hpp"
+#include "master/rt/beat/beat.hpp"
 
 #include <algorithm>
 #include <chrono>

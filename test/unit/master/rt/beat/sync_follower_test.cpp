@@ -1,4 +1,4 @@
-#include "master/rt/sync_follower.hpp"
+#include "master/rt/beat/sync_follower.hpp"
 
 #include <gtest/gtest.h>
 #include <memory>

@@ -9,7 +9,7 @@
 #include "master/core/network/axis_memory.hpp"
 #include "master/core/network/ordered_stop.hpp"
 #include "master/core/network/stop_requests.hpp"
-#include "master/rt/bus_machines.hpp"
+#include "master/rt/machines/bus_machines.hpp"
 
 namespace takt {
 
