@@ -2,6 +2,9 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
+
+#include "master/wire/bytes.hpp"
 
 namespace takt {
 
@@ -19,8 +22,10 @@ struct CommandLimit {
 
 /// Writes a limit into Event::bytes of `fallback_begun`.
 constexpr std::array<std::uint8_t, 8> pack_limit(const CommandLimit& limit) noexcept {
-  const auto byte = [&](unsigned i) { return static_cast<std::uint8_t>(limit.cycles >> 8 * i); };
-  return {byte(0), byte(1), byte(2), byte(3), static_cast<std::uint8_t>(limit.origin)};
+  std::array<std::uint8_t, 8> bytes{};
+  store_le(std::span{bytes}, limit.cycles);
+  bytes[4] = static_cast<std::uint8_t>(limit.origin);
+  return bytes;
 }
 
 /// Reads what pack_limit() has written. Returns std::nullopt if the event has no limit; the limit
@@ -29,9 +34,7 @@ constexpr std::optional<CommandLimit> unpack_limit(
     const std::array<std::uint8_t, 8>& bytes) noexcept {
   const auto origin = static_cast<LimitOrigin>(bytes[4]);
   if (origin != LimitOrigin::configured && origin != LimitOrigin::command) return {};
-  std::uint32_t cycles = 0;
-  for (unsigned i = 0; i < 4; ++i) cycles |= std::uint32_t{bytes[i]} << 8 * i;
-  return CommandLimit{.cycles = cycles, .origin = origin};
+  return CommandLimit{.cycles = load_le<std::uint32_t>(std::span{bytes}), .origin = origin};
 }
 
 }  // namespace takt

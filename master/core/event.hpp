@@ -127,9 +127,8 @@ enum class EventKind : std::uint8_t {
   sync_early,   ///< value: ns after the previous SYNC; reported when it begins
   sync_period,  ///< The period differs from that of the network file; value: measured period in ns.
   // outputs
-  command_refused,  ///< value: signal, detail: RefusedBecause
-  fallback_begun,   ///< value: signal whose command has expired; bytes: pack_limit(), or 0
-  fallback_ended,   ///< value: signal
+  fallback_begun,  ///< value: signal whose command has expired; bytes: pack_limit(), or 0
+  fallback_ended,  ///< value: signal
   outputs_held,  ///< An RPDO is not sent because a signal lacks a commanded, safe or seeded value.
                  ///< value: RPDO number; detail: index of the signal whose actual position a
                  ///< limited set-point waits for, plus 1; 0 means it waits for none
@@ -172,15 +171,21 @@ enum class LimitVerdict : std::uint8_t {
   implausible,  ///< The limit is ignored.
 };
 
-/// Why a command was refused: Event::detail of `command_refused`.
-enum class RefusedBecause : std::uint8_t {
-  not_an_output,
-  other_session,  ///< The outputs of the node belong to another sender.
-  stale_session,  ///< The command belongs to a session of the daemon that has ended, for example in
-                  ///< a replayed log.
-  node_not_ready,
-  out_of_range,
-  observing,
+/// Why the CAN interface accepted no more frames: Event::detail of `send_buffer_full`.
+enum class SendTrouble : std::uint32_t {
+  queue_too_short,  ///< The bus is healthy, but txqueuelen is below the number of frames that one
+                    ///< cycle sends.
+  nobody_acknowledges,  ///< The controller is error passive: cable, bit rate, or no other node.
+  /// The controller is bus-off.
+  bus_off,
+};
+
+/// Why SYNC periods were skipped: Event::detail of `cycles_missed`.
+enum class MissedBecause : std::uint32_t {
+  late,          ///< The bus thread did not run in time.
+  wire_blocked,  ///< The controller is bus-off, or no node acknowledges the previous SYNC.
+  sent_late,     ///< The bus thread was late with the previous SYNC, which was not on the wire yet.
+  not_seen,  ///< The previous SYNC was not seen on the wire, and the controller reports no error.
 };
 
 /// Bit of Event::detail of `limit_exceeded`: the command brought no set-point. It would have put

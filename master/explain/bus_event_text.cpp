@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "eds_parser/table/name_of.hpp"
-#include "master/core/bus_trouble.hpp"
+#include "master/core/event.hpp"
 #include "master/explain/boot_report.hpp"
 #include "master/explain/report_text.hpp"
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <string>
 
-#include "eds_parser/table/name_of.hpp"
 #include "eds_parser/table/tpdo_of.hpp"
 #include "master/core/command_limit.hpp"
 #include "master/core/lss/lss_command.hpp"
@@ -24,17 +23,6 @@ std::string signal_name(const BusPlan& plan, std::int64_t index) {
   }
   const Signal& signal = signals[static_cast<std::size_t>(index)];
   return signal.name + " (" + to_string(signal.object) + ")";
-}
-
-std::string_view reason(std::uint32_t detail) noexcept {
-  static constexpr std::string_view names[]{
-      "it is not an output",
-      "another sender has the lease of the outputs of this node",
-      "the command is for an earlier session of the daemon (a replayed log?)",
-      "the node is not ready",
-      "the value does not fit the object",
-      "the master only observes"};
-  return name_of(static_cast<RefusedBecause>(detail), names, "the reason is unknown");
 }
 
 /// Describes which TPDO carries an actual position, and what makes the device send it soon.
@@ -224,8 +212,6 @@ std::string within(const BusPlan& plan, const Event& event) {
 std::string signal_line(const BusPlan& plan, const Event& event) {
   const std::string signal = signal_name(plan, event.value);
   switch (event.kind) {
-    case EventKind::command_refused:
-      return "command to " + signal + " refused: " + std::string{reason(event.detail)};
     case EventKind::fallback_begun:
       return "no fresh command for " + signal + within(plan, event) + ": its fallback is sent";
     case EventKind::fallback_ended:
@@ -244,7 +230,6 @@ bool is_of_node(EventKind kind) noexcept {
 
 std::string line(const BusPlan& plan, const Event& event) {
   switch (event.kind) {
-    case EventKind::command_refused:
     case EventKind::fallback_begun:
     case EventKind::fallback_ended:
       return signal_line(plan, event);

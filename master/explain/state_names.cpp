@@ -38,7 +38,6 @@ std::string_view name(EventKind kind) noexcept {
                                             "sync_jump",
                                             "sync_early",
                                             "sync_period",
-                                            "command_refused",
                                             "fallback_begun",
                                             "fallback_ended",
                                             "outputs_held",

@@ -2,7 +2,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "master/core/bus_trouble.hpp"
 #include "master/core/event_queue.hpp"
 #include "master/rt/port.hpp"
 
@@ -25,10 +24,6 @@ class PortWatch {
   }
 
  private:
-  void announce(EventKind kind, Time now, std::int64_t value = 0,
-                std::uint32_t detail = 0) noexcept;
-  void on_interface(const PortNews& news, Time now) noexcept;
-
   EventQueue& events_;
   PortNews seen_;
   Time last_full_{};

@@ -1,6 +1,7 @@
 #include "master/core/lss/lss_command.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 #include "eds_parser/table/waits.hpp"
 #include "master/wire/bytes.hpp"
@@ -8,26 +9,33 @@
 namespace takt {
 namespace {
 
-bool is_service(std::uint8_t op) noexcept {
-  switch (static_cast<LssOp>(op)) {
-    case LssOp::switch_global:
-    case LssOp::configure_node_id:
-    case LssOp::configure_bit_timing:
-    case LssOp::activate_bit_timing:
-    case LssOp::store:
-    case LssOp::switch_selective:
-    case LssOp::identify:
-    case LssOp::identify_unconfigured:
-    case LssOp::fast_scan:
-    case LssOp::inquire_vendor:
-    case LssOp::inquire_product:
-    case LssOp::inquire_revision:
-    case LssOp::inquire_serial:
-    case LssOp::inquire_node_id:
-    case LssOp::slow_scan:
-      return true;
-  }
-  return false;
+struct ServiceName {
+  LssOp op;
+  std::string_view name;
+};
+
+constexpr std::array service_names{
+    ServiceName{LssOp::switch_global, "switch the state of all devices"},
+    ServiceName{LssOp::configure_node_id, "configure node id"},
+    ServiceName{LssOp::configure_bit_timing, "configure bit timing"},
+    ServiceName{LssOp::activate_bit_timing, "activate bit timing"},
+    ServiceName{LssOp::store, "store configuration"},
+    ServiceName{LssOp::switch_selective, "switch one device to configuration state"},
+    ServiceName{LssOp::identify, "identify by ranges"},
+    ServiceName{LssOp::identify_unconfigured, "look for devices without node id"},
+    ServiceName{LssOp::fast_scan, "fastscan"},
+    ServiceName{LssOp::inquire_vendor, "inquire vendor id"},
+    ServiceName{LssOp::inquire_product, "inquire product code"},
+    ServiceName{LssOp::inquire_revision, "inquire revision"},
+    ServiceName{LssOp::inquire_serial, "inquire serial number"},
+    ServiceName{LssOp::inquire_node_id, "inquire node id"},
+    ServiceName{LssOp::slow_scan, "scan by ranges"},
+};
+
+/// Returns nullptr if there is no such service.
+constexpr const ServiceName* find_service(LssOp op) noexcept {
+  const auto found = std::ranges::find(service_names, op, &ServiceName::op);
+  return found == service_names.end() ? nullptr : &*found;
 }
 
 bool has_sense(const LssCommand& command) noexcept {
@@ -44,62 +52,32 @@ bool has_sense(const LssCommand& command) noexcept {
   }
 }
 
-std::string what(LssOp op) {
-  switch (op) {
-    case LssOp::switch_global:
-      return "switch the state of all devices";
-    case LssOp::configure_node_id:
-      return "configure node id";
-    case LssOp::configure_bit_timing:
-      return "configure bit timing";
-    case LssOp::activate_bit_timing:
-      return "activate bit timing";
-    case LssOp::store:
-      return "store configuration";
-    case LssOp::switch_selective:
-      return "switch one device to configuration state";
-    case LssOp::identify:
-      return "identify by ranges";
-    case LssOp::identify_unconfigured:
-      return "look for devices without node id";
-    case LssOp::fast_scan:
-      return "fastscan";
-    case LssOp::inquire_vendor:
-      return "inquire vendor id";
-    case LssOp::inquire_product:
-      return "inquire product code";
-    case LssOp::inquire_revision:
-      return "inquire revision";
-    case LssOp::inquire_serial:
-      return "inquire serial number";
-    case LssOp::inquire_node_id:
-      return "inquire node id";
-    case LssOp::slow_scan:
-      return "scan by ranges";
-  }
-  return "unknown service";
-}
+struct Refusal {
+  LssOp op;
+  std::uint8_t error;
+  const char* text;
+};
 
-/// Describes the error codes of configure node-ID, configure bit timing and store. CiA 305.
+/// The error codes of CiA 305.
+constexpr std::array refusals{
+    Refusal{LssOp::configure_node_id, 1, "the device reports that this node id is out of range"},
+    Refusal{LssOp::configure_bit_timing, 1, "the device does not support this bit rate"},
+    Refusal{LssOp::store, 1, "the device does not support storing"},
+    Refusal{LssOp::store, 2, "the device could not access its storage medium"},
+};
+
 std::string refusal(const LssResult& result) {
-  const std::string code = " (error " + std::to_string(result.error) + ")";
   if (result.error == 255) {
     return "the device gave the manufacturer-specific error code " +
            std::to_string(result.specific);
   }
-  if (result.op == LssOp::configure_node_id && result.error == 1) {
-    return "the device reports that this node id is out of range" + code;
-  }
-  if (result.op == LssOp::configure_bit_timing && result.error == 1) {
-    return "the device does not support this bit rate" + code;
-  }
-  if (result.op == LssOp::store && result.error == 1) {
-    return "the device does not support storing" + code;
-  }
-  if (result.op == LssOp::store && result.error == 2) {
-    return "the device could not access its storage medium" + code;
-  }
-  return "the device gave an error code that CiA 305 does not know" + code;
+  const auto found = std::ranges::find_if(refusals, [&](const Refusal& known) {
+    return known.op == result.op && known.error == result.error;
+  });
+  const std::string text = found != refusals.end()
+                               ? found->text
+                               : "the device gave an error code that CiA 305 does not know";
+  return text + " (error " + std::to_string(result.error) + ")";
 }
 
 std::string nobody(LssOp op) {
@@ -154,9 +132,9 @@ void pack(const LssResult& result, std::span<std::byte, lss_result_bytes> bytes)
 
 std::optional<LssCommand> unpack_lss_command(
     std::span<const std::byte, lss_command_bytes> bytes) noexcept {
-  const auto op = std::to_integer<std::uint8_t>(bytes[0]);
-  if (!is_service(op)) return {};
-  LssCommand command{.op = static_cast<LssOp>(op),
+  const auto op = static_cast<LssOp>(bytes[0]);
+  if (find_service(op) == nullptr) return {};
+  LssCommand command{.op = op,
                      .a = std::to_integer<std::uint8_t>(bytes[1]),
                      .b = std::to_integer<std::uint8_t>(bytes[2]),
                      .several = bytes[3] != std::byte{0}};
@@ -180,22 +158,25 @@ LssResult unpack_lss_result(std::span<const std::byte, lss_result_bytes> bytes) 
 }
 
 std::string lss_failure_text(const LssResult& result) {
-  switch (result.outcome) {
-    case LssOutcome::done:
-      return {};
-    case LssOutcome::silent:
-      return what(result.op) +
-             ": no answer; is there a device in configuration state, with LSS, on this bus?";
-    case LssOutcome::nobody:
-      return what(result.op) + ": " + nobody(result.op);
-    case LssOutcome::refused:
-      return what(result.op) + ": " + refusal(result);
-    case LssOutcome::lost:
-      return what(result.op) +
-             ": the answers of the devices contradict each other; the devices may be slower than "
-             "the time-out, or several devices may have the same LSS address";
-  }
-  return what(result.op) + ": unknown outcome";
+  const auto why = [&result]() -> std::string {
+    switch (result.outcome) {
+      case LssOutcome::done:
+        return {};
+      case LssOutcome::silent:
+        return "no answer; is there a device in configuration state, with LSS, on this bus?";
+      case LssOutcome::nobody:
+        return nobody(result.op);
+      case LssOutcome::refused:
+        return refusal(result);
+      case LssOutcome::lost:
+        return "the answers of the devices contradict each other; the devices may be slower than "
+               "the time-out, or several devices may have the same LSS address";
+    }
+    return "unknown outcome";
+  }();
+  if (why.empty()) return {};
+  const ServiceName* const service = find_service(result.op);
+  return std::string{service ? service->name : "unknown service"} + ": " + why;
 }
 
 }  // namespace takt

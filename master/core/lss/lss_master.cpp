@@ -6,6 +6,28 @@
 #include "eds_parser/table/waits.hpp"
 
 namespace takt {
+namespace {
+
+/// The command specifier of the answers to a service; std::nullopt if it has no answer.
+std::optional<lss::Service> answer_of(LssOp op) noexcept {
+  switch (op) {
+    case LssOp::switch_global:
+    case LssOp::activate_bit_timing:
+      return std::nullopt;
+    case LssOp::switch_selective:
+      return lss::Service::selected;
+    case LssOp::identify:
+    case LssOp::fast_scan:
+    case LssOp::slow_scan:
+      return lss::Service::identified;
+    case LssOp::identify_unconfigured:
+      return lss::Service::unconfigured;
+    default:
+      return static_cast<lss::Service>(op);  // the answer repeats the command specifier
+  }
+}
+
+}  // namespace
 
 void LssMaster::begin(const LssCommand& command, Time timeout, Time now) noexcept {
   command_ = command;
@@ -32,42 +54,33 @@ void LssMaster::begin_slow_scan() noexcept {
 
 /// Prepares the frames of the next question.
 void LssMaster::ask() noexcept {
-  using lss::Service;
   count_ = next_ = 0;
   phase_ = Phase::sending;
   wait_for_ = command_.several ? Wait::all_answers : Wait::first_answer;
+  if (!answer_of(command_.op)) wait_for_ = Wait::none;
+  const auto service = static_cast<lss::Service>(command_.op);
   const auto& numbers = command_.numbers;
   switch (command_.op) {
     case LssOp::switch_global:
-      wait_for_ = Wait::none;
-      return put(lss::request(Service::switch_global, command_.a));
-    case LssOp::activate_bit_timing:
-      wait_for_ = Wait::none;
-      return put(lss::request(Service::activate_bit_timing, numbers[0]));
     case LssOp::configure_node_id:
-      return put(lss::request(Service::configure_node_id, command_.a));
+      return put(lss::request(service, command_.a));
+    case LssOp::activate_bit_timing:
+      return put(lss::request(service, numbers[0]));
     case LssOp::configure_bit_timing:
-      return put(
-          lss::request(Service::configure_bit_timing, command_.a | std::uint32_t{command_.b} << 8));
-    case LssOp::store:
-      return put(lss::request(Service::store));
+      return put(lss::request(service, command_.a | std::uint32_t{command_.b} << 8));
     case LssOp::switch_selective:
       wait_for_ = Wait::first_answer;
-      for (std::uint8_t i = 0; i < 4; ++i) put(lss::request(Service::select, numbers[i], i));
+      for (std::uint8_t i = 0; i < 4; ++i) put(lss::request(service, numbers[i], i));
       return;
     case LssOp::identify_unconfigured:
       wait_for_ = Wait::all_answers;
-      return put(lss::request(Service::identify_unconfigured));
-    case LssOp::inquire_vendor:
-    case LssOp::inquire_product:
-    case LssOp::inquire_revision:
-    case LssOp::inquire_serial:
-    case LssOp::inquire_node_id:
-      return put(lss::request(static_cast<Service>(command_.op)));
+      return put(lss::request(service));
     case LssOp::identify:
     case LssOp::fast_scan:
     case LssOp::slow_scan:
       return ask_scan();
+    default:
+      return put(lss::request(service));
   }
 }
 
@@ -82,30 +95,8 @@ void LssMaster::ask_scan() noexcept {
 }
 
 bool LssMaster::expects(const lss::Answer& answer) const noexcept {
-  using lss::Service;
-  switch (command_.op) {
-    case LssOp::switch_global:
-    case LssOp::activate_bit_timing:
-      return false;
-    case LssOp::switch_selective:
-      return answer.is(Service::selected);
-    case LssOp::identify:
-    case LssOp::fast_scan:
-    case LssOp::slow_scan:
-      return answer.is(Service::identified);
-    case LssOp::identify_unconfigured:
-      return answer.is(Service::unconfigured);
-    case LssOp::configure_node_id:
-    case LssOp::configure_bit_timing:
-    case LssOp::store:
-    case LssOp::inquire_vendor:
-    case LssOp::inquire_product:
-    case LssOp::inquire_revision:
-    case LssOp::inquire_serial:
-    case LssOp::inquire_node_id:
-      return answer.is(static_cast<Service>(command_.op));
-  }
-  return false;
+  const auto service = answer_of(command_.op);
+  return service && answer.is(*service);
 }
 
 void LssMaster::on_frame(const Frame& frame, Time now, Outbox& /*out*/) noexcept {

@@ -44,8 +44,6 @@ class LssService {
   }
 
  private:
-  static constexpr std::uint8_t nobody = 0xFF;
-
   struct Candidate {
     std::uint8_t node = 0;  // index into plan.nodes
     Time next_look = never;

@@ -53,10 +53,6 @@ void AxisMemory::write(std::int64_t controlword) noexcept {
   disabled_ = false;
 }
 
-void AxisMemory::note_answer() noexcept {
-  if (awaits_answer()) word_ = ServiceWord::standing;
-}
-
 void AxisMemory::confirm() noexcept {
   if (word_ != ServiceWord::standing || quiet_ < settling_cycles) return;
   word_ = ServiceWord::harmless;

@@ -39,7 +39,9 @@ class AxisMemory {
   /// Such a service is not answered yet, as far as is known.
   bool awaits_answer() const noexcept { return word_ == ServiceWord::under_way; }
   /// Notes that every service that can bring a controlword is answered.
-  void note_answer() noexcept;
+  void note_answer() noexcept {
+    if (awaits_answer()) word_ = ServiceWord::standing;
+  }
   /// Notes that a stop which commands the axis itself has seen it at standstill and then disabled.
   void confirm() noexcept;
   /// Notes that the node reports OPERATIONAL although this master has not booted it.

@@ -6,7 +6,7 @@
 namespace takt {
 namespace {
 
-/// The longest distance between two frames of a TPDO of a moving axis, as far as the plan tells it.
+/// The longest distance between two frames of a TPDO of a moving axis, as far as the plan shows it.
 Time distance_of(const BusPlan& plan, const PdoRow& row) {
   if (row.cyclic()) return static_cast<Time::rep>(row.transmission) * plan.cycle.period;
   return std::max(row.inhibit, row.event_timer);

@@ -55,11 +55,6 @@ NodeSession* Network::session(std::uint32_t node) noexcept {
   return &sessions_[index_[node]];
 }
 
-void Network::announce(EventKind kind, Time now, std::int64_t value, std::uint32_t detail,
-                       std::uint8_t node) noexcept {
-  events_.push({.when = now, .kind = kind, .node = node, .detail = detail, .value = value});
-}
-
 void Network::touched(std::size_t index, Time now) noexcept {
   if (sessions_[index].take_loss()) on_loss(index, now);
   statuses_[index] = sessions_[index].status();
@@ -132,7 +127,7 @@ void Network::meet_stranger(const Frame& frame, Time now) noexcept {
   const bool sign_of_life = (frame.id.id() & 0x780U) == 0x700 && frame.length != 0 && node != 0;
   if (!sign_of_life || node == plan_.master_id.value() || strangers_[node]) return;
   strangers_.set(node);
-  announce(EventKind::unlisted_node, now, node, 0);
+  events_.push({.when = now, .kind = EventKind::unlisted_node, .value = node});
 }
 
 void Network::on_time(Time now, Outbox& out) noexcept {
@@ -233,23 +228,9 @@ bool Network::submit(const Request& request, Time now) noexcept {
   return true;
 }
 
-bool Network::take(Reply& reply) noexcept { return requests_.take(reply); }
-
-bool Network::take(Event& event) noexcept { return events_.pop(event); }
-
-std::span<const NodeStatus> Network::nodes() const noexcept { return statuses_; }
-
-bool Network::exchanges_pdos(std::size_t node_index) const noexcept {
-  return node_index < sessions_.size() && sessions_[node_index].exchanges_pdos();
-}
-
 std::span<const LimitReading> Network::limits_read(std::size_t node_index) const noexcept {
   if (node_index >= sessions_.size()) return {};
   return sessions_[node_index].limits_read();
-}
-
-bool Network::starts(std::size_t node_index) const noexcept {
-  return node_index < sessions_.size() && sessions_[node_index].starts();
 }
 
 void Network::begin_stop(Time now, NmtCommand last) noexcept {

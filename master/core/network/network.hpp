@@ -70,7 +70,7 @@ class Network {
   /// Every accepted request is answered exactly once.
   bool submit(const Request& request, Time now) noexcept;
   /// Takes the next reply. Returns false if there is none.
-  bool take(Reply& reply) noexcept;
+  bool take(Reply& reply) noexcept { return requests_.take(reply); }
   /// An SDO download to this object of the node is not answered yet.
   bool writes(std::uint8_t node, ObjectKey object) const noexcept {
     return requests_.has_download(node, object);
@@ -78,17 +78,21 @@ class Network {
   /// Cancels and answers the requests with this id of which nothing was sent so far.
   void withdraw(std::uint64_t id) noexcept;
   /// Takes the next event. Returns false if there is none.
-  bool take(Event& event) noexcept;
+  bool take(Event& event) noexcept { return events_.pop(event); }
   /// Number of events that were lost because the queue was full.
   std::uint64_t events_lost() const noexcept { return events_.lost(); }
 
   /// The status of all nodes, in the order of plan.nodes.
-  std::span<const NodeStatus> nodes() const noexcept;
+  std::span<const NodeStatus> nodes() const noexcept { return statuses_; }
   /// The node is booted and, as far as is known, OPERATIONAL.
-  bool exchanges_pdos(std::size_t node_index) const noexcept;
+  bool exchanges_pdos(std::size_t node_index) const noexcept {
+    return node_index < statuses_.size() && statuses_[node_index].exchanging;
+  }
   /// The boot of the node has sent NMT start. The node may be OPERATIONAL some time before it
   /// reports that state.
-  bool starts(std::size_t node_index) const noexcept;
+  bool starts(std::size_t node_index) const noexcept {
+    return node_index < sessions_.size() && sessions_[node_index].starts();
+  }
 
   /// See NodeSession::boot_refused.
   bool boot_refused(std::size_t node_index) const noexcept {
@@ -180,9 +184,9 @@ class Network {
   void on_loss(std::size_t index, Time now) noexcept;
   void on_mandatory_loss(Time now) noexcept;
   void halt_group(std::size_t index) noexcept;
+  template <class Change>
+  void change_all(Change change) noexcept;
   void meet_stranger(const Frame& frame, Time now) noexcept;
-  void announce(EventKind kind, Time now, std::int64_t value, std::uint32_t detail,
-                std::uint8_t node = 0) noexcept;
   NodeSession* emcy_sender(CobId id) noexcept;
   void ask_own_dictionary(const Frame& frame, Time now) noexcept;
   void serve_own_dictionary(Time now, Outbox& out) noexcept;

@@ -14,18 +14,27 @@ bool ends_exchange(NmtCommand command) noexcept {
 
 }  // namespace
 
+/// Calls `change` with each session. It may change the deadline of the session, but not its status.
+template <class Change>
+void Network::change_all(Change change) noexcept {
+  for (std::size_t i = 0; i < sessions_.size(); ++i) {
+    change(sessions_[i]);
+    deadlines_[i] = sessions_[i].deadline();
+  }
+}
+
 void Network::follow_start(Time now) noexcept {
   if (observe_ || stopping_ || boots_given_up_) return;
   if (start_.late(now)) {
-    announce(EventKind::network_late, now, 0,
-             static_cast<std::uint32_t>(start_.missing(statuses_)));
+    const auto missing = static_cast<std::uint32_t>(start_.missing(statuses_));
+    events_.push({.when = now, .kind = EventKind::network_late, .detail = missing});
   }
   if (!start_.update(statuses_)) return;
   const bool bootup_waits = own_state_ == NmtState::bootup && heartbeat_at_ != never;
   if (plan_.start_up.start_master && !bootup_waits) command_master(NmtCommand::start);
   if (plan_.start_up.start_all && plan_.start_nodes) broadcasts_.push({NmtCommand::start, 0});
   for (NodeSession& session : sessions_) session.on_network_start();
-  if (start_.matters()) announce(EventKind::network_ready, now, 0, 0);
+  if (start_.matters()) events_.push({.when = now, .kind = EventKind::network_ready});
 }
 
 /// Reacts to the loss of a node. CiA 302-2, error handling of a running node.
@@ -38,17 +47,18 @@ void Network::on_loss(std::size_t index, Time now) noexcept {
   if (node.on_loss == LossReaction::report) return;
   if (node.on_loss == LossReaction::stop_node) sessions_[index].halt();
   if (node.on_loss == LossReaction::stop_group) halt_group(index);
-  announce(EventKind::loss_reaction, now, static_cast<std::int64_t>(node.on_loss), 0,
-           node.id.value());
+  events_.push({.when = now,
+                .kind = EventKind::loss_reaction,
+                .node = node.id.value(),
+                .value = static_cast<std::int64_t>(node.on_loss)});
 }
 
 void Network::halt_group(std::size_t index) noexcept {
   const std::uint8_t group = plan_.nodes[index].group;
-  for (std::size_t i = 0; i < sessions_.size(); ++i) {
-    if (i != index && (group == 0 || plan_.nodes[i].group != group)) continue;
-    sessions_[i].halt();
-    deadlines_[i] = sessions_[i].deadline();
-  }
+  change_all([&](NodeSession& session) {
+    const bool in_group = group != 0 && session.plan().group == group;
+    if (in_group || &session == &sessions_[index]) session.halt();
+  });
 }
 
 void Network::on_mandatory_loss(Time now) noexcept {
@@ -57,7 +67,7 @@ void Network::on_mandatory_loss(Time now) noexcept {
   if (stops) {
     for (NodeSession& session : sessions_) session.await_command();
   }
-  announce(EventKind::mandatory_lost, now, stops ? 1 : 0, 0);
+  events_.push({.when = now, .kind = EventKind::mandatory_lost, .value = stops ? 1 : 0});
 }
 
 bool Network::demands_quick_stop(std::size_t node_index) const noexcept {
@@ -73,25 +83,17 @@ bool Network::demands_quick_stop(std::size_t node_index) const noexcept {
 }
 
 void Network::on_sync_loss() noexcept {
-  for (std::size_t i = 0; i < sessions_.size(); ++i) {
-    if (plan_.nodes[i].id == plan_.cycle.sync_producer) continue;
-    sessions_[i].pause();
-    deadlines_[i] = sessions_[i].deadline();
-  }
+  change_all([this](NodeSession& session) {
+    if (session.plan().id != plan_.cycle.sync_producer) session.pause();
+  });
 }
 
 void Network::on_absence(Time away) noexcept {
-  for (std::size_t i = 0; i < sessions_.size(); ++i) {
-    sessions_[i].excuse(away);
-    deadlines_[i] = sessions_[i].deadline();
-  }
+  change_all([away](NodeSession& session) { session.excuse(away); });
 }
 
 void Network::on_sync_back() noexcept {
-  for (std::size_t i = 0; i < sessions_.size(); ++i) {
-    sessions_[i].resume();
-    deadlines_[i] = sessions_[i].deadline();
-  }
+  change_all([](NodeSession& session) { session.resume(); });
 }
 
 /// Changes the NMT state of the master itself. The master does not receive its own broadcast, so it

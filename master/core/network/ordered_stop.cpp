@@ -208,12 +208,6 @@ void OrderedStop::enter(StopStage stage) noexcept {
   steps_ = 0;
 }
 
-/// If an axis is not confirmed, all supervision stays armed, because only the devices themselves
-/// can still react.
-void OrderedStop::leave_axes(StopStage stage) noexcept {
-  enter(all_confirmed() ? StopStage::disarm : stage);
-}
-
 /// The transitions of the stop:
 ///
 ///   stage       ends when                                                 next

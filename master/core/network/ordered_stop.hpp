@@ -120,7 +120,9 @@ class OrderedStop {
   bool all_confirmed() const noexcept;
   Time limit() const noexcept;
   void enter(StopStage stage) noexcept;
-  void leave_axes(StopStage stage) noexcept;
+  /// If an axis is not confirmed, all supervision stays armed, because only the devices themselves
+  /// can still react.
+  void leave_axes(StopStage stage) noexcept { enter(all_confirmed() ? StopStage::disarm : stage); }
 
   /// The TPDOs that bring the values of one axis.
   struct Sources {

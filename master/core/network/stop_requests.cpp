@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
+#include "master/core/node/boot_value.hpp"
+#include "master/wire/bytes.hpp"
 #include "master/wire/sdo_abort.hpp"
 
 namespace takt {
@@ -23,7 +26,7 @@ bool keeps_alive(const NodePlan& node) {
 /// The step writes a value that makes the device supervise the master.
 bool arms(const BusPlan& plan, const BootStep& step) {
   if (step.action != BootAction::write && step.action != BootAction::write_if_differs) return false;
-  const bool any = std::ranges::any_of(step.value, [](std::byte b) { return b != std::byte{0}; });
+  const bool any = !all_zero(step.value);
   switch (step.object.index) {
     case 0x1016: {
       const bool whole = step.object.sub != 0 && step.value.size() == 4;
@@ -108,8 +111,7 @@ void StopRequests::ask(std::size_t axis, Word word, std::int64_t value) noexcept
   request_.object = {static_cast<std::uint16_t>(bases[kind] + offset), 0};
   request_.size = writes ? 2 : 0;
   request_.timeout = Time{};
-  request_.data[0] = static_cast<std::byte>(value & 0xFF);
-  request_.data[1] = static_cast<std::byte>(value >> 8 & 0xFF);
+  store_le(std::span{request_.data}, static_cast<std::uint16_t>(value));
 }
 
 bool StopRequests::read_next(std::size_t axis, bool needs_word, bool needs_motion) noexcept {
@@ -239,8 +241,7 @@ std::optional<StopRequests::AxisWord> StopRequests::statusword_of(const Reply& r
   const bool word = (reply.id & of_job) == 0 && static_cast<Word>(reply.id & 0xFF) == Word::status;
   if (!word || reply.fault != SdoFault::none || reply.size != 2) return std::nullopt;
   return AxisWord{.axis = reply.id >> 8U & 0xFFFF,
-                  .value = std::to_integer<std::int64_t>(reply.data[0]) |
-                           std::to_integer<std::int64_t>(reply.data[1]) << 8};
+                  .value = load_le<std::uint16_t>(std::span{reply.data})};
 }
 
 void StopRequests::take_value(std::size_t axis, Word word, const Reply& reply,
@@ -252,10 +253,7 @@ void StopRequests::take_value(std::size_t axis, Word word, const Reply& reply,
   }
   if (word == Word::device_type) poll.type = TypeQuery::answered;
   if (reply.size == 0 || reply.size > 4) return;
-  std::uint32_t raw = 0;
-  for (std::size_t i = 0; i < reply.size; ++i) {
-    raw |= std::to_integer<std::uint32_t>(reply.data[i]) << (8 * i);
-  }
+  const auto raw = load_le<std::uint32_t>(std::span{reply.data}.first(reply.size));
   if (word == Word::device_type) {
     if (reply.size == 4 && is_no_drive(raw)) stop.take_absence(axis);
     return;

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-// The way of the boot through its steps, with the waits and the NMT commands.
+#include "eds_parser/table/waits.hpp"
+
+// The way of the boot through its steps: the waits, the NMT commands, and the begin of each
+// transfer.
 
 namespace takt {
 namespace {
@@ -39,7 +42,9 @@ void BootRunner::start(From from, Time now) noexcept {
   began_ = now;
   course_ = course_of(from);
   restarts_ = 0;
-  flags_ = {};
+  compared_ = Compared::same;
+  device_ = Device::untouched;
+  guarding_ = Guarding::not_yet;
   nmt_ = {};
   if (from == From::bootup) nmt_.on_bootup();
   cob_id_.forget();
@@ -66,7 +71,8 @@ void BootRunner::on_bootup(Time now, SdoClient& client) noexcept {
   if (++restarts_ > max_restarts) return fail({.fault = SdoFault::cancelled}, now, client);
   if (current().may_restart) return polls() ? go_to_transfer(Transfer::upload) : next();
   cob_id_.forget();
-  flags_.differs = flags_.guards = false;
+  compared_ = Compared::same;
+  guarding_ = Guarding::not_yet;
   course_ = BootCourse::configuring;
   go_to(current().action == BootAction::probe ? step_ : after_reset_);
 }
@@ -92,7 +98,7 @@ void BootRunner::nmt_sent(SdoClient& client) noexcept {
   nmt_.commanded(current().command);
   if (is_reset(current().command)) {
     client.drop();
-    flags_.guards = false;
+    guarding_ = Guarding::not_yet;
     cob_id_.forget();
   }
   next();
@@ -166,7 +172,7 @@ void BootRunner::enter(Time now) noexcept {
     course_ = BootCourse::configuring;
     return go_to(0);
   }
-  if (skips(course_, step, flags_.written)) return next();
+  if (skips(course_, step, device_ == Device::written)) return next();
   const Time end = now + step.timeout;
   progress_ = {.entered = now, .deadline = end, .wait_until = end};
   begin(step);
@@ -179,7 +185,7 @@ void BootRunner::begin(const BootStep& step) noexcept {
       return;
     case BootAction::await_guarding:
     case BootAction::await_alive:
-      flags_.guards = flags_.guards || step.action == BootAction::await_guarding || step.guarded;
+      if (step.action == BootAction::await_guarding || step.guarded) guarding_ = Guarding::begun;
       [[fallthrough]];
     case BootAction::await_bootup:
     case BootAction::await_heartbeat:
@@ -188,8 +194,9 @@ void BootRunner::begin(const BootStep& step) noexcept {
       state_ = State::waiting;
       return;
     case BootAction::skip_if_same: {
-      const bool differs = std::exchange(flags_.differs, false);
-      return go_to(differs ? step_ + 1U : std::max<std::size_t>(step.target, step_ + 1U));
+      const Compared compared = std::exchange(compared_, Compared::same);
+      return go_to(compared == Compared::same ? std::max<std::size_t>(step.target, step_ + 1U)
+                                              : step_ + 1U);
     }
     case BootAction::write:
     case BootAction::write_if_changed:
@@ -212,6 +219,37 @@ void BootRunner::begin(const BootStep& step) noexcept {
   }
 }
 
+bool BootRunner::begin_transfer(Time now, SdoClient& client) noexcept {
+  if (!client.idle()) return false;
+  if (needs_preop()) {
+    state_ = State::before_preop;
+    return false;
+  }
+  const BootStep& step = current();
+  Time timeout = step.timeout > Time{} ? step.timeout : default_timeout;
+  if (polls()) {
+    timeout = std::max(Time{1}, std::min(waits::probe_try, progress_.deadline - now));
+  }
+  state_ = State::in_transfer;
+  if (transfer_ == Transfer::download) {
+    client.download(step.object, to_write_, timeout);
+    return true;
+  }
+  if (progress_.uploads < 255) ++progress_.uploads;
+  client.upload(step.object, buffer_, timeout);
+  return true;
+}
+
+/// Parameters are written in PRE-OPERATIONAL. A device that starts by itself leaves this state
+/// unasked, and a device in STOPPED answers no SDO at all. A node that is or may be OPERATIONAL is
+/// not written to.
+bool BootRunner::needs_preop() const noexcept {
+  const bool leaves_state =
+      course_ == BootCourse::keeping_operational || course_ == BootCourse::probing_silent_node;
+  if (nmt_.preoperational() || leaves_state) return false;
+  return transfer_ == Transfer::download || nmt_.reported() == NmtState::stopped;
+}
+
 bool BootRunner::end_wait(Time now, const SdoClient& client) noexcept {
   const bool over = now >= progress_.wait_until;
   switch (current().action) {
@@ -227,7 +265,10 @@ bool BootRunner::end_wait(Time now, const SdoClient& client) noexcept {
       if (!over) return false;
       // A node without heartbeat cannot report the state; a node with heartbeat should have
       // reported it.
-      if (nmt_.heartbeat_seen()) return fail({.fault = SdoFault::timeout}, now, client), true;
+      if (nmt_.heartbeat_seen()) {
+        fail({.fault = SdoFault::timeout}, now, client);
+        return true;
+      }
       break;
     case BootAction::probe:
     case BootAction::await_value:

@@ -125,7 +125,7 @@ class BootRunner {
   /// Size in bytes of the program that is being downloaded; 0 means no download.
   std::size_t program_size() const noexcept;
   /// The plan has reached the step from which the node is guarded.
-  bool guards() const noexcept { return flags_.guards; }
+  bool guards() const noexcept { return guarding_ == Guarding::begun; }
   /// The record of the failure, valid if failed().
   const BootFailure& failure() const noexcept { return failure_; }
 
@@ -147,12 +147,12 @@ class BootRunner {
     download,
     read_back,  ///< A write that was refused as redundant, or not answered, is read back.
   };
-  /// The flags of the boot program.
-  struct Flags {
-    bool differs = false;  ///< a value differs, see BootAction::skip_if_same
-    bool written = false;  ///< this boot has written something, see BootAction::write_if_changed
-    bool guards = false;   ///< see guards()
-  };
+  /// The values that were compared since the newest BootAction::skip_if_same.
+  enum class Compared : std::uint8_t { same, differs };
+  /// The device in this boot, see BootAction::write_if_changed.
+  enum class Device : std::uint8_t { untouched, written };
+  /// See guards().
+  enum class Guarding : std::uint8_t { not_yet, begun };
   /// The current step since it was entered.
   struct Progress {
     Time entered{};
@@ -221,7 +221,9 @@ class BootRunner {
   BootCourse course_ = BootCourse::configuring;
   std::uint16_t step_ = 0;
   std::uint8_t restarts_ = 0;
-  Flags flags_;
+  Compared compared_ = Compared::same;
+  Device device_ = Device::untouched;
+  Guarding guarding_ = Guarding::not_yet;
   Progress progress_;
   KnownNmtState nmt_;
   CobIdMemory cob_id_;

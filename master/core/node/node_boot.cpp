@@ -54,7 +54,8 @@ void NodeSession::on_boot_done(Time now) noexcept {
   report_replaced(now);
   report_firmware(now);
   report_boot_done(now);
-  const bool with_network = plan_->start_later && network_started_ && !runner_.keeps_running();
+  const bool with_network =
+      plan_->start_later && network_ == NetworkPhase::started && !runner_.keeps_running();
   if (plan_->boot && (with_network || (runner_.nmt().taken_out() && !plan_->start_later))) {
     own_command_ = NmtCommand::start;
   }

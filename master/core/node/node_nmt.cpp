@@ -88,6 +88,12 @@ bool NodeSession::exchanges_pdos() const noexcept {
   return !ends_exchange() || heartbeats_against_ >= 2;
 }
 
+NodeStatus NodeSession::status() const noexcept {
+  NodeStatus status = status_;
+  status.exchanging = exchanges_pdos();
+  return status;
+}
+
 void NodeSession::assume(NmtState state, Time now) noexcept {
   if (status_.nmt == state) return;
   status_.nmt = state;
@@ -151,7 +157,5 @@ void NodeSession::begin_stop(NmtCommand last) noexcept {
   status_.boot = BootState::idle;
   retries_.cancel();
 }
-
-bool NodeSession::stopped() const noexcept { return stopping() && !own_command_ && client_.idle(); }
 
 }  // namespace takt

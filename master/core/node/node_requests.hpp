@@ -28,7 +28,7 @@ class NodeRequests {
   bool withdraw(std::uint64_t id, SdoClient& client, NodeStatus& status) noexcept;
   /// Answers the active request as cancelled, because the node was reset.
   void cancel() noexcept;
-  /// Forgets the active request, which somebody else answers.
+  /// Forgets the active request, which the network answers.
   void forget() noexcept;
   /// When to look next whether the sender still wants the transfer.
   Time deadline() const noexcept { return next_look_; }

@@ -43,12 +43,6 @@ void NodeSession::advance(Time now) noexcept {
   if (!stopping()) requests_.begin_next(client_, now);
 }
 
-void NodeSession::on_request(Time now) noexcept { advance(now); }
-
-bool NodeSession::withdraw(std::uint64_t id) noexcept {
-  return requests_.withdraw(id, client_, status_);
-}
-
 void NodeSession::on_sdo_answer(const Frame& frame, Time now) noexcept {
   report_twin(twins_.on_sdo_answer(frame, now), now);
   client_.on_frame(frame, now);

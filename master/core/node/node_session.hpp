@@ -94,10 +94,10 @@ class NodeSession {
   /// Takes an EMCY of any length.
   void on_emcy(const Frame& frame, Time now) noexcept;
   /// A request for this node has been accepted.
-  void on_request(Time now) noexcept;
+  void on_request(Time now) noexcept { advance(now); }
   /// Cancels and answers the active request if it has this id and nothing of it was sent so far.
   /// Returns false if there is no such request.
-  bool withdraw(std::uint64_t id) noexcept;
+  bool withdraw(std::uint64_t id) noexcept { return requests_.withdraw(id, client_, status_); }
   /// An NMT command that covers this node has been sent for an application.
   void on_commanded(NmtCommand command, Time now) noexcept;
   /// Handles time-outs and sends frames. Returns false if nothing was sent, because there was
@@ -113,9 +113,12 @@ class NodeSession {
   /// The boot has sent NMT start and waits for the confirmation.
   bool starts() const noexcept { return booting() && runner_.nmt().started(); }
   /// The network is started. Nodes that boot later are started as soon as they are ready.
-  void on_network_start() noexcept { network_started_ = true; }
+  void on_network_start() noexcept { network_ = NetworkPhase::started; }
   /// The network starts up again. No node is started until the network is complete.
-  void on_network_reset() noexcept { network_started_ = status_.boot_tried = false; }
+  void on_network_reset() noexcept {
+    network_ = NetworkPhase::starting;
+    status_.boot_tried = false;
+  }
   /// Returns true once if the node was ready and has become silent.
   bool take_loss() noexcept { return std::exchange(loss_to_report_, false); }
   /// Sends NMT stop; the node is not booted until an application resets or starts it.
@@ -135,7 +138,7 @@ class NodeSession {
   /// to PRE-OPERATIONAL in any case.
   void begin_stop(NmtCommand last) noexcept;
   /// begin_stop() was called, and the last command and all aborts were sent.
-  bool stopped() const noexcept;
+  bool stopped() const noexcept { return stopping() && !own_command_ && client_.idle(); }
 
   /// A block transfer is under way.
   bool streams() const noexcept { return client_.streams(); }
@@ -153,7 +156,8 @@ class NodeSession {
     return status_.boot == BootState::failed && status_.boot_count == 0 &&
            failure.fault == SdoFault::aborted_by_device && failure.step == status_.boot_step;
   }
-  const NodeStatus& status() const noexcept { return status_; }
+  const NodePlan& plan() const noexcept { return *plan_; }
+  NodeStatus status() const noexcept;
   /// The node is booted, or is only watched, and is OPERATIONAL. One heartbeat with OPERATIONAL is
   /// not enough after an NMT command that ends the exchange of PDOs: it may have been under way.
   bool exchanges_pdos() const noexcept;
@@ -165,7 +169,7 @@ class NodeSession {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(status_, client_, watch_, guard_, twins_, retries_, command_, network_started_);
+    state(status_, client_, watch_, guard_, twins_, retries_, command_, network_);
     state(wanted_, heartbeats_out_, heartbeats_against_, state_at_boot_, emcys_at_boot_,
           serial_number_, progress_reported_);
   }
@@ -177,6 +181,9 @@ class NodeSession {
     application,  ///< The node was halted and waits for a command of an application.
     stopping,     ///< begin_stop() was called.
   };
+
+  /// The start-up of the whole network, as far as the network has reported it.
+  enum class NetworkPhase : std::uint8_t { starting, started };
 
   // The boot, and its consequences (node_boot.cpp).
   void boot(BootRunner::From from, Time now) noexcept;
@@ -243,7 +250,7 @@ class NodeSession {
   std::optional<std::uint32_t> serial_number_;  // serial number of the device that was booted last
   std::uint32_t progress_reported_ = 0;         // tenths of the program that were reported
   bool loss_to_report_ = false;                 // see take_loss()
-  bool network_started_ = false;
+  NetworkPhase network_ = NetworkPhase::starting;
 };
 
 }  // namespace takt

@@ -41,9 +41,4 @@ bool NodeWatch::on_emcy(const Emcy& emcy, Time now, NodeStatus& status) noexcept
   ++unreported_emcys_;
   return false;
 }
-
-std::uint32_t NodeWatch::take_unreported_emcys() noexcept {
-  return std::exchange(unreported_emcys_, 0U);
-}
-
 }  // namespace takt

@@ -44,7 +44,7 @@ class NodeWatch {
   /// in a second.
   bool on_emcy(const Emcy& emcy, Time now, NodeStatus& status) noexcept;
   /// Number of EMCYs that were not reported since the last call.
-  std::uint32_t take_unreported_emcys() noexcept;
+  std::uint32_t take_unreported_emcys() noexcept { return std::exchange(unreported_emcys_, 0U); }
 
   template <class Archive>
   void keep(Archive& state) noexcept {

@@ -31,9 +31,14 @@ Value text(std::string_view text) noexcept {
   return out;
 }
 
-template <class Unit>
-std::uint64_t count_of(Time time) noexcept {
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<Unit>(time).count());
+using Milliseconds = std::chrono::milliseconds;
+using Microseconds = std::chrono::microseconds;
+using HundredMicroseconds = std::chrono::duration<std::int64_t, std::ratio<1, 10'000>>;
+
+/// A time as a number of units.
+template <class T, class Unit>
+Value count_of(Time time) noexcept {
+  return Value::number(static_cast<T>(std::chrono::duration_cast<Unit>(time).count()));
 }
 
 /// Value of 0x1F80.
@@ -64,7 +69,6 @@ Value OwnDictionary::read(ObjectKey key) const noexcept {
 }
 
 Value OwnDictionary::read_communication(ObjectKey key) const noexcept {
-  const CyclePlan& cycle = plan_.cycle;
   if (key.index == 0x1016) return read_consumers(key.sub);
   if (key.index == 0x1018) {  // takt has no vendor-ID of CAN in Automation
     if (key.sub > 4) return Value::refused(abort_code::no_sub_index);
@@ -75,54 +79,42 @@ Value OwnDictionary::read_communication(ObjectKey key) const noexcept {
     if (key.sub == 0) return Value::number(std::uint8_t{2});
     return Value::number(std::uint32_t{(key.sub == 1 ? 0x600U : 0x580U) + plan_.master_id.value()});
   }
-  Value value = Value::refused(abort_code::no_object);
-  switch (key.index) {
-    case 0x1000:
-      value = Value::number(std::uint32_t{0});
-      break;
-    case 0x1001:
-      value = Value::number(std::uint8_t{0});
-      break;
-    case 0x1005:
-      value = Value::number(cycle.sync_cob_id.id() | (cycle.makes_sync() ? makes_sync : 0U));
-      break;
-    case 0x1006:
-      value = Value::number(static_cast<std::uint32_t>(
-          cycle.sync ? count_of<std::chrono::microseconds>(cycle.period) : 0U));
-      break;
-    case 0x1008:
-      value = text(device_name);
-      break;
-    case 0x100A:
-      value = text(TAKT_VERSION);
-      break;
-    case 0x1012:
-      value =
-          Value::number(plan_.time.cob_id.id() | (plan_.time.period > Time{} ? makes_time : 0U));
-      break;
-    case 0x1017:
-      value = Value::number(
-          static_cast<std::uint16_t>(count_of<std::chrono::milliseconds>(plan_.master_heartbeat)));
-      break;
-    case 0x1019:
-      value = Value::number(cycle.sync_overflow);
-      break;
-    case 0x102A:
-      value = Value::number(static_cast<std::uint16_t>(
-          count_of<std::chrono::microseconds>(plan_.start_up.nmt_inhibit) / 100));
-      break;
-    case 0x1F80:
-      value = Value::number(start_up_of(plan_));
-      break;
-    case 0x1F89:
-      value = Value::number(static_cast<std::uint32_t>(
-          count_of<std::chrono::milliseconds>(plan_.start_up.boot_time)));
-      break;
-    default:
-      break;
-  }
+  const Value value = read_variable(key.index);
   const bool known = value.abort_code == 0;
   return known && key.sub != 0 ? Value::refused(abort_code::no_sub_index) : value;
+}
+
+/// Value of an object that has only sub-index 0.
+Value OwnDictionary::read_variable(std::uint16_t index) const noexcept {
+  const CyclePlan& cycle = plan_.cycle;
+  switch (index) {
+    case 0x1000:
+      return Value::number(std::uint32_t{0});
+    case 0x1001:
+      return Value::number(std::uint8_t{0});
+    case 0x1005:
+      return Value::number(cycle.sync_cob_id.id() | (cycle.makes_sync() ? makes_sync : 0U));
+    case 0x1006:
+      return count_of<std::uint32_t, Microseconds>(cycle.sync ? cycle.period : Time{});
+    case 0x1008:
+      return text(device_name);
+    case 0x100A:
+      return text(TAKT_VERSION);
+    case 0x1012:
+      return Value::number(plan_.time.cob_id.id() | (plan_.time.period > Time{} ? makes_time : 0U));
+    case 0x1017:
+      return count_of<std::uint16_t, Milliseconds>(plan_.master_heartbeat);
+    case 0x1019:
+      return Value::number(cycle.sync_overflow);
+    case 0x102A:
+      return count_of<std::uint16_t, HundredMicroseconds>(plan_.start_up.nmt_inhibit);
+    case 0x1F80:
+      return Value::number(start_up_of(plan_));
+    case 0x1F89:
+      return count_of<std::uint32_t, Milliseconds>(plan_.start_up.boot_time);
+    default:
+      return Value::refused(abort_code::no_object);
+  }
 }
 
 /// Value of 0x1016: the heartbeat consumers, in the order of the nodes.
@@ -131,10 +123,9 @@ Value OwnDictionary::read_consumers(std::uint8_t sub) const noexcept {
   if (sub == 0) return Value::number(static_cast<std::uint8_t>(count));
   if (sub > count) return Value::refused(abort_code::no_sub_index);
   const NodePlan& node = plan_.nodes[sub - 1U];
-  const std::uint64_t ms =
-      std::min<std::uint64_t>(count_of<std::chrono::milliseconds>(node.heartbeat_timeout), 0xFFFF);
-  return Value::number(
-      static_cast<std::uint32_t>(ms == 0 ? 0U : std::uint32_t{node.id.value()} << 16 | ms));
+  const auto ms = std::chrono::duration_cast<Milliseconds>(node.heartbeat_timeout).count();
+  const auto time = static_cast<std::uint32_t>(std::min<std::int64_t>(ms, 0xFFFF));
+  return Value::number(time == 0 ? 0U : std::uint32_t{node.id.value()} << 16 | time);
 }
 
 }  // namespace takt

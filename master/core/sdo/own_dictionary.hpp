@@ -58,6 +58,7 @@ class OwnDictionary {
   /// The object has one sub-index for each node.
   static bool is_of_nodes(std::uint16_t index) noexcept;
   Value read_communication(ObjectKey key) const noexcept;
+  Value read_variable(std::uint16_t index) const noexcept;
   Value read_consumers(std::uint8_t sub) const noexcept;
   Value read_nodes(ObjectKey key) const noexcept;
   std::uint32_t node_value(std::uint16_t index, std::size_t node) const noexcept;

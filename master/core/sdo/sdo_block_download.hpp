@@ -38,8 +38,8 @@ class SdoBlockDownload {
   /// Takes a frame of the server, except for aborts.
   SdoStep on_frame(const Frame& frame) noexcept;
 
-  /// The server has accepted the transfer.
-  bool accepted() const noexcept { return state_ > State::initiate; }
+  /// The server has not accepted the transfer yet.
+  bool initiates() const noexcept { return state_ == State::initiate; }
   /// Bytes that the server has confirmed.
   std::size_t moved() const noexcept { return confirmed_; }
 

@@ -67,8 +67,8 @@ class SdoBlockUpload {
     return state_ == State::segments && held_back_ != Held::nothing && !asked_again_;
   }
 
-  /// The server has accepted the transfer.
-  bool accepted() const noexcept { return state_ != State::initiate; }
+  /// The server has not accepted the transfer yet.
+  bool initiates() const noexcept { return state_ == State::initiate; }
   /// Number of bytes that were received in sequence. At the end, the number is exact; before, it
   /// does not include the newest segment.
   std::size_t moved() const noexcept { return done_; }

@@ -73,7 +73,7 @@ void SdoClient::cancel() noexcept {
 void SdoClient::drop() noexcept {
   state_ = State::idle;
   deadline_ = never;
-  lacks_block_ = false;
+  block_support_ = BlockSupport::assumed;
   previous_.server_was_reset();
   closing_.reset();
   result_.reset();
@@ -95,10 +95,6 @@ void SdoClient::abort(SdoFault fault, std::uint32_t code) noexcept {
   finish({.fault = fault, .abort_code = code, .size = progress()},
          PreviousTransfer::end_by_abort(fault, in_block));
   previous_.object = object_;
-}
-
-std::optional<SdoResult> SdoClient::take_result() noexcept {
-  return std::exchange(result_, std::nullopt);
 }
 
 std::optional<SdoClient::NoBlock> SdoClient::take_no_block() noexcept {

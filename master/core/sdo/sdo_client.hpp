@@ -96,7 +96,7 @@ class SdoClient {
   Time deadline() const noexcept;
 
   /// Returns the result of the transfer once.
-  std::optional<SdoResult> take_result() noexcept;
+  std::optional<SdoResult> take_result() noexcept { return std::exchange(result_, std::nullopt); }
   /// The device does not support block transfer; all further transfers are plain.
   struct NoBlock {
     ObjectKey object;
@@ -115,9 +115,7 @@ class SdoClient {
   }
 
   /// A block transfer is under way, so the next frame of the server comes soon.
-  bool streams() const noexcept {
-    return state_ == State::running && (block_upload() || block_download());
-  }
+  bool streams() const noexcept { return state_ == State::running && is_block(); }
   /// The server sends a sub-block, one segment after another, as fast as the wire permits.
   bool awaits_sub_block() const noexcept {
     return state_ == State::running && block_upload() && block_upload()->awaits_sub_block();
@@ -140,7 +138,7 @@ class SdoClient {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(lacks_block_, object_, previous_, late_, answered_);
+    state(block_support_, object_, previous_, late_, answered_);
   }
 
  private:
@@ -154,6 +152,8 @@ class SdoClient {
     settling,       ///< The server has aborted the transfer while segments were under way, and may
                     ///< refuse each of them.
   };
+  /// Whether the server supports block transfer, as far as its answers have shown.
+  enum class BlockSupport : std::uint8_t { assumed, lacking };
   /// The last frame of a transfer that has ended: an abort, or the end of a block upload.
   struct Closing {
     Frame frame;
@@ -175,10 +175,16 @@ class SdoClient {
   const SdoBlockDownload* block_download() const noexcept {
     return std::get_if<SdoBlockDownload>(&transfer_);
   }
+  bool is_block() const noexcept { return block_upload() || block_download(); }
+  bool initiates() const noexcept;
   bool runs() const noexcept { return state_ == State::running || state_ == State::without_block; }
-  bool initiates_plain() const noexcept;
-  bool unanswered_block() const noexcept;
-  bool may_use_block() const noexcept { return block_use_ != SdoBlockUse::off && !lacks_block_; }
+  /// The first request of a transfer without blocks is not answered yet.
+  bool initiates_plain() const noexcept { return runs() && !is_block() && initiates(); }
+  /// The first request of a block transfer is not answered yet.
+  bool unanswered_block() const noexcept { return streams() && initiates(); }
+  bool may_use_block() const noexcept {
+    return block_use_ != SdoBlockUse::off && block_support_ == BlockSupport::assumed;
+  }
   std::optional<SdoQuestion> question() const noexcept;
   std::optional<Frame> next_frame() const noexcept;
   Answer answer_to_next() const noexcept;
@@ -211,7 +217,7 @@ class SdoClient {
   std::uint8_t segments_;
   State state_ = State::idle;
   std::variant<SdoBlockUpload, SdoBlockDownload, SdoUpload, SdoDownload> transfer_;
-  bool lacks_block_ = false;  ///< what was learned: the device does not support block transfer
+  BlockSupport block_support_ = BlockSupport::assumed;
   ObjectKey object_;
   Time timeout_{};
   Time deadline_ = never;

@@ -34,7 +34,7 @@ void SdoClient::on_frame(const Frame& frame, Time now) noexcept {
   const bool late = note_late(frame, now);
   if (state_ == State::idle || state_ == State::settling) return;
   // While a request waits to be sent, every answer belongs to an earlier one.
-  const bool block = state_ == State::running && (block_upload() || block_download());
+  const bool block = streams();
   if (closing_ || (!block && next_frame())) return;
   if (!is_whole(frame)) {
     trace_.received = frame;
@@ -72,19 +72,9 @@ bool SdoClient::is_whole(const Frame& frame) const noexcept {
   return frame.length >= sdo_answer_bytes(frame);
 }
 
-/// The first request of a transfer without blocks is not answered yet.
-bool SdoClient::initiates_plain() const noexcept {
-  const auto* const upload = plain_upload();
-  const auto* const download = plain_download();
-  return runs() && ((upload && upload->initiates()) || (download && download->initiates()));
-}
-
-/// The first request of a block transfer is not answered yet.
-bool SdoClient::unanswered_block() const noexcept {
-  const auto* const upload = block_upload();
-  const auto* const download = block_download();
-  return state_ == State::running &&
-         ((upload && !upload->accepted()) || (download && !download->accepted()));
+/// The first request of the transfer is not answered yet.
+bool SdoClient::initiates() const noexcept {
+  return std::visit([](const auto& transfer) { return transfer.initiates(); }, transfer_);
 }
 
 void SdoClient::on_plain_answer(const Frame& frame, Time now, bool late) noexcept {
@@ -183,10 +173,9 @@ void SdoClient::on_step(const SdoStep& step, const Frame& frame, Time now) noexc
 
 void SdoClient::on_done() noexcept {
   if (block_upload() != nullptr) closing_ = {.frame = *block_upload()->to_send()};
-  const bool block = block_upload() != nullptr || block_download() != nullptr;
   // Some devices announce the size of the buffer of a string and send only the string.
   finish({.size = progress(), .shortened = progress() < announced()},
-         block ? PreviousTransfer::End::block : PreviousTransfer::End::regular);
+         is_block() ? PreviousTransfer::End::block : PreviousTransfer::End::regular);
 }
 
 void SdoClient::on_abort(const Frame& frame, Time now) noexcept {
@@ -200,7 +189,7 @@ void SdoClient::on_abort(const Frame& frame, Time now) noexcept {
   heard(frame);
   if (fall_back(code)) return;
   settled_ = {.fault = SdoFault::aborted_by_device, .abort_code = code, .size = progress()};
-  const bool burst = block_download() != nullptr && block_download()->accepted();
+  const bool burst = block_download() != nullptr && !block_download()->initiates();
   if (!burst) return finish(settled_, PreviousTransfer::End::regular);
   state_ = State::settling;
   deadline_ = now + waits::sdo_settle;
@@ -230,8 +219,8 @@ bool SdoClient::fall_back(std::uint32_t code) noexcept {
 }
 
 void SdoClient::learn_no_block(std::uint32_t code) noexcept {
-  if (!lacks_block_) no_block_ = {.object = object_, .abort_code = code};
-  lacks_block_ = true;
+  if (block_support_ == BlockSupport::assumed) no_block_ = {.object = object_, .abort_code = code};
+  block_support_ = BlockSupport::lacking;
 }
 
 /// Notes an answer. If a server was silent only for the block transfer, it supports no block

@@ -8,6 +8,7 @@
 #include "master/wire/sdo_crc.hpp"
 
 namespace takt {
+
 std::optional<OwnDictionary::Order> SdoServer::take_order() noexcept {
   return std::exchange(order_, std::nullopt);
 }
@@ -15,10 +16,6 @@ std::optional<OwnDictionary::Order> SdoServer::take_order() noexcept {
 void SdoServer::answer(const Frame& frame, State next) noexcept {
   to_send_ = frame;
   state_ = next;
-}
-
-void SdoServer::abort(std::uint32_t code) noexcept {
-  answer(sdo_abort(channel_.answer, object_, code), State::idle);
 }
 
 void SdoServer::on_time(Time now, Outbox& out) noexcept {

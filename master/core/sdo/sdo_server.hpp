@@ -83,7 +83,9 @@ class SdoServer {
   void write(std::span<const std::byte> value, const Frame& confirmation) noexcept;
   bool take_bytes(std::span<const std::uint8_t> bytes) noexcept;
   void answer(const Frame& frame, State next) noexcept;
-  void abort(std::uint32_t code) noexcept;
+  void abort(std::uint32_t code) noexcept {
+    answer(sdo_abort(channel_.answer, object_, code), State::idle);
+  }
   bool sending_block() const noexcept { return state_ == State::block_upload; }
   Frame next_block_segment() noexcept;
 

@@ -10,10 +10,6 @@ SdoQuestion SdoUpload::question() const noexcept {
           .object = object_};
 }
 
-SdoStep SdoUpload::on_answer(const Frame& frame) noexcept {
-  return initiates() ? on_initiate(frame) : on_segment(frame);
-}
-
 SdoStep SdoUpload::on_initiate(const Frame& frame) noexcept {
   const SdoInitiate begin = decode_initiate(frame);
   if (begin.expedited) return take(begin.payload()) ? SdoStep{Kind::done} : exceeds_buffer();

@@ -39,7 +39,9 @@ class SdoUpload {
   /// No data were transferred yet.
   bool initiates() const noexcept { return state_ == State::initiate; }
   /// Takes a frame that fits question().
-  SdoStep on_answer(const Frame& frame) noexcept;
+  SdoStep on_answer(const Frame& frame) noexcept {
+    return initiates() ? on_initiate(frame) : on_segment(frame);
+  }
 
   /// Number of bytes that were received.
   std::size_t moved() const noexcept { return moved_; }

@@ -38,7 +38,6 @@ Weight weight_of(EventKind kind) noexcept {
     case EventKind::sync_jump:
     case EventKind::sync_early:
     case EventKind::sync_period:
-    case EventKind::command_refused:
     case EventKind::fallback_begun:
     case EventKind::outputs_held:
     case EventKind::limit_exceeded:

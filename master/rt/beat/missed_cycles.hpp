@@ -2,7 +2,6 @@
 #include <cstdint>
 
 #include "eds_parser/table/time.hpp"
-#include "master/core/bus_trouble.hpp"
 #include "master/core/event_queue.hpp"
 #include "master/rt/exchange/status_board.hpp"
 #include "master/rt/port.hpp"

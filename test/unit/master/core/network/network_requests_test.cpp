@@ -210,6 +210,22 @@ TEST_F(NetworkTest, SendsNmtCommandsAndFollowsThem) {
   EXPECT_TRUE(network->exchanges_pdos(1));
 }
 
+TEST_F(NetworkTest, AHeartbeatThatWasUnderWayDoesNotTakeANodeBackIntoTheExchange) {
+  add_drive();
+  start();
+  run(100ms);
+  ASSERT_TRUE(status().exchanging);
+  network->submit({.id = 1, .kind = RequestKind::nmt, .node = 5, .command = NmtCommand::stop}, now);
+  run(1ms);
+  ASSERT_FALSE(status().exchanging);
+
+  hear(heartbeat(0x05));  // It has left the device before the command.
+  EXPECT_EQ(status().nmt, NmtState::operational);
+  EXPECT_FALSE(status().exchanging);
+  hear(heartbeat(0x05));  // The device has not obeyed.
+  EXPECT_TRUE(status().exchanging);
+}
+
 TEST_F(NetworkTest, BootsANodeThatAnApplicationHasReset) {
   add_drive();
   start();

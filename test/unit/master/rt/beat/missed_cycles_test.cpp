@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-#include "master/core/bus_trouble.hpp"
 #include "master/explain/boot_report.hpp"
 #include "test/unit/master/rt/bus_loop_rig.hpp"
 

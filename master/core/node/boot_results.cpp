@@ -4,40 +4,9 @@
 #include "master/core/node/boot_runner.hpp"
 #include "master/core/node/boot_value.hpp"
 
-// SDO transfers of the boot steps, and the evaluation of their results.
+// The results of the SDO transfers of a boot, and what follows from them.
 
 namespace takt {
-
-bool BootRunner::begin_transfer(Time now, SdoClient& client) noexcept {
-  if (!client.idle()) return false;
-  if (needs_preop()) {
-    state_ = State::before_preop;
-    return false;
-  }
-  const BootStep& step = current();
-  Time timeout = step.timeout > Time{} ? step.timeout : default_timeout;
-  if (polls()) {
-    timeout = std::max(Time{1}, std::min(waits::probe_try, progress_.deadline - now));
-  }
-  state_ = State::in_transfer;
-  if (transfer_ == Transfer::download) {
-    client.download(step.object, to_write_, timeout);
-    return true;
-  }
-  if (progress_.uploads < 255) ++progress_.uploads;
-  client.upload(step.object, buffer_, timeout);
-  return true;
-}
-
-/// Parameters are written in PRE-OPERATIONAL. A device that starts by itself leaves this state
-/// unasked, and a device in STOPPED answers no SDO at all. A node that is or may be OPERATIONAL is
-/// not written to.
-bool BootRunner::needs_preop() const noexcept {
-  const bool leaves_state =
-      course_ == BootCourse::keeping_operational || course_ == BootCourse::probing_silent_node;
-  if (nmt_.preoperational() || leaves_state) return false;
-  return transfer_ == Transfer::download || nmt_.reported() == NmtState::stopped;
-}
 
 /// A device may start itself after the command PRE-OPERATIONAL, and then refuse a write because of
 /// its state. A write that was refused may be repeated: it is sent once more, after a second
@@ -116,7 +85,7 @@ void BootRunner::on_differs(const SdoResult& result, Time now, const SdoClient& 
     return next();
   }
   if (step.action == BootAction::write_if_differs) return write(step.value);
-  flags_.differs = true;
+  compared_ = Compared::differs;
   next();
 }
 
@@ -152,7 +121,7 @@ void BootRunner::write_cob_id() noexcept {
 }
 
 void BootRunner::on_written() noexcept {
-  flags_.written = true;
+  device_ = Device::written;
   // The device has refused this write before the second command, so it had started itself.
   if (progress_.preop_again) nmt_.note_taken_out();
   if (to_write_.size() == 4) cob_id_.note(current().object, load_le<std::uint32_t>(to_write_));
