@@ -92,10 +92,10 @@ BusLoop<P, L, S>::BusLoop(const BusPlan& plan, P& port, L front, BusLoopOptions 
       beat_{plan, bus_.events, bus_.status, front_.exchange().timing},
       sender_{port, beat_, bus_.events, bus_.status},
       stop_{bus_},
-      nodes_{port, front_, beat_, bus_, stop_.memories()},
+      nodes_{port, front_, beat_, bus_, stop_.stops().memories()},
       intake_{port, beat_, bus_, front_.exchange().timing},
       images_{beat_, bus_, front_.exchange(), options.controller},
-      requests_{port, front_, bus_, stop_.memories(), stop_.stops()},
+      requests_{port, front_, bus_, stop_.stops()},
       slack_{port, beat_, sender_, intake_, bus_},
       outputs_{port, front_, beat_, sender_, bus_},
       report_{front_, beat_, bus_} {

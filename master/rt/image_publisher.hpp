@@ -38,7 +38,7 @@ class ImagePublisher {
     exchange_.timing.sync_to_publish.record(now - sync_time);
     predict(now, predicted);
   }
-  /// Tells the front thread when to expect the next image.
+  /// Predicts for the front thread when to expect the next image.
   void predict(Time now, Time predicted) noexcept {
     Time next = beat_.next_deadline() + predicted;
     // After a stall within the cycle, the clock will skip the periods that have passed.
@@ -52,15 +52,7 @@ class ImagePublisher {
     if (controller_ == nullptr) return;
     const WorkingImage& image = bus_.pdos.image();
     OutputWriter writer{bus_.pdos.outputs(), {.cycle = stamp_.cycle, .now = stamp_.publish_time}};
-    controller_->update({.cycle = stamp_.cycle,
-                         .beat = stamp_.beat,
-                         .sync_time = stamp_.sync_time,
-                         .publish_time = stamp_.publish_time,
-                         .missing = stamp_.missing,
-                         .values = image.values,
-                         .stale_bits = image.stale,
-                         .pdos = bus_.pdos.inputs().marks()},
-                        writer);
+    controller_->update({stamp_, image.values, image.stale, bus_.pdos.inputs().marks()}, writer);
   }
 
  private:

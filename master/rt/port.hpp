@@ -31,6 +31,8 @@ struct PortNews {
   /// Time of the master's newest SYNC on the wire, by its echo; 0 before the first echo.
   Time last_sync_echo{};
 
+  bool operator==(const PortNews&) const = default;
+
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(interface_down, error_passive, bus_off, receive_overruns, error_frames, tx_error_counter,

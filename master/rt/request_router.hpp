@@ -5,7 +5,6 @@
 #include "master/rt/exchange/front_link.hpp"
 #include "master/rt/machines/bus_machines.hpp"
 #include "master/rt/port.hpp"
-#include "master/rt/stop/axis_memories.hpp"
 #include "master/rt/stop/axis_stops.hpp"
 
 namespace takt {
@@ -16,9 +15,8 @@ template <Port P, FrontLink L, Services S>
 class RequestRouter {
  public:
   /// Keeps references to all arguments.
-  RequestRouter(P& port, L& front, BusMachines<S>& bus, AxisMemories<S>& memories,
-                AxisStops<S>& stops) noexcept
-      : port_{port}, front_{front}, bus_{bus}, memories_{memories}, stops_{stops} {}
+  RequestRouter(P& port, L& front, BusMachines<S>& bus, AxisStops<S>& stops) noexcept
+      : port_{port}, front_{front}, bus_{bus}, stops_{stops} {}
 
   /// Takes the next request, unless a reply still waits for room.
   void take_request() noexcept {
@@ -46,7 +44,7 @@ class RequestRouter {
  private:
   bool submit() noexcept {
     const Time now = port_.now();
-    memories_.note(request_);
+    stops_.memories().note(request_);
     // An ordered stop commands the nodes itself.
     if (stops_.stopping() && request_.kind == RequestKind::nmt) return false;
     if (!PdoRequests::takes(request_.kind)) return bus_.services.submit(request_, now);
@@ -56,7 +54,6 @@ class RequestRouter {
   P& port_;
   L& front_;
   BusMachines<S>& bus_;
-  AxisMemories<S>& memories_;
   AxisStops<S>& stops_;
   Request request_;
   Reply reply_;

@@ -29,8 +29,9 @@ class Slack {
         bus_{bus},
         time_{bus.plan.time} {}
 
-  /// While this thread stood still, nobody listened. It has read what came in by now; frames that
-  /// the socket could not hold must not count as silence of a device. Call this once a cycle.
+  /// While this thread stood still, it received nothing. By now it has received all frames that the
+  /// socket has kept. Frames that the socket could not keep must not count as silence of a device.
+  /// Call this once a cycle.
   void excuse_absence() noexcept {
     const Time away = beat_.take_absence();
     if (away == Time{}) return;

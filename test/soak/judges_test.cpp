@@ -22,8 +22,7 @@ class Judges : public testing::Test {
   void show(std::uint64_t cycle, std::int64_t word, std::int64_t position) {
     values[0] = word;
     values[2] = position;
-    images.judge(
-        {.cycle = cycle, .publish_time = Time{1ms} * cycle, .values = values, .stale_bits = {}});
+    images.judge({{.cycle = cycle, .publish_time = Time{1ms} * cycle}, values, {}});
   }
 
   BusPlan plan = test::axes({.fallback_cycles = 5});
@@ -157,16 +156,15 @@ TEST_F(Judges, BlameTwoSyncsAtOnce) {
 }
 
 TEST_F(Judges, BlameAnImageThatWasPublishedBeforeTheOneBefore) {
-  images.judge({.cycle = 1, .publish_time = 9ms, .values = values, .stale_bits = {}});
-  images.judge({.cycle = 2, .publish_time = 8ms, .values = values, .stale_bits = {}});
+  images.judge({{.cycle = 1, .publish_time = 9ms}, values, {}});
+  images.judge({{.cycle = 2, .publish_time = 8ms}, values, {}});
 
   ASSERT_FALSE(verdict.good());
   EXPECT_EQ(verdict.violation()->invariant, "cycle numbers rise");
 }
 
 TEST_F(Judges, BlameAnImageThatWasPublishedBeforeItsSync) {
-  images.judge(
-      {.cycle = 1, .sync_time = 9ms, .publish_time = 8ms, .values = values, .stale_bits = {}});
+  images.judge({{.cycle = 1, .sync_time = 9ms, .publish_time = 8ms}, values, {}});
 
   ASSERT_FALSE(verdict.good());
   EXPECT_EQ(verdict.violation()->invariant, "times of an image");

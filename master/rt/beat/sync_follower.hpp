@@ -12,9 +12,9 @@
 
 namespace takt {
 
-/// Follows the SYNC of another device: tells which frames begin a cycle, when the next one is due,
-/// and whether SYNC is lost. The follower measures the producer's period, because the two clocks
-/// differ. CiA 301, 7.2.5. Bus thread only.
+/// Follows the SYNC of another device: determines which frames begin a cycle, when the next one is
+/// due, and whether SYNC is lost. The follower measures the producer's period, because the two
+/// clocks differ. CiA 301, 7.2.5. Bus thread only.
 class SyncFollower {
  public:
   /// Keeps a reference to the queue.

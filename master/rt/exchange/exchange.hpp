@@ -43,7 +43,7 @@ struct Exchange {
   StatusBoard status;
   TimingHistograms timing;
   /// Expected publish time of the next image (monotonic clock, ns). The front thread sets its own
-  /// timer to this time; nobody wakes it.
+  /// timer to this time; the bus thread does not wake it.
   std::atomic<std::int64_t> next_publish{0};
   std::atomic<bool> finished{false};  ///< true once the ordered stop is complete
 

@@ -11,8 +11,8 @@
 namespace takt {
 
 /// The front thread as the bus loop sees it: all that the loop takes from there, and the replies
-/// and events that it gives. Beside `Port` this is the only input of the loop, so a recording that
-/// stands at both doors has all that decides what the loop does. A link is a handle that the loop
+/// and events that it gives. Beside `Port` this is the only input of the loop, so a recording of
+/// both has all that decides what the loop does. A link is a handle that the loop
 /// copies. No function allocates, locks or throws.
 template <class L>
 concept FrontLink = std::copy_constructible<L> &&

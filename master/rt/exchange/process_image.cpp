@@ -34,15 +34,10 @@ bool ImageRing::publish(const ImageStamp& stamp, std::span<const std::int64_t> v
 
 ImageView ImageRing::view_of(std::size_t position) const noexcept {
   const std::size_t slot = position % slots;
-  const ImageStamp& stamp = stamps_[slot];
-  return {.cycle = stamp.cycle,
-          .beat = stamp.beat,
-          .sync_time = stamp.sync_time,
-          .publish_time = stamp.publish_time,
-          .missing = stamp.missing,
-          .values = {values_.data() + slot * signals_, signals_},
-          .stale_bits = {stale_.data() + slot * words_, words_},
-          .pdos = {pdos_.data() + slot * tpdos_, tpdos_}};
+  return {stamps_[slot],
+          {values_.data() + slot * signals_, signals_},
+          {stale_.data() + slot * words_, words_},
+          {pdos_.data() + slot * tpdos_, tpdos_}};
 }
 
 void ImageRing::release() noexcept {

@@ -20,12 +20,7 @@ struct ImageStamp {
 };
 
 /// One image as the front thread sees it; valid until the next take().
-struct ImageView {
-  std::uint64_t cycle = 0;
-  std::uint64_t beat = 0;
-  Time sync_time{};
-  Time publish_time{};
-  std::uint32_t missing = 0;
+struct ImageView : ImageStamp {
   std::span<const std::int64_t> values;       ///< all signals: inputs, then outputs as last sent
   std::span<const std::uint64_t> stale_bits;  ///< signal n is bit n % 64 of word n / 64
   std::span<const PdoMark> pdos{};            ///< rows of PdoTable::tpdos

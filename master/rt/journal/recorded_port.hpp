@@ -122,14 +122,12 @@ class RecordedPort {
     }
     if (parts != 0) reported_ = news;
   }
+  /// Nothing but the times has changed.
   bool same_state(const PortNews& news) const noexcept {
-    return news.interface_down == reported_.interface_down &&
-           news.error_passive == reported_.error_passive && news.bus_off == reported_.bus_off &&
-           news.receive_overruns == reported_.receive_overruns &&
-           news.error_frames == reported_.error_frames &&
-           news.tx_error_counter == reported_.tx_error_counter &&
-           news.rx_error_counter == reported_.rx_error_counter &&
-           news.last_error == reported_.last_error;
+    PortNews recorded = reported_;
+    recorded.since_1970 = news.since_1970;
+    recorded.last_sync_echo = news.last_sync_echo;
+    return news == recorded;
   }
   static std::uint64_t count_of(Time time) noexcept {
     return static_cast<std::uint64_t>(time.count());

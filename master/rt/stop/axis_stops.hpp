@@ -10,16 +10,17 @@
 namespace takt {
 
 /// The two stops of axes: the ordered stop of the whole bus, and the halt of the axes whose PDO
-/// exchange NMT is about to end. This class has what both need: their view of the bus, the
-/// controlwords that they force, their SDO requests, and the report on axes that did not stop. Bus
-/// thread only.
+/// exchange NMT is about to end. This class has what both need: what is remembered of the axes,
+/// their view of the bus, the controlwords that they force, their SDO requests, and the report on
+/// axes that did not stop. Bus thread only.
 template <Services S>
 class AxisStops {
  public:
-  /// Keeps references to both arguments.
-  AxisStops(BusMachines<S>& bus, AxisMemories<S>& memories)
-      : bus_{bus}, memories_{memories}, ordered_{bus.plan}, halt_{bus.plan}, requests_{bus.plan} {}
+  /// Keeps a reference to `bus`.
+  explicit AxisStops(BusMachines<S>& bus)
+      : bus_{bus}, memories_{bus}, ordered_{bus.plan}, halt_{bus.plan}, requests_{bus.plan} {}
 
+  AxisMemories<S>& memories() noexcept { return memories_; }
   OrderedStop& ordered() noexcept { return ordered_; }
   const OrderedStop& ordered() const noexcept { return ordered_; }
   OrderedStop& halt() noexcept { return halt_; }
@@ -84,6 +85,11 @@ class AxisStops {
                                                     : AxesAtRest::confirmed;
   }
 
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(memories_);
+  }
+
  private:
   /// The stop that acts on the axes now. The ordered stop supersedes a halt.
   OrderedStop& active() noexcept { return stopping() ? ordered_ : halt_; }
@@ -100,7 +106,7 @@ class AxisStops {
   void report_unconfirmed(const OrderedStop& stop, Time now) noexcept;
 
   BusMachines<S>& bus_;
-  AxisMemories<S>& memories_;
+  AxisMemories<S> memories_;
   OrderedStop ordered_;
   OrderedStop halt_;
   StopRequests requests_;

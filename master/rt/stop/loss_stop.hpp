@@ -5,7 +5,6 @@
 
 #include "master/core/network/ordered_stop.hpp"
 #include "master/rt/machines/bus_machines.hpp"
-#include "master/rt/stop/axis_memories.hpp"
 #include "master/rt/stop/axis_stops.hpp"
 
 namespace takt {
@@ -16,17 +15,17 @@ template <Services S>
 class LossStop {
  public:
   /// Keeps references to all arguments.
-  LossStop(BusMachines<S>& bus, AxisMemories<S>& memories, AxisStops<S>& stops)
-      : bus_{bus}, memories_{memories}, stops_{stops}, forced_(memories.axes().size()) {}
+  LossStop(BusMachines<S>& bus, AxisStops<S>& stops)
+      : bus_{bus}, stops_{stops}, forced_(stops.memories().axes().size()) {}
 
   /// Call this once a cycle, before the outputs are packed.
   void step() noexcept {
     if (!bus_.services.stops_drives()) return;
     for (std::size_t i = 0; i < forced_.size(); ++i) {
-      const StopAxis& axis = memories_.axes()[i];
+      const StopAxis& axis = stops_.memories().axes()[i];
       if (!axis.controlword || stops_.commands(i)) continue;
       if (bus_.services.demands_quick_stop(axis.node_index)) {
-        bus_.pdos.outputs().force(*axis.controlword, memories_[i].disabled()
+        bus_.pdos.outputs().force(*axis.controlword, stops_.memories()[i].disabled()
                                                          ? OrderedStop::disable_voltage_word
                                                          : OrderedStop::quick_stop_word);
         forced_[i] = 1;
@@ -44,7 +43,6 @@ class LossStop {
 
  private:
   BusMachines<S>& bus_;
-  AxisMemories<S>& memories_;
   AxisStops<S>& stops_;
   std::vector<std::uint8_t> forced_;  ///< by axis: 1 while its controlword is forced
 };

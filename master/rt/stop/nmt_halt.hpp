@@ -5,7 +5,6 @@
 
 #include "master/core/network/ordered_stop.hpp"
 #include "master/rt/machines/bus_machines.hpp"
-#include "master/rt/stop/axis_memories.hpp"
 #include "master/rt/stop/axis_stops.hpp"
 #include "master/rt/stop/sync_loss_reaction.hpp"
 
@@ -19,9 +18,8 @@ template <Services S>
 class NmtHalt {
  public:
   /// Keeps references to all arguments.
-  NmtHalt(BusMachines<S>& bus, AxisMemories<S>& memories, AxisStops<S>& stops,
-          SyncLossReaction<S>& sync_loss) noexcept
-      : bus_{bus}, memories_{memories}, stops_{stops}, sync_loss_{sync_loss} {}
+  NmtHalt(BusMachines<S>& bus, AxisStops<S>& stops, SyncLossReaction<S>& sync_loss) noexcept
+      : bus_{bus}, stops_{stops}, sync_loss_{sync_loss} {}
 
   /// Begins and advances a halt that an NMT command asks for. Call this once a cycle, unless an
   /// ordered stop has begun.
@@ -64,7 +62,7 @@ class NmtHalt {
   /// The command that the axes had to stop for has left.
   bool is_over() const noexcept { return stops_.halting() && wanted() != stops_.halt().target(); }
   void begin(Time now, std::uint8_t node_index) noexcept {
-    stops_.halt().begin(now, bus_.services.nodes(), node_index, memories_.all());
+    stops_.halt().begin(now, bus_.services.nodes(), node_index, stops_.memories().all());
     stops_.begin_requests();
     if (node_index != OrderedStop::every_node) return;
     bus_.pdos.outputs().fall_back();
@@ -76,7 +74,7 @@ class NmtHalt {
     if (!halt.axes_done()) {
       stops_.step(halt, now);
       for (std::size_t i = 0; i < halt.axes().size(); ++i) {
-        if (halt.axis(i).rests()) memories_[i].confirm();
+        if (halt.axis(i).rests()) stops_.memories()[i].confirm();
       }
     }
     if (halt.axes_done() || halt.nothing_to_stop()) {
@@ -85,7 +83,6 @@ class NmtHalt {
   }
 
   BusMachines<S>& bus_;
-  AxisMemories<S>& memories_;
   AxisStops<S>& stops_;
   SyncLossReaction<S>& sync_loss_;
 };

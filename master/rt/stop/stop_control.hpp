@@ -2,7 +2,6 @@
 #include "master/rt/exchange/front_link.hpp"
 #include "master/rt/machines/bus_machines.hpp"
 #include "master/rt/port.hpp"
-#include "master/rt/stop/axis_memories.hpp"
 #include "master/rt/stop/axis_stops.hpp"
 #include "master/rt/stop/loss_stop.hpp"
 #include "master/rt/stop/nmt_halt.hpp"
@@ -20,14 +19,12 @@ class StopControl {
   /// Keeps a reference to `bus`.
   explicit StopControl(BusMachines<S>& bus)
       : bus_{bus},
-        memories_{bus},
-        stops_{bus, memories_},
-        sync_loss_{bus, memories_, stops_},
-        halt_{bus, memories_, stops_, sync_loss_},
-        sequence_{bus, memories_, stops_, sync_loss_},
-        loss_stop_{bus, memories_, stops_} {}
+        stops_{bus},
+        sync_loss_{bus, stops_},
+        halt_{bus, stops_, sync_loss_},
+        sequence_{bus, stops_, sync_loss_},
+        loss_stop_{bus, stops_} {}
 
-  AxisMemories<S>& memories() noexcept { return memories_; }
   AxisStops<S>& stops() noexcept { return stops_; }
   const OrderedStop& ordered() const noexcept { return stops_.ordered(); }
   /// The ordered stop is complete.
@@ -48,7 +45,7 @@ class StopControl {
   /// Begins requested stops, and advances those that run. Call this after the services have run.
   template <FrontLink L>
   void step(L& front, Time now) noexcept {
-    memories_.update();
+    stops_.memories().update();
     if (!stops_.stopping()) {
       halt_.step(now);
       if (front.stop_requested()) sequence_.begin(now);
@@ -72,12 +69,11 @@ class StopControl {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(memories_, sync_loss_, loss_stop_);
+    state(stops_, sync_loss_, loss_stop_);
   }
 
  private:
   BusMachines<S>& bus_;
-  AxisMemories<S> memories_;
   AxisStops<S> stops_;
   SyncLossReaction<S> sync_loss_;
   NmtHalt<S> halt_;

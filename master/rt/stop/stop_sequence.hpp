@@ -1,7 +1,6 @@
 #pragma once
 #include "master/core/network/ordered_stop.hpp"
 #include "master/rt/machines/bus_machines.hpp"
-#include "master/rt/stop/axis_memories.hpp"
 #include "master/rt/stop/axis_stops.hpp"
 #include "master/rt/stop/sync_loss_reaction.hpp"
 
@@ -13,9 +12,8 @@ template <Services S>
 class StopSequence {
  public:
   /// Keeps references to all arguments.
-  StopSequence(BusMachines<S>& bus, AxisMemories<S>& memories, AxisStops<S>& stops,
-               SyncLossReaction<S>& sync_loss) noexcept
-      : bus_{bus}, memories_{memories}, stops_{stops}, sync_loss_{sync_loss} {}
+  StopSequence(BusMachines<S>& bus, AxisStops<S>& stops, SyncLossReaction<S>& sync_loss) noexcept
+      : bus_{bus}, stops_{stops}, sync_loss_{sync_loss} {}
 
   bool done() const noexcept { return stops_.ordered().stage() == StopStage::done; }
 
@@ -24,7 +22,8 @@ class StopSequence {
     if (bus_.observe) {
       stops_.ordered().begin_idle(now);
     } else {
-      stops_.ordered().begin(now, bus_.services.nodes(), OrderedStop::every_node, memories_.all());
+      stops_.ordered().begin(now, bus_.services.nodes(), OrderedStop::every_node,
+                             stops_.memories().all());
       bus_.services.give_up_boots(now);
     }
     stops_.halt().call_off();
@@ -54,7 +53,6 @@ class StopSequence {
   }
 
   BusMachines<S>& bus_;
-  AxisMemories<S>& memories_;
   AxisStops<S>& stops_;
   SyncLossReaction<S>& sync_loss_;
 };

@@ -3,7 +3,6 @@
 
 #include "master/core/pdo/fallback_writer.hpp"
 #include "master/rt/machines/bus_machines.hpp"
-#include "master/rt/stop/axis_memories.hpp"
 #include "master/rt/stop/axis_stops.hpp"
 
 namespace takt {
@@ -14,8 +13,8 @@ template <Services S>
 class SyncLossReaction {
  public:
   /// Keeps references to all arguments.
-  SyncLossReaction(BusMachines<S>& bus, AxisMemories<S>& memories, const AxisStops<S>& stops)
-      : bus_{bus}, memories_{memories}, stops_{stops}, fallbacks_{bus.plan} {}
+  SyncLossReaction(BusMachines<S>& bus, AxisStops<S>& stops)
+      : bus_{bus}, stops_{stops}, fallbacks_{bus.plan} {}
 
   /// Begins or ends the reaction. `lost` means that SYNC is lost now.
   void follow(bool lost) noexcept {
@@ -45,7 +44,7 @@ class SyncLossReaction {
     for (; fallbacks_.waits(); fallbacks_.submitted()) {
       if (!bus_.exchanging[fallbacks_.node_index()]) continue;
       if (!bus_.services.submit(fallbacks_.request(), now)) return;
-      memories_.note(fallbacks_.request());
+      stops_.memories().note(fallbacks_.request());
     }
   }
   /// Drops the fallbacks that are not written yet. They must not reach a drive that is commanded
@@ -73,8 +72,7 @@ class SyncLossReaction {
   }
 
   BusMachines<S>& bus_;
-  AxisMemories<S>& memories_;
-  const AxisStops<S>& stops_;
+  AxisStops<S>& stops_;
   FallbackWriter fallbacks_;
   SyncSupply supply_ = SyncSupply::present;
 };

@@ -23,7 +23,7 @@ struct RequestRouterTest : testing::Test {
   DirectLink front{*parts.exchange};
   StopControl<FakeNetwork> stop{parts.bus};
   RequestRouter<FakePort, DirectLink, FakeNetwork> router{parts.port, front, parts.bus,
-                                                          stop.memories(), stop.stops()};
+                                                          stop.stops()};
 };
 
 TEST_F(RequestRouterTest, BringsARequestToTheServicesAndItsReplyBack) {

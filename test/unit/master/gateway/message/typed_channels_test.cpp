@@ -99,10 +99,7 @@ TEST(TypedChannels, AStateIsByteForByteWhatLcmGensCodeSends) {
   Sent lcm;
   const std::vector<std::int64_t> values{0x1237, -8, 0, 0};
   const std::vector<std::uint64_t> stale{2};
-  const ImageView image{.cycle = 12,
-                        .sync_time = std::chrono::milliseconds{3},
-                        .values = values,
-                        .stale_bits = stale};
+  const ImageView image{{.cycle = 12, .sync_time = std::chrono::milliseconds{3}}, values, stale};
 
   typed.publish(image, std::chrono::seconds{1}, lcm);
 
@@ -117,7 +114,7 @@ TEST(TypedChannels, AStateThatNobodyHearsIsNotSent) {
   lcm.heard = false;
   const std::vector<std::int64_t> values{0x1237, -8, 0, 0};
 
-  typed.publish({.values = values, .stale_bits = {}}, {}, lcm);
+  typed.publish({{}, values, {}}, {}, lcm);
 
   EXPECT_TRUE(lcm.channels.empty());
 }
