@@ -16,12 +16,6 @@ long sent(const Plant& plant, const Frame& frame) {
 sim::Fault fault(sim::FaultKind kind, NodeId node, Time at = {}, Time until = never) {
   return {.kind = kind, .node = node, .at = at, .until = until};
 }
-sim::Fault beating(NodeId node) {
-  sim::Fault out = fault(sim::FaultKind::override_value, node);
-  out.object = ObjectKey{0x1017, 0};
-  out.value = {std::byte{100}, std::byte{0}};
-  return out;
-}
 
 /// A network with three valves; the first two are in the group `north`.
 LoadedNetwork three(const std::string& master, const std::string& first = "",
@@ -199,70 +193,6 @@ TEST(LossReaction, QuickStopStopsTheDrivesOfItsGroup) {
   const std::int64_t status = plant.device(6).objects().number({0x6041, 0});
   EXPECT_NE(status & 0x6F, 0x27) << "quick stopped, then disabled";
   EXPECT_EQ(plant.device(7).objects().number({0x6041, 0}) & 0x6F, 0x27) << "not of the group";
-}
-
-// keep-alive: attaching to a bus that is operational
-
-TEST(KeepAlive, LeavesAnOperationalNodeAsItIs) {
-  Plant plant{valve("reset: keep_alive, heartbeat_producer: 100, heartbeat_consumer: false"),
-              {fault(sim::FaultKind::self_start, 5_node), beating(5_node)}};
-  plant.run_without_master(1s);
-  plant.run(2s);
-  EXPECT_EQ(plant.device(5).state(), sim::DeviceState::operational);
-  EXPECT_EQ(plant.frames(0x000), 0) << "no NMT command at all";
-  EXPECT_EQ(plant.node().boot, BootState::ready);
-  EXPECT_EQ(plant.node().boot_letter, 'L');
-  const bool wrote = std::ranges::any_of(plant.wire.frames, [](const Frame& frame) {
-    return frame.id == CobId::base(0x605) && (frame.data[0] >> 5U) == 1;
-  });
-  EXPECT_FALSE(wrote);
-}
-
-TEST(KeepAlive, ReportsWhatDiffersAndLeavesItAlone) {
-  Plant plant{valve("reset: keep_alive, heartbeat_producer: 100, heartbeat_consumer: false, "
-                    "sdo: [{index: 0x2000, value: 7}]"),
-              {fault(sim::FaultKind::self_start, 5_node), beating(5_node)}};
-  plant.run_without_master(1s);
-  plant.run(2s);
-  const std::string text = plant.text_of(EventKind::boot_done);
-  EXPECT_NE(text.find("operational already and was not reset (status L"), std::string::npos);
-  EXPECT_NE(text.find("2 objects differ from the network file"), std::string::npos) << text;
-  EXPECT_EQ(plant.device(5).objects().number({0x2000, 0}), 100);
-}
-
-TEST(KeepAlive, ResetsANodeThatIsAliveButNotOperational) {
-  Plant plant{valve("reset: keep_alive, heartbeat_producer: 100"), {beating(5_node)}};
-  plant.run_without_master(1s);
-  plant.run(2s);
-  EXPECT_EQ(sent(plant, nmt(0x82, 5)), 1);
-  EXPECT_EQ(plant.device(5).state(), sim::DeviceState::operational);
-}
-
-TEST(KeepAlive, WithoutASignOfLifeTheNodeIsAskedForItsHeartbeat) {
-  Plant plant{valve("reset: keep_alive, heartbeat_producer: 100")};
-  plant.run_without_master(1s);
-  plant.run(5s);
-  EXPECT_NE(plant.text_of(EventKind::boot_failed).find("E of CiA 302-2"), std::string::npos);
-  EXPECT_EQ(sent(plant, nmt(0x82, 5)), 1) << "its heartbeat says that it is not OPERATIONAL";
-  EXPECT_EQ(plant.device(5).state(), sim::DeviceState::operational);
-}
-
-TEST(KeepAlive, AnOperationalNodeWithoutHeartbeatGetsOneAndNothingElse) {
-  Plant plant{valve("reset: keep_alive, heartbeat_producer: 100, heartbeat_consumer: false, "
-                    "sdo: [{index: 0x2000, value: 7}]"),
-              {fault(sim::FaultKind::self_start, 5_node)}};
-  plant.run_without_master(1s);
-  plant.run(5s);
-  EXPECT_NE(plant.text_of(EventKind::boot_failed).find("E of CiA 302-2"), std::string::npos);
-  EXPECT_EQ(plant.frames(0x000), 0) << "no NMT command at all";
-  EXPECT_EQ(plant.node().boot, BootState::ready);
-  EXPECT_EQ(plant.node().boot_letter, 'L');
-  std::vector<std::uint16_t> written;
-  for (const Frame& frame : plant.wire.frames) {
-    if (frame.id != CobId::base(0x605) || (frame.data[0] >> 5U) != 1) continue;
-    written.push_back(static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8));
-  }
-  EXPECT_EQ(written, std::vector<std::uint16_t>{0x1017});
 }
 
 // configuration date, store, concise DCF
