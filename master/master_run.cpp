@@ -1,6 +1,5 @@
 #include "master/master_run.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -16,9 +15,12 @@ MasterRun::~MasterRun() {
   join();
 }
 
-void MasterRun::start(const StartThread& start_thread) {
+std::expected<void, int> MasterRun::start(const StartThread& start_thread) {
   assert(runner_ && !thread_.joinable());
-  thread_ = start_thread([this] { run(); });
+  auto thread = start_thread([this] { run(); });
+  if (!thread) return std::unexpected{thread.error()};
+  thread_ = std::move(*thread);
+  return {};
 }
 
 void MasterRun::run() noexcept {
@@ -34,17 +36,6 @@ bool MasterRun::cycle() noexcept {
 
 void MasterRun::join() {
   if (thread_.joinable()) thread_.join();
-}
-
-bool MasterRun::set_group(std::span<const Command> commands, Time now,
-                          std::uint32_t time_to_live) noexcept {
-  const auto is_output = [&](const Command& command) {
-    return command.signal >= plan_.layout.inputs && command.signal < plan_.layout.signals.size();
-  };
-  if (!std::ranges::all_of(commands, is_output)) return false;
-  for (const Command& command : commands) set(command.signal, command.value, time_to_live);
-  publish_outputs(now);
-  return true;
 }
 
 bool MasterRun::set(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live) noexcept {

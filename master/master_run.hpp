@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <expected>
 #include <functional>
 #include <memory>
 #include <span>
@@ -21,9 +22,9 @@ struct MasterRunOptions {
                                      ///< It must outlive the master.
 };
 
-/// Starts a thread that runs `body`. The library takt_linux has one that gives the thread real-time
-/// priority.
-using StartThread = std::function<std::thread(std::function<void()> body)>;
+/// Starts a thread that runs `body`, or returns the errno if the machine refuses another thread.
+/// The library takt_linux has one that gives the thread real-time priority.
+using StartThread = std::function<std::expected<std::thread, int>(std::function<void()> body)>;
 
 /// Starts a thread with the default scheduling policy.
 std::thread start_plain_thread(std::function<void()> body);
@@ -43,8 +44,9 @@ class MasterRun {
   template <Port P>
   void attach(P& port, Journal* journal = nullptr);
 
-  /// Runs the cycles on the bus thread until the ordered stop is over.
-  void start(const StartThread& start_thread = start_plain_thread);
+  /// Runs the cycles on the bus thread until the ordered stop is over. Returns the errno if there
+  /// is no bus thread.
+  std::expected<void, int> start(const StartThread& start_thread = start_plain_thread);
   /// Replaces start() when the calling thread runs the cycles itself, for example in virtual time.
   void begin() noexcept { runner_->start(); }
   /// Runs one cycle after begin(). Returns false when the ordered stop is over.
@@ -84,18 +86,9 @@ class MasterRun {
   /// the whole layout. `value` is raw. `time_to_live` is in cycles; 0 means the configured one.
   /// Returns false if `signal` is no output.
   bool set(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live = 0) noexcept;
-  /// A command of set_group().
-  struct Command {
-    SignalIndex signal = 0;
-    std::int64_t value = 0;
-  };
-  /// Stages `commands` and hands them over as one set, together with all commands that were staged
-  /// before. Commands for synchronous RPDOs (transmission types 0..240) become valid with the same
-  /// SYNC. If their frames do not fit into one cycle, all of them wait for the next. Returns false,
-  /// and hands nothing over, if one of the signals is no output.
-  bool set_group(std::span<const Command> commands, Time now,
-                 std::uint32_t time_to_live = 0) noexcept;
-  /// Hands all staged commands to the bus thread as one set. `now` is on the monotonic clock.
+  /// Hands all staged commands to the bus thread as one set. Commands for synchronous RPDOs
+  /// (transmission types 0..240) become valid with the same SYNC. If their frames do not fit into
+  /// one cycle, all of them wait for the next. `now` is on the monotonic clock.
   void publish_outputs(Time now) noexcept { exchange_->set_points.publish(now); }
 
   /// Hands a request to the bus thread. Returns false if too many requests wait; submit it again
@@ -114,7 +107,7 @@ class MasterRun {
   /// Events that were lost because the front thread did not take them in time.
   std::uint64_t event_overruns() const noexcept { return exchange_->events.overruns(); }
 
-  /// The bus loop, whatever its port is.
+  /// The bus loop of any kind of port.
   struct Runner {
     virtual ~Runner() = default;
     virtual void start() noexcept = 0;

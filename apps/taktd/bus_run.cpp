@@ -5,7 +5,6 @@
 #include <cstring>
 #include <utility>
 
-#include "apps/master/bus_thread.hpp"
 #include "apps/taktd/bus_choice.hpp"
 #include "apps/taktd/process/time_limits.hpp"
 #include "apps/taktd/summary.hpp"
@@ -30,26 +29,19 @@ BusRun::BusRun(LoadedNetwork network, const FrontThread& front)
   if (front.options.typed) network_.lcm.typed = *front.options.typed;
 }
 
-std::thread BusRun::start_thread_of_bus(std::function<void()> body) {
-  auto started = start_bus_thread(network_.realtime, std::move(body));
-  if (!started) {
-    say(Weight::error,
-        std::string{"the bus thread can't be created: "} + std::strerror(started.error()));
-    return {};
-  }
-  realtime_ = std::move(started->report);
-  bus_thread_runs_ = true;
-  return std::move(started->thread);
-}
-
 std::optional<Exit> BusRun::start() {
   const bool observe = front_.options.observe;
   prefault_heap(heap_bytes);
   master_ = std::make_unique<MasterRun>(network_.plan, MasterRunOptions{.observe = observe});
   bus_->attach(*master_, recorder_.journal());
-  master_->start(
-      [this](std::function<void()> body) { return start_thread_of_bus(std::move(body)); });
-  if (!bus_thread_runs_) return Exit::bus_trouble;
+  const auto started = master_->start([this](std::function<void()> body) {
+    return start_rt_thread(network_.realtime, "takt-bus", realtime_, std::move(body));
+  });
+  if (!started) {
+    say(Weight::error,
+        std::string{"the bus thread can't be created: "} + std::strerror(started.error()));
+    return Exit::bus_trouble;
+  }
   say(realtime_.complete() ? Weight::note : Weight::warning, "real time: " + to_string(realtime_));
   if (!realtime_.may_run()) {
     say(Weight::error,

@@ -98,7 +98,6 @@ class BusRun {
   std::string never_ready() const;
   void judge_stop();
   Exit exit_of_cut_stop() const;
-  std::thread start_thread_of_bus(std::function<void()> body);
   void say(Weight weight, const std::string& sentence) { front_.reporter.say(weight, sentence); }
 
   LoadedNetwork network_;
@@ -107,7 +106,6 @@ class BusRun {
   std::int64_t session_;
   std::bitset<256> once_ready_;  // nodes that have booted in this run
   RtReport realtime_;
-  bool bus_thread_runs_ = false;
   Recorder recorder_;               // outlives master_
   std::optional<BusClaim> claim_;   // empty with --observe
   std::unique_ptr<OpenedBus> bus_;  // outlives master_, whose thread uses it

@@ -5,18 +5,15 @@
 
 namespace takt {
 
-/// CLOCK_MONOTONIC, the time base of takt. This reads the vDSO and makes no system call.
-inline Time monotonic_now() noexcept {
+/// Reads a clock of the system in the vDSO, without a system call.
+inline Time time_on(clockid_t clock) noexcept {
   timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
+  clock_gettime(clock, &t);
   return std::chrono::seconds{t.tv_sec} + Time{t.tv_nsec};
 }
-
-inline Time realtime_now() noexcept {
-  timespec t{};
-  clock_gettime(CLOCK_REALTIME, &t);
-  return std::chrono::seconds{t.tv_sec} + Time{t.tv_nsec};
-}
+/// CLOCK_MONOTONIC, the time base of takt.
+inline Time monotonic_now() noexcept { return time_on(CLOCK_MONOTONIC); }
+inline Time realtime_now() noexcept { return time_on(CLOCK_REALTIME); }
 
 /// Returns CLOCK_REALTIME minus CLOCK_MONOTONIC. The function detects preemption between the two
 /// reads and repeats the reading, so the error stays in the order of a microsecond.

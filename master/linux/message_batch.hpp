@@ -3,6 +3,7 @@
 #include <array>
 #include <cerrno>
 #include <cstddef>
+#include <span>
 #include <sys/socket.h>
 
 namespace takt {
@@ -45,6 +46,24 @@ class MessageBatch {
   int send(int fd, std::size_t first, std::size_t count) noexcept {
     return sendmmsg(fd, &headers_[first], static_cast<unsigned>(count),
                     MSG_DONTWAIT | MSG_NOSIGNAL);
+  }
+
+  /// Sends all items without waiting; `fill(record, item)` makes a record of an item. Returns the
+  /// number of items that were sent. If not all were sent, the reason is in errno.
+  template <class Item, class Fill>
+  std::size_t send_all(int fd, std::span<const Item> items, Fill fill) noexcept {
+    std::size_t sent = 0;
+    while (sent < items.size()) {
+      const std::size_t count = std::min(items.size() - sent, N);
+      for (std::size_t i = 0; i < count; ++i) fill(records_[i], items[sent + i]);
+      for (std::size_t done = 0; done < count;) {
+        const int taken = send(fd, done, count - done);
+        if (taken <= 0) return sent;
+        done += static_cast<std::size_t>(taken);
+        sent += static_cast<std::size_t>(taken);
+      }
+    }
+    return sent;
   }
 
  private:

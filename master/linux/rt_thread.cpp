@@ -17,6 +17,9 @@
 #include <sys/syscall.h>
 #include <sys/utsname.h>
 #include <unistd.h>
+#include <utility>
+
+#include "master/linux/start_thread.hpp"
 
 namespace takt {
 namespace {
@@ -154,18 +157,19 @@ std::string to_string(const RtReport& report) {
   return text;
 }
 
-RtThread::RtThread(const RealtimeOptions& options, const char* name, std::function<void()> body) {
-  std::promise<RtReport> granted;
-  std::future<RtReport> answer = granted.get_future();
-  thread_ = std::jthread{[options, name = std::string{name}.substr(0, 15), body = std::move(body),
-                          granted = std::move(granted)]() mutable {
-    pthread_setname_np(pthread_self(), name.c_str());
-    RtReport report = apply_realtime(options);
-    const bool run = report.may_run();
-    granted.set_value(std::move(report));
-    if (run) body();
-  }};
-  report_ = answer.get();
+std::expected<std::thread, int> start_rt_thread(const RealtimeOptions& options, const char* name,
+                                                RtReport& report, std::function<void()> body) {
+  std::promise<RtReport> promise;
+  auto granted = promise.get_future();
+  auto thread =
+      start_thread([options, name, body = std::move(body), promise = std::move(promise)]() mutable {
+        pthread_setname_np(pthread_self(), name);
+        const RtReport own = apply_realtime(options);
+        promise.set_value(own);
+        if (own.may_run()) body();
+      });
+  if (thread) report = granted.get();
+  return thread;
 }
 
 }  // namespace takt

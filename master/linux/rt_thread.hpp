@@ -1,4 +1,5 @@
 #pragma once
+#include <expected>
 #include <functional>
 #include <optional>
 #include <string>
@@ -44,22 +45,10 @@ bool prefer_this_thread() noexcept;
 /// it, so that later allocations cause no page fault. To be called once, before the threads start.
 void prefault_heap(std::size_t bytes);
 
-/// A thread with real-time properties applied before its body runs. The destructor joins, so the
-/// owner must make the body return first.
-class RtThread {
- public:
-  RtThread() = default;
-  /// Returns when the report is known. The body runs only if report().may_run(). `name` appears in
-  /// `ps -L` and has at most 15 characters.
-  RtThread(const RealtimeOptions& options, const char* name, std::function<void()> body);
-
-  const RtReport& report() const noexcept { return report_; }
-  bool joinable() const noexcept { return thread_.joinable(); }
-  void join() { thread_.join(); }
-
- private:
-  RtReport report_;
-  std::jthread thread_;
-};
+/// Starts a thread with real-time properties, and returns when `report` tells what the machine has
+/// granted. If the thread may not run then, its body is left out. `name` appears in `ps -L` and has
+/// at most 15 characters. Returns the errno if the machine refuses another thread.
+std::expected<std::thread, int> start_rt_thread(const RealtimeOptions& options, const char* name,
+                                                RtReport& report, std::function<void()> body);
 
 }  // namespace takt

@@ -150,13 +150,13 @@ TEST(SocketCanOnHardware, TheDriverCanBeRemovedAndLoadedAgain) {
 TEST(RtThreadOnAnRtKernel, GetsAllItAsksFor) {
   int cpu = -1;
 
-  RtThread thread{{.mode = RtMode::enforce, .priority = 80, .cpu = 1}, "takt-bus", [&] {
-                    cpu = sched_getcpu();
-                  }};
-  thread.join();
+  RtReport report;
+  auto thread = start_rt_thread({.mode = RtMode::enforce, .priority = 80, .cpu = 1}, "takt-bus",
+                                report, [&] { cpu = sched_getcpu(); });
+  ASSERT_TRUE(thread);
+  thread->join();
 
-  EXPECT_EQ(to_string(thread.report()),
-            "SCHED_FIFO 80 on cpu 1, memory locked, kernel PREEMPT_RT: yes");
+  EXPECT_EQ(to_string(report), "SCHED_FIFO 80 on cpu 1, memory locked, kernel PREEMPT_RT: yes");
   EXPECT_EQ(cpu, 1);
 }
 

@@ -236,12 +236,11 @@ TEST(PdoGroup, OneCommandBecomesValidWithOneSyncForAllAxes) {
       stall.until = rig.world->now() + 4700us;
       rig.world->add(stall);
     }
-    std::vector<MasterRun::Command> commands;
-    for (SignalIndex axis = 0; axis < 3; ++axis) {
-      commands.push_back({static_cast<SignalIndex>(6 + axis), 0x000F});
-      commands.push_back({static_cast<SignalIndex>(9 + axis), round});
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      ASSERT_TRUE(rig.master->set(static_cast<SignalIndex>(6 + axis), 0x000F, 10'000));
+      ASSERT_TRUE(rig.master->set(static_cast<SignalIndex>(9 + axis), round, 10'000));
     }
-    ASSERT_TRUE(rig.master->set_group(commands, rig.world->now(), 10'000));
+    rig.master->publish_outputs(rig.world->now());
     for (int cycle = 0; cycle < 6; ++cycle) {
       rig.cycle();
       const auto first = target(1_node);
@@ -251,12 +250,6 @@ TEST(PdoGroup, OneCommandBecomesValidWithOneSyncForAllAxes) {
     EXPECT_EQ(target(1_node), static_cast<std::uint64_t>(round));
   }
   EXPECT_GT(rig.status().outputs_skipped, 0U) << "no slack was too short";
-}
-
-TEST(PdoGroup, WithASignalThatIsNoOutputIsRefusedWhole) {
-  test::Rig rig{test::axes()};
-  const std::vector<MasterRun::Command> commands{{6, 5}, {0, 5}};
-  EXPECT_FALSE(rig.master->set_group(commands, 0ns));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <thread>
 #include <unistd.h>
 
 #include "apps/command_line/bus_option.hpp"
@@ -35,9 +36,9 @@ std::vector<Remark> try_realtime(int priority) {
   RealtimeOptions options;
   options.mode = RtMode::attempt;
   options.priority = priority;
-  RtThread thread{options, "takt-doctor", [] {}};
-  thread.join();
-  return judge_realtime(thread.report());
+  RtReport report;
+  std::thread{[&] { report = apply_realtime(options); }}.join();
+  return judge_realtime(report);
 }
 
 std::vector<Remark> examine(const DoctorOptions& options) {

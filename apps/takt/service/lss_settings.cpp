@@ -10,7 +10,7 @@
 
 #include "apps/command_line/json_text.hpp"
 #include "apps/takt/service/lss_verbs.hpp"
-#include "master/linux/bus/frame_witness.hpp"
+#include "master/linux/bus/frame_channel.hpp"
 #include "master/linux/can/interface_bitrate.hpp"
 #include "master/wire/lss.hpp"
 
@@ -39,7 +39,7 @@ std::expected<std::vector<LssResult>, LiveError> configure(const LssOptions& opt
 /// only after the command has been sent, because going down discards its transmit queue.
 int activate(const LssOptions& options, LssAccess& access) {
   using std::chrono::milliseconds;
-  auto witness = FrameWitness::open(options.access.bus);
+  auto witness = FrameChannel::open(options.access.bus, BusMember::guest);
   if (!witness) return complain(witness.error().message, 3);
   const std::array<LssCommand, 2> commands{
       LssCommand{.op = LssOp::switch_global, .a = 1},

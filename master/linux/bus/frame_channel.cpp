@@ -45,6 +45,17 @@ bool FrameChannel::receive(StampedFrame& frame, Time timeout) noexcept {
   return true;
 }
 
+bool FrameChannel::sees(CobId id, std::uint8_t first, Time timeout) noexcept {
+  const Time until = monotonic_now() + timeout;
+  StampedFrame heard;
+  for (Time left = timeout; left >= Time{}; left = until - monotonic_now()) {
+    if (!receive(heard, left)) return false;
+    const Frame& frame = heard.frame;
+    if (frame.id == id && !frame.rtr && frame.length != 0 && frame.data[0] == first) return true;
+  }
+  return false;
+}
+
 PortNews FrameChannel::news() const noexcept {
   return std::visit([](const auto& port) { return port.news(); }, port_);
 }

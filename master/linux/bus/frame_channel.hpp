@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <expected>
 #include <span>
 #include <string_view>
@@ -31,6 +32,11 @@ class FrameChannel {
   /// Takes the next frame and waits at most `timeout` for it (0 does not wait). Returns false if no
   /// frame came.
   bool receive(StampedFrame& frame, Time timeout) noexcept;
+
+  /// Waits at most `timeout` for a frame with COB-ID `id` and first byte `first`. Returns true if
+  /// it came. A frame that another socket of this machine has sent comes only after it was on the
+  /// bus, however long it waits in the queue of the interface.
+  bool sees(CobId id, std::uint8_t first, Time timeout) noexcept;
 
   PortNews news() const noexcept;
 

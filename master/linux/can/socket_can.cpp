@@ -7,13 +7,13 @@
 #include <linux/can/raw.h>
 #include <net/if.h>
 #include <sys/ioctl.h>
-#include <unistd.h>
 #include <utility>
 
 #include "master/linux/can/can_control.hpp"
 #include "master/linux/can/can_error_frame.hpp"
 #include "master/linux/can/can_filters.hpp"
 #include "master/linux/can/can_frame.hpp"
+#include "master/linux/file_descriptor.hpp"
 #include "master/linux/message_batch.hpp"
 #include "master/linux/port_wait.hpp"
 
@@ -40,11 +40,7 @@ constexpr bool means_down(int error) noexcept {
 }  // namespace
 
 struct SocketCanPort::State {
-  ~State() {
-    if (fd >= 0) close(fd);
-  }
-
-  int fd = -1;
+  FileDescriptor fd;
   ifreq request{};  // holds the name of the interface
   std::vector<can_filter> filters;
   std::optional<canid_t> sync_id;
@@ -67,13 +63,13 @@ struct SocketCanPort::State {
 /// repeated.
 bool SocketCanPort::State::bind_interface() noexcept {
   ifreq index = request;
-  if (ioctl(fd, SIOCGIFINDEX, &index) != 0) return false;
+  if (ioctl(fd.get(), SIOCGIFINDEX, &index) != 0) return false;
   const auto bytes = static_cast<socklen_t>(filters.size() * sizeof(can_filter));
-  if (setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), bytes) != 0) return false;
+  if (setsockopt(fd.get(), SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), bytes) != 0) return false;
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = index.ifr_ifindex;
-  return bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  return bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
 }
 
 void SocketCanPort::State::note(int error) noexcept {
@@ -88,11 +84,11 @@ void SocketCanPort::State::look_for_interface() noexcept {
   if (now < next_look) return;
   next_look = now + look_again;
   ifreq flags = request;
-  if (ioctl(fd, SIOCGIFFLAGS, &flags) != 0 || (flags.ifr_flags & IFF_UP) == 0) return;
+  if (ioctl(fd.get(), SIOCGIFFLAGS, &flags) != 0 || (flags.ifr_flags & IFF_UP) == 0) return;
   if (!bind_interface()) return;
   int stale = 0;  // error of the interface going down, if no call has fetched it yet
   socklen_t size = sizeof stale;
-  getsockopt(fd, SOL_SOCKET, SO_ERROR, &stale, &size);
+  getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &stale, &size);
   news.interface_down = false;
   news.bus_off = false;  // a controller starts in the state error-active
   news.error_passive = false;
@@ -100,7 +96,7 @@ void SocketCanPort::State::look_for_interface() noexcept {
 
 /// Returns the number of messages in the next batch.
 std::size_t SocketCanPort::State::fetch(std::size_t most) noexcept {
-  const int got = in.receive(fd, most);
+  const int got = in.receive(fd.get(), most);
   if (got < 0 && errno != EAGAIN && errno != EINTR) note(errno);
   return got < 0 ? 0 : static_cast<std::size_t>(got);
 }
@@ -147,12 +143,12 @@ std::expected<SocketCanPort, BusError> SocketCanPort::open(const SocketCanOption
   state->sent = options.sent;
   if (options.sync_cob_id) state->sync_id = kernel_id(Frame{.id = *options.sync_cob_id});
 
-  state->fd = socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
-  if (state->fd < 0) {
+  state->fd.reset(socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
+  if (!state->fd) {
     return std::unexpected{error_of(
         name, "this kernel has no CAN (try: modprobe can-raw, or --bus unix:/tmp/bus)", errno)};
   }
-  const int fd = state->fd;
+  const int fd = state->fd.get();
   const can_err_mask_t errors = state_error_classes;
   if (!set_option(fd, SOL_SOCKET, SO_TIMESTAMPNS, 1) ||
       !set_option(fd, SOL_SOCKET, SO_RXQ_OVFL, 1) ||
@@ -195,7 +191,7 @@ void SocketCanPort::sleep_precisely_until(Time until) noexcept {
 
 bool SocketCanPort::wait_frame(Time until) noexcept {
   if (state_->news.interface_down) return wait_to_look_again(look_again, until);
-  return wait_for_frame(state_->fd, until);
+  return wait_for_frame(state_->fd.get(), until);
 }
 
 std::size_t SocketCanPort::receive(std::span<StampedFrame> in) noexcept {
@@ -219,22 +215,13 @@ std::size_t SocketCanPort::receive(std::span<StampedFrame> in) noexcept {
 
 SendResult SocketCanPort::send(std::span<const Frame> out) noexcept {
   State& state = *state_;
-  SendResult result;
   if (state.news.interface_down) return {.sent = 0, .error = state.news.last_error};
   if (state.sent != nullptr) state.sent->add(out);
-  while (result.sent < out.size() && result.error == 0) {
-    const std::size_t count = std::min(out.size() - result.sent, batch_frames);
-    for (std::size_t i = 0; i < count; ++i) state.out.record(i) = to_kernel(out[result.sent + i]);
-    for (std::size_t done = 0; done < count;) {
-      const int sent = state.out.send(state.fd, done, count - done);
-      if (sent <= 0) {
-        result.error = errno == EAGAIN ? ENOBUFS : errno;
-        state.note(result.error);
-        break;
-      }
-      done += static_cast<std::size_t>(sent);
-      result.sent += static_cast<std::size_t>(sent);
-    }
+  const auto fill = [](can_frame& record, const Frame& frame) { record = to_kernel(frame); };
+  SendResult result{.sent = state.out.send_all(state.fd.get(), out, fill)};
+  if (result.sent < out.size()) {
+    result.error = errno == EAGAIN ? ENOBUFS : errno;
+    state.note(result.error);
   }
   if (state.sent != nullptr) state.sent->take_back(out.subspan(result.sent));
   return result;

@@ -67,7 +67,7 @@ void UnixBusPort::State::look_for_hub() noexcept {
   news.interface_down = !socket;
 }
 
-/// Sends received frames back to their sender as its own. Losing echoes harms nobody.
+/// Sends received frames back to their sender as its own. A lost echo does no harm.
 void UnixBusPort::State::echo(std::size_t count) noexcept {
   const std::int64_t now = monotonic_now().count();
   for (std::size_t i = 0; i < count; ++i) {
@@ -179,26 +179,16 @@ std::size_t UnixBusPort::receive(std::span<StampedFrame> in) noexcept {
 
 SendResult UnixBusPort::send(std::span<const Frame> out) noexcept {
   State& state = *state_;
-  SendResult result;
   if (state.news.interface_down) return {.sent = 0, .error = ENETDOWN};
   if (state.sent != nullptr) state.sent->add(out);
-  while (result.sent < out.size() && result.error == 0) {
-    const std::size_t count = std::min(out.size() - result.sent, batch_frames);
-    const std::int64_t now = monotonic_now().count();
-    for (std::size_t i = 0; i < count; ++i) {
-      state.out.record(i) = to_record(out[result.sent + i]);
-      state.out.record(i).when = now;  // a hub overwrites this with its own time
-    }
-    for (std::size_t done = 0; done < count;) {
-      const int sent = state.out.send(state.socket.get(), done, count - done);
-      if (sent <= 0) {
-        state.note(errno);
-        result.error = state.news.last_error;
-        break;
-      }
-      done += static_cast<std::size_t>(sent);
-      result.sent += static_cast<std::size_t>(sent);
-    }
+  const auto fill = [now = monotonic_now().count()](UnixBusRecord& record, const Frame& frame) {
+    record = to_record(frame);
+    record.when = now;  // a hub overwrites this with its own time
+  };
+  SendResult result{.sent = state.out.send_all(state.socket.get(), out, fill)};
+  if (result.sent < out.size()) {
+    state.note(errno);
+    result.error = state.news.last_error;
   }
   if (state.sent != nullptr) state.sent->take_back(out.subspan(result.sent));
   return result;

@@ -32,7 +32,7 @@ constexpr std::size_t batch_frames = 64;
 constexpr int takeover_poll_ms = 20;
 constexpr int most_takeovers = 25;  // so many times, a program may find the path taken at its start
 /// After an accept() that failed, for example because no descriptor is left, the client waits in
-/// the kernel, and the listening socket is left alone for so long.
+/// the kernel, and the hub does not look at the listening socket for this time.
 constexpr Time accept_pause = std::chrono::milliseconds{100};
 constexpr int most_batches = 4096;  // most batches of one client that hand_over() forwards
 

@@ -38,7 +38,7 @@ struct MasterOptions {
 struct NodeState {
   std::string_view nmt;   ///< NMT state: "OPERATIONAL", "pre-operational", "unknown" ...
   std::string_view boot;  ///< state of its boot: "idle", "booting", "ready", "failed", "lost"
-  bool ready = false;     ///< the node has booted and reports OPERATIONAL
+  bool ready = false;     ///< the node has booted, is OPERATIONAL and exchanges PDOs
 };
 
 /// One event: a boot, an EMCY, a lost heartbeat, a refused command ...

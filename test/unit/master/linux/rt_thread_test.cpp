@@ -8,41 +8,47 @@
 namespace takt {
 namespace {
 
+/// Runs a thread to its end.
+RtReport run(const RealtimeOptions& options, std::function<void()> body) {
+  RtReport report;
+  auto thread = start_rt_thread(options, "takt-test", report, std::move(body));
+  EXPECT_TRUE(thread);
+  if (thread) thread->join();
+  return report;
+}
+
 TEST(RtThread, OffAsksForNothingAndIsComplete) {
   bool ran = false;
   int policy = -1;
 
-  RtThread thread{{.mode = RtMode::off, .cpu = {}}, "takt-test", [&] {
-                    ran = true;
-                    policy = sched_getscheduler(0);
-                  }};
-  thread.join();
+  const RtReport report = run({.mode = RtMode::off, .cpu = {}}, [&] {
+    ran = true;
+    policy = sched_getscheduler(0);
+  });
 
   EXPECT_TRUE(ran);
   EXPECT_EQ(policy, SCHED_OTHER);
-  EXPECT_TRUE(thread.report().complete());
-  EXPECT_TRUE(to_string(thread.report()).starts_with("off, kernel PREEMPT_RT: "));
+  EXPECT_TRUE(report.complete());
+  EXPECT_TRUE(to_string(report).starts_with("off, kernel PREEMPT_RT: "));
 }
 
 TEST(RtThread, EnforceDoesNotRunTheBodyOnAProcessorThatIsNotThere) {
   bool ran = false;
 
-  RtThread thread{{.mode = RtMode::enforce, .cpu = 1000}, "takt-test", [&] { ran = true; }};
-  thread.join();
+  const RtReport report = run({.mode = RtMode::enforce, .cpu = 1000}, [&] { ran = true; });
 
   EXPECT_FALSE(ran);
-  EXPECT_FALSE(thread.report().may_run());
-  EXPECT_NE(to_string(thread.report()).find("cpu 1000: "), std::string::npos);
+  EXPECT_FALSE(report.may_run());
+  EXPECT_NE(to_string(report).find("cpu 1000: "), std::string::npos);
 }
 
 TEST(RtThread, TryRunsTheBodyWhateverIsMissing) {
   bool ran = false;
 
-  RtThread thread{{.mode = RtMode::attempt, .cpu = 1000}, "takt-test", [&] { ran = true; }};
-  thread.join();
+  const RtReport report = run({.mode = RtMode::attempt, .cpu = 1000}, [&] { ran = true; });
 
   EXPECT_TRUE(ran);
-  EXPECT_FALSE(thread.report().complete());
+  EXPECT_FALSE(report.complete());
 }
 
 int niceness() { return getpriority(PRIO_PROCESS, 0); }

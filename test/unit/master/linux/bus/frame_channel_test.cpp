@@ -1,4 +1,4 @@
-#include "master/linux/bus/frame_witness.hpp"
+#include "master/linux/bus/frame_channel.hpp"
 
 #include <gtest/gtest.h>
 #include <string>
@@ -11,12 +11,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(FrameWitness, SeesWhatWasSentOnTheBusAndNothingElse) {
+TEST(FrameChannel, SeesWhatWasSentOnTheBusAndNothingElse) {
   const test::Folder folder;
   const std::string bus = "unix:" + (folder / "bus").string();
   auto sender = FrameChannel::open(bus);
   ASSERT_TRUE(sender);
-  auto witness = FrameWitness::open(bus);
+  auto witness = FrameChannel::open(bus, BusMember::guest);
   ASSERT_TRUE(witness);
   constexpr CobId lss = CobId::base(0x7E5);
 
