@@ -69,8 +69,8 @@ ROOMS = {
     "master/core/network": ("all nodes: NMT, start, ordered stop, TIME",
                             "master/wire master/core master/core/sdo master/core/lss master/core/node"),
     "master/explain": ("turns events, boot failures and states into sentences", "master/wire " + CORE),
-    "master/explain/frame": ("tells the CANopen meaning of a frame in words", "master/wire master/explain"),
-    "master/trace": ("recordings of candump, PCAN and Vector, line by line", "master/wire"),
+    "master/trace": ("recordings of candump, PCAN and Vector line by line, and the SDO transfers in them", "master/wire"),
+    "master/explain/frame": ("tells the CANopen meaning of a frame in words", "master/wire master/explain master/trace"),
     "master/rt/exchange": ("what crosses between the bus thread and the front thread", "master/core master/rt/port.hpp"),
     "master/rt/journal": ("records everything that decides a run, and plays it back",
                           "master/wire master/core master/rt/exchange master/rt/port.hpp"),
@@ -144,7 +144,7 @@ ROOMS = {
     "apps/takt/import": ("explains what takt makes of a bus.yml or a nodelist",
                          "apps/command_line master/lcm eds_parser/specification eds_parser/network_file " + EDS),
     "apps/takt/learn": ("makes network files from recordings",
-                        "apps/command_line master/wire master/trace master/explain/frame eds_parser/specification "
+                        "apps/command_line master/wire master/trace eds_parser/specification "
                         "eds_parser/network_file eds_parser/write " + EDS),
     "apps/takt/simulate/program": ("runs the daemon and applications in virtual time",
                                    "apps/axis master master/gateway master/lcm master/rt " + SIM),

@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "apps/takt/learn/period_meter.hpp"
-#include "apps/takt/learn/sdo_observer.hpp"
 #include "eds_parser/report/source.hpp"
 #include "eds_parser/table/ids.hpp"
+#include "master/trace/sdo_follower.hpp"
 
 namespace takt::learn {
 
 /// An SDO write of the master.
 struct LearnedWrite {
-  SdoTransfer transfer;
+  SeenTransfer transfer;
   std::uint32_t line = 0;  ///< line of its last frame in the recording
 };
 
@@ -55,7 +55,7 @@ struct LearnedNode {
   std::vector<LearnedBoot> boots;
   std::vector<LearnedWrite> refused;
   std::vector<LearnedWrite> later;  ///< writes while OPERATIONAL, which come from an application
-  SdoObserver sdo;
+  SdoFollower sdo;
 
   bool guarded() const noexcept { return guard_requests.count() > 2; }
   /// Returns true if the node exists: it sends SDO answers, boot-up messages or heartbeats, or the

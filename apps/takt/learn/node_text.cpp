@@ -292,10 +292,10 @@ class NodeText {
 
   /// Returns the reason why a write can't be in the list `sdo`. Empty if it can.
   std::string why_not(const LearnedWrite& write) const {
-    if (write.transfer.extent == SdoTransfer::Extent::in_parts) {
+    if (write.transfer.extent == SeenTransfer::Extent::in_parts) {
       return "parts of the value are not in the recording";
     }
-    if (write.transfer.extent == SdoTransfer::Extent::too_long) {
+    if (write.transfer.extent == SeenTransfer::Extent::too_long) {
       return "takt learn does not keep a value of this length";
     }
     const SubObject* sub = described(write.transfer.object);

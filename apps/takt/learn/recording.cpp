@@ -221,18 +221,18 @@ void Recording::error_control(std::uint8_t id, const Frame& frame) {
   if (!sender.guarded()) sender.heartbeats.add(us_);
 }
 
-void Recording::transfer(LearnedNode& node, const std::optional<SdoTransfer>& transfer) {
+void Recording::transfer(LearnedNode& node, const std::optional<SeenTransfer>& transfer) {
   if (!transfer) return;
   if (transfer->abort_code) {
-    if (transfer->kind == SdoTransfer::Kind::write && node.refused.size() < most_writes) {
+    if (transfer->kind == SeenTransfer::Kind::write && node.refused.size() < most_writes) {
       node.refused.push_back({*transfer, line_});
     }
     return;
   }
-  if (transfer->kind == SdoTransfer::Kind::write) write(node, *transfer);
+  if (transfer->kind == SeenTransfer::Kind::write) write(node, *transfer);
   LearnedBoot& now = boot(node);
-  if (transfer->extent != SdoTransfer::Extent::whole || now.values.size() >= most_objects) return;
-  const bool written = transfer->kind == SdoTransfer::Kind::write;
+  if (transfer->extent != SeenTransfer::Extent::whole || now.values.size() >= most_objects) return;
+  const bool written = transfer->kind == SeenTransfer::Kind::write;
   if (written && now.started) return;  // the configuration has ended
   LearnedValue& value = now.values[transfer->object];
   if (!value.read && !value.written) value.first = transfer->value;
@@ -240,7 +240,7 @@ void Recording::transfer(LearnedNode& node, const std::optional<SdoTransfer>& tr
   (written ? value.written : value.read) = true;
 }
 
-void Recording::write(LearnedNode& node, const SdoTransfer& transfer) {
+void Recording::write(LearnedNode& node, const SeenTransfer& transfer) {
   LearnedBoot& now = boot(node);
   std::vector<LearnedWrite>& list = now.started ? node.later : now.writes;
   if (list.size() < most_writes) list.push_back({transfer, line_});

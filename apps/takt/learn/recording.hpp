@@ -38,8 +38,8 @@ class Recording {
   void reset(LearnedNode& node, bool whole_node);
   void start(LearnedNode& node, bool by_name);
   void error_control(std::uint8_t id, const Frame& frame);
-  void transfer(LearnedNode& node, const std::optional<SdoTransfer>& transfer);
-  void write(LearnedNode& node, const SdoTransfer& transfer);
+  void transfer(LearnedNode& node, const std::optional<SeenTransfer>& transfer);
+  void write(LearnedNode& node, const SeenTransfer& transfer);
   void other(const Frame& frame);
   LearnedNode& node(std::uint8_t id);
   LearnedBoot& boot(LearnedNode& node);

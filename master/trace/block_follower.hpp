@@ -1,8 +1,9 @@
 #pragma once
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <string>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "master/wire/frame.hpp"
@@ -10,11 +11,22 @@
 
 namespace takt {
 
-/// Follows one SDO block transfer, so that it distinguishes segments from other frames, and shows
-/// the value and the check of the CRC at the end. CiA 301, 7.2.4.3.9 and 7.2.4.3.13.
-class BlockText {
+/// Follows one SDO block transfer, so that it distinguishes segments from other frames, and has the
+/// value and its CRC at the end. CiA 301, 7.2.4.3.9 and 7.2.4.3.13.
+class BlockFollower {
  public:
   enum class Direction : std::uint8_t { download, upload };
+  /// What a frame is in the transfer.
+  enum class Part : std::uint8_t {
+    initiate,
+    accept,  ///< in an upload, the request of the client
+    start,
+    segment,
+    confirm,
+    end,
+    end_confirm,
+    unknown,
+  };
 
   void begin(ObjectKey object, Direction direction) noexcept;
   void stop() noexcept { running_ = false; }
@@ -27,11 +39,19 @@ class BlockText {
   bool uploads() const noexcept { return direction_ == Direction::upload; }
   ObjectKey object() const noexcept { return object_; }
 
-  /// Describes a frame of the side that sends the data. `name` is the name of the object.
-  std::string from_source(const Frame& frame, const std::string& name);
-  /// Describes a frame of the side that receives the data.
-  std::string from_sink(const Frame& frame, const std::string& name);
+  /// Takes a frame of the side that sends the data.
+  Part from_source(const Frame& frame);
+  /// Takes a frame of the side that receives the data.
+  Part from_sink(const Frame& frame);
 
+  /// Returns how many segments the newest confirmation asks the source to repeat.
+  std::size_t to_repeat() const noexcept { return to_repeat_; }
+  /// Returns true if both sides use the CRC.
+  bool uses_crc() const noexcept { return crc_used_; }
+  /// CRC of the segments that were seen.
+  std::uint16_t crc() const noexcept { return crc_; }
+  /// Returns true if some segments are not in the recording.
+  bool has_gap() const noexcept { return gap_; }
   /// Returns the value of a transfer that has just ended. It is complete only if has_value().
   std::vector<std::uint8_t> take_value() { return std::move(value_); }
   bool has_value() const noexcept { return whole_ && !value_.empty(); }
@@ -39,12 +59,11 @@ class BlockText {
   bool is_too_long() const noexcept { return !whole_ && !gap_; }
 
  private:
-  std::string segment(const Frame& frame, const std::string& name);
-  std::string confirm(const Frame& frame);
-  std::string end(const Frame& frame, const std::string& name);
+  Part segment(const Frame& frame);
+  Part confirm(const Frame& frame);
+  Part end(const Frame& frame);
   void lose_track() noexcept;
   void absorb(std::span<const std::uint8_t> bytes);
-  const char* verb() const noexcept { return uploads() ? "block upload" : "block download"; }
 
   bool running_ = false;
   bool segments_ = false;  // true if the source sends segments next
@@ -55,6 +74,7 @@ class BlockText {
   bool crc_offered_ = false;
   bool crc_used_ = false;
   std::uint16_t crc_ = 0;
+  std::size_t to_repeat_ = 0;
   std::vector<SdoBlockSegment> sub_block_;   // segments of this sub-block that came in sequence
   std::optional<std::uint8_t> last_number_;  // number of the last segment, if in this sub-block
   std::optional<SdoBlockSegment> held_;      // confirmed segment that may be the last one

@@ -1,9 +1,9 @@
-#include "apps/takt/learn/sdo_observer.hpp"
+#include "master/trace/sdo_follower.hpp"
 
 #include <gtest/gtest.h>
 #include <initializer_list>
 
-namespace takt::learn {
+namespace takt {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -15,21 +15,21 @@ Frame answered(std::initializer_list<std::uint8_t> bytes) {
   return make_frame(CobId::base(0x585), bytes);
 }
 
-TEST(SdoObserver, SeesAnExpeditedWriteWhenItIsConfirmed) {
-  SdoObserver sdo;
+TEST(SdoFollower, SeesAnExpeditedWriteWhenItIsConfirmed) {
+  SdoFollower sdo;
 
   EXPECT_FALSE(sdo.request(sent({0x2B, 0x17, 0x10, 0x00, 0xE8, 0x03, 0x00, 0x00})));
   const auto done = sdo.answer(answered({0x60, 0x17, 0x10, 0x00, 0, 0, 0, 0}));
 
   ASSERT_TRUE(done);
-  EXPECT_EQ(done->kind, SdoTransfer::Kind::write);
+  EXPECT_EQ(done->kind, SeenTransfer::Kind::write);
   EXPECT_EQ(done->object, (ObjectKey{0x1017, 0}));
   EXPECT_EQ(done->value, (Bytes{0xE8, 0x03}));
   EXPECT_FALSE(done->abort_code);
 }
 
-TEST(SdoObserver, KeepsTheAbortCodeOfARefusedWrite) {
-  SdoObserver sdo;
+TEST(SdoFollower, KeepsTheAbortCodeOfARefusedWrite) {
+  SdoFollower sdo;
 
   sdo.request(sent({0x23, 0x00, 0x1A, 0x01, 0x10, 0x00, 0x41, 0x60}));
   const auto done = sdo.answer(answered({0x80, 0x00, 0x1A, 0x01, 0x00, 0x00, 0x01, 0x06}));
@@ -38,8 +38,8 @@ TEST(SdoObserver, KeepsTheAbortCodeOfARefusedWrite) {
   EXPECT_EQ(done->abort_code, 0x0601'0000U);
 }
 
-TEST(SdoObserver, PutsSegmentsTogether) {
-  SdoObserver sdo;
+TEST(SdoFollower, PutsSegmentsTogether) {
+  SdoFollower sdo;
 
   sdo.request(sent({0x40, 0x08, 0x10, 0x00, 0, 0, 0, 0}));
   sdo.answer(answered({0x41, 0x08, 0x10, 0x00, 9, 0, 0, 0}));
@@ -52,8 +52,8 @@ TEST(SdoObserver, PutsSegmentsTogether) {
   EXPECT_EQ((std::string{done->value.begin(), done->value.end()}), "Tiny node");
 }
 
-TEST(SdoObserver, SeesASegmentedWriteWhenItsLastSegmentIsConfirmed) {
-  SdoObserver sdo;
+TEST(SdoFollower, SeesASegmentedWriteWhenItsLastSegmentIsConfirmed) {
+  SdoFollower sdo;
 
   sdo.request(sent({0x21, 0x00, 0x20, 0x00, 5, 0, 0, 0}));
   sdo.answer(answered({0x60, 0x00, 0x20, 0x00, 0, 0, 0, 0}));
@@ -64,8 +64,8 @@ TEST(SdoObserver, SeesASegmentedWriteWhenItsLastSegmentIsConfirmed) {
   EXPECT_EQ(done->value, (Bytes{1, 2, 3, 4, 5}));
 }
 
-TEST(SdoObserver, SeesABlockDownload) {
-  SdoObserver sdo;
+TEST(SdoFollower, SeesABlockDownload) {
+  SdoFollower sdo;
 
   sdo.request(sent({0xC2, 0x00, 0x20, 0x00, 10, 0, 0, 0}));
   sdo.answer(answered({0xA0, 0x00, 0x20, 0x00, 127, 0, 0, 0}));
@@ -76,12 +76,12 @@ TEST(SdoObserver, SeesABlockDownload) {
   const auto done = sdo.answer(answered({0xA1, 0, 0, 0, 0, 0, 0, 0}));
 
   ASSERT_TRUE(done);
-  EXPECT_EQ(done->kind, SdoTransfer::Kind::write);
+  EXPECT_EQ(done->kind, SeenTransfer::Kind::write);
   EXPECT_EQ(done->value, (Bytes{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
 }
 
-TEST(SdoObserver, SeesABlockUpload) {
-  SdoObserver sdo;
+TEST(SdoFollower, SeesABlockUpload) {
+  SdoFollower sdo;
 
   sdo.request(sent({0xA0, 0x08, 0x10, 0x00, 127, 0, 0, 0}));
   sdo.answer(answered({0xC2, 0x08, 0x10, 0x00, 3, 0, 0, 0}));
@@ -92,12 +92,12 @@ TEST(SdoObserver, SeesABlockUpload) {
   const auto done = sdo.request(sent({0xA1, 0, 0, 0, 0, 0, 0, 0}));
 
   ASSERT_TRUE(done);
-  EXPECT_EQ(done->kind, SdoTransfer::Kind::read);
+  EXPECT_EQ(done->kind, SeenTransfer::Kind::read);
   EXPECT_EQ(done->value, (Bytes{'a', 'b', 'c'}));
 }
 
-TEST(SdoObserver, TakesASegmentedAnswerToABlockUpload) {
-  SdoObserver sdo;
+TEST(SdoFollower, TakesASegmentedAnswerToABlockUpload) {
+  SdoFollower sdo;
 
   sdo.request(sent({0xA0, 0x08, 0x10, 0x00, 127, 21, 0, 0}));
   const auto done = sdo.answer(answered({0x4F, 0x08, 0x10, 0x00, 7, 0, 0, 0}));
@@ -106,8 +106,8 @@ TEST(SdoObserver, TakesASegmentedAnswerToABlockUpload) {
   EXPECT_EQ(done->value, (Bytes{7}));
 }
 
-TEST(SdoObserver, CountsFramesWhoseBeginningIsMissing) {
-  SdoObserver sdo;
+TEST(SdoFollower, CountsFramesWhoseBeginningIsMissing) {
+  SdoFollower sdo;
 
   EXPECT_FALSE(sdo.answer(answered({0x1B, 'd', 'e', 0, 0, 0, 0, 0})));
   EXPECT_FALSE(sdo.answer(answered({0x60, 0x17, 0x10, 0x00, 0, 0, 0, 0})));
@@ -117,8 +117,8 @@ TEST(SdoObserver, CountsFramesWhoseBeginningIsMissing) {
   EXPECT_EQ(sdo.strays(), 4u);
 }
 
-TEST(SdoObserver, AnAnswerOfAnotherObjectEndsNothing) {
-  SdoObserver sdo;
+TEST(SdoFollower, AnAnswerOfAnotherObjectEndsNothing) {
+  SdoFollower sdo;
 
   sdo.request(sent({0x40, 0x17, 0x10, 0x00, 0, 0, 0, 0}));
 
@@ -126,8 +126,8 @@ TEST(SdoObserver, AnAnswerOfAnotherObjectEndsNothing) {
   EXPECT_TRUE(sdo.answer(answered({0x4B, 0x17, 0x10, 0x00, 0xE8, 0x03, 0, 0})));
 }
 
-TEST(SdoObserver, CountsTransfersThatASecondClientCutsOff) {
-  SdoObserver sdo;
+TEST(SdoFollower, CountsTransfersThatASecondClientCutsOff) {
+  SdoFollower sdo;
 
   sdo.request(sent({0x40, 0x17, 0x10, 0x00, 0, 0, 0, 0}));
   sdo.request(sent({0x40, 0x18, 0x10, 0x01, 0, 0, 0, 0}));
@@ -136,24 +136,54 @@ TEST(SdoObserver, CountsTransfersThatASecondClientCutsOff) {
   EXPECT_TRUE(sdo.answer(answered({0x43, 0x18, 0x10, 0x01, 1, 0, 0, 0})));
 }
 
-TEST(SdoObserver, ALongValueIsNotKeptWhole) {
-  SdoObserver sdo;
+TEST(SdoFollower, ASegmentThatCameTwiceIsKeptOnce) {
+  SdoFollower sdo;
   sdo.request(sent({0x20, 0x50, 0x1F, 0x01, 0, 0, 0, 0}));
   sdo.answer(answered({0x60, 0x50, 0x1F, 0x01, 0, 0, 0, 0}));
 
-  for (int i = 0; i < 20'000; ++i) sdo.request(sent({0x00, 1, 2, 3, 4, 5, 6, 7}));
+  sdo.request(sent({0x00, 1, 2, 3, 4, 5, 6, 7}));
+  sdo.request(sent({0x00, 1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_TRUE(sdo.repeats_toggle());
+  sdo.request(sent({0x1D, 8, 0, 0, 0, 0, 0, 0}));
+  const auto done = sdo.answer(answered({0x20, 0, 0, 0, 0, 0, 0, 0}));
+
+  ASSERT_TRUE(done);
+  EXPECT_EQ(done->value, (Bytes{1, 2, 3, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(done->extent, SeenTransfer::Extent::in_parts);
+}
+
+TEST(SdoFollower, AnAnswerWithoutItsRequestNamesItsObjectItself) {
+  SdoFollower sdo;
+
+  const auto done = sdo.answer(answered({0x4B, 0x17, 0x10, 0x00, 0xE8, 0x03, 0, 0}));
+
+  ASSERT_TRUE(done);
+  EXPECT_EQ(done->object, (ObjectKey{0x1017, 0}));
+  EXPECT_EQ(done->value, (Bytes{0xE8, 0x03}));
+  EXPECT_EQ(sdo.strays(), 1U);
+}
+
+TEST(SdoFollower, ALongValueIsNotKeptWhole) {
+  SdoFollower sdo;
+  sdo.request(sent({0x20, 0x50, 0x1F, 0x01, 0, 0, 0, 0}));
+  sdo.answer(answered({0x60, 0x50, 0x1F, 0x01, 0, 0, 0, 0}));
+
+  for (int i = 0; i < 10'000; ++i) {
+    sdo.request(sent({0x00, 1, 2, 3, 4, 5, 6, 7}));
+    sdo.request(sent({0x10, 1, 2, 3, 4, 5, 6, 7}));
+  }
   sdo.request(sent({0x01, 1, 2, 3, 4, 5, 6, 7}));
   const auto done = sdo.answer(answered({0x20, 0, 0, 0, 0, 0, 0, 0}));
 
   ASSERT_TRUE(done);
-  EXPECT_EQ(done->extent, SdoTransfer::Extent::too_long);
-  EXPECT_LE(done->value.size(), SdoObserver::most_kept);
+  EXPECT_EQ(done->extent, SeenTransfer::Extent::too_long);
+  EXPECT_LE(done->value.size(), SdoFollower::most_kept);
 }
 
 /// Downloads a value of so many segments by block transfer. `lost` of them are not in the
 /// recording.
-std::optional<SdoTransfer> block_download(int segments, int lost) {
-  SdoObserver sdo;
+std::optional<SeenTransfer> block_download(int segments, int lost) {
+  SdoFollower sdo;
   sdo.request(sent({0xC0, 0x50, 0x1F, 0x01, 0, 0, 0, 0}));
   sdo.answer(answered({0xA0, 0x50, 0x1F, 0x01, 100, 0, 0, 0}));
   for (int i = 1; i <= segments; ++i) {
@@ -168,17 +198,17 @@ std::optional<SdoTransfer> block_download(int segments, int lost) {
   return sdo.answer(answered({0xA1, 0, 0, 0, 0, 0, 0, 0}));
 }
 
-TEST(SdoObserver, ReportsABlockThatIsTooLongFromOneWithGaps) {
+TEST(SdoFollower, ReportsABlockThatIsTooLongFromOneWithGaps) {
   const auto whole = block_download(500, 0);
   const auto too_long = block_download(600, 0);  // 4200 bytes
   const auto in_parts = block_download(500, 3);
 
   ASSERT_TRUE(whole && too_long && in_parts);
-  EXPECT_EQ(whole->extent, SdoTransfer::Extent::whole);
+  EXPECT_EQ(whole->extent, SeenTransfer::Extent::whole);
   EXPECT_EQ(whole->value.size(), 3500U);
-  EXPECT_EQ(too_long->extent, SdoTransfer::Extent::too_long);
-  EXPECT_EQ(in_parts->extent, SdoTransfer::Extent::in_parts);
+  EXPECT_EQ(too_long->extent, SeenTransfer::Extent::too_long);
+  EXPECT_EQ(in_parts->extent, SeenTransfer::Extent::in_parts);
 }
 
 }  // namespace
-}  // namespace takt::learn
+}  // namespace takt
