@@ -71,7 +71,6 @@ struct DiagnosticSocket::State {
     return name.kind == BusName::Kind::unix_path ? unix_bus.receive(socket.get(), batch_frames)
                                                  : can.receive(socket.get(), batch_frames);
   }
-  void take(std::size_t i, Time offset, Time now, const OnFrame& on_frame);
   void take_can(std::size_t i, Time offset, Time now, const OnFrame& on_frame);
   void take_unix(std::size_t i, const OnFrame& on_frame);
   void hear(const StampedFrame& frame, Origin origin, const OnFrame& on_frame);

@@ -130,15 +130,19 @@ std::expected<CanLink, BusError> read_can_link(const std::string& interface) {
   return link_of(*message);
 }
 
+std::string link_command(const std::string& interface, const std::string& setting) {
+  return "ip link set " + interface + " down && ip link set " + interface + " up type can " +
+         setting;
+}
+
 std::vector<std::string> link_warnings(const CanLink& link, std::uint32_t bitrate,
                                        std::size_t frames_a_cycle) {
   std::vector<std::string> out;
   const auto& n = link.name;
   if (link.bitrate && *link.bitrate != bitrate) {
     out.push_back(n + " runs at " + std::to_string(*link.bitrate / 1000) +
-                  " kbit/s, but the network file says " + std::to_string(bitrate / 1000) +
-                  ": ip link set " + n + " down && ip link set " + n + " up type can bitrate " +
-                  std::to_string(bitrate));
+                  " kbit/s, but the network file says " + std::to_string(bitrate / 1000) + ": " +
+                  link_command(n, "bitrate " + std::to_string(bitrate)));
   }
   const std::size_t room = frames_a_cycle + 16;  // service frames in addition to the outputs
   if (link.tx_queue_length != 0 && link.tx_queue_length < room) {
@@ -147,12 +151,10 @@ std::vector<std::string> link_warnings(const CanLink& link, std::uint32_t bitrat
                   " txqueuelen " + std::to_string(room < 128 ? 128 : room));
   }
   if (link.restart_ms && *link.restart_ms == 0) {
-    out.push_back(n + " does not restart after a bus-off: ip link set " + n +
-                  " down && ip link set " + n + " up type can restart-ms 100");
+    out.push_back(n + " does not restart after a bus-off: " + link_command(n, "restart-ms 100"));
   }
   if (link.listen_only) {
-    out.push_back(n + " is in listen-only mode: ip link set " + n + " down && ip link set " + n +
-                  " up type can listen-only off");
+    out.push_back(n + " is in listen-only mode: " + link_command(n, "listen-only off"));
   }
   if (link.state == CanState::bus_off || link.state == CanState::error_passive) {
     out.push_back(n + " is " + std::string{name(*link.state)} +

@@ -56,8 +56,7 @@ std::string set_interface_bitrate(const std::string& bus, int bitrate) {
                     run({"ip", "link", "set", interface, "up"});
   if (done) return {};
   return "the devices change to " + rate + " bit/s, but " + interface +
-         " could not change: as root, ip link set " + interface + " down && ip link set " +
-         interface + " up type can bitrate " + rate;
+         " could not change: as root, " + link_command(interface, "bitrate " + rate);
 }
 
 }  // namespace takt
