@@ -1,61 +1,10 @@
-#include "master/core/pdo/pdo_outputs.hpp"
-
+// The values of RPDOs: commands, their age, and forced values.
 #include <gtest/gtest.h>
-#include <vector>
 
-#include "master/core/pdo/pdo_exchange.hpp"
-#include "test/unit/master/core/pdo/small_plan.hpp"
+#include "test/unit/master/core/pdo/outputs_rig.hpp"
 
 namespace takt {
 namespace {
-
-using namespace std::chrono_literals;
-
-/// The outputs of a plan and the set-points from the front thread.
-class Outputs {
- public:
-  explicit Outputs(BusPlan plan) : plan_{std::move(plan)}, pdos{plan_, events} {
-    points.resize(plan_.layout.outputs());
-    for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
-      pdos.inputs().set_reception(i, Reception::full);
-      pdos.outputs().open(i, points);
-    }
-  }
-
-  void command(std::size_t output, std::int64_t value, std::uint32_t ttl = 0) {
-    points[output] = {value, points[output].generation + 1, ttl, now_ + Time{1ms}};
-  }
-  void feedback(unsigned node, std::initializer_list<std::uint8_t> bytes) {
-    pdos.inputs().receive({.frame = make_frame(CobId::base(0x180 + node), bytes), .when = now_});
-  }
-  std::vector<Frame> pack() {
-    ++cycle_;
-    now_ = static_cast<std::int64_t>(cycle_) * Time{2ms} + late;
-    const OutputMoment moment{.cycle = cycle_, .now = now_};
-    const auto frames = pdos.outputs().pack(points, moment);
-    const std::vector<Frame> copy{frames.begin(), frames.end()};
-    pdos.outputs().sent(accepted, moment);
-    return copy;
-  }
-  void skip(std::uint64_t cycles) { cycle_ += cycles; }
-  std::vector<EventKind> reported() {
-    std::vector<EventKind> all;
-    for (Event event; events.pop(event);) all.push_back(event.kind);
-    return all;
-  }
-
- private:
-  BusPlan plan_;
-  std::uint64_t cycle_ = 0;
-  Time now_{};
-
- public:
-  EventQueue events;
-  PdoExchange pdos;
-  std::vector<SetPoint> points;
-  std::size_t accepted = 100;  // number of frames that the interface accepts
-  Time late{};                 // delay of a cycle when it packs its outputs
-};
 
 BusPlan one_axis(std::uint8_t type = 1, bool seeds = false) {
   BusPlan plan = test::axes({.nodes = 1, .rpdo_type = type});
@@ -66,7 +15,7 @@ constexpr std::size_t controlword = 0;
 constexpr std::size_t target = 1;
 
 TEST(PdoOutputs, PackControlwordAndTargetAsTheWireWantsThem) {
-  Outputs out{one_axis()};
+  OutputsRig out{one_axis()};
   out.command(controlword, 0x000F);
   out.command(target, -100000);
 
@@ -77,7 +26,7 @@ TEST(PdoOutputs, PackControlwordAndTargetAsTheWireWantsThem) {
 }
 
 TEST(PdoOutputs, NeverSendAHalfCommandedRpdo) {
-  Outputs out{one_axis()};
+  OutputsRig out{one_axis()};
   EXPECT_TRUE(out.pack().empty());
   out.command(controlword, 0x000F);
   for (int i = 0; i < 2; ++i) EXPECT_TRUE(out.pack().empty());
@@ -88,7 +37,7 @@ TEST(PdoOutputs, NeverSendAHalfCommandedRpdo) {
 TEST(PdoOutputs, ReportAnRpdoThatStaysHalfCommandedOnce) {
   BusPlan plan = one_axis();
   for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;
-  Outputs out{plan};
+  OutputsRig out{plan};
   out.command(controlword, 0x000F);
   for (int i = 0; i < 30; ++i) out.pack();
   EXPECT_EQ(out.reported(), std::vector{EventKind::outputs_held});
@@ -98,14 +47,14 @@ TEST(PdoOutputs, SendASafeValueBeforeTheFirstCommand) {
   BusPlan plan = one_axis();
   plan.layout.signals[2].safe_value = 0x0006;
   plan.layout.signals[3].safe_value = 0;
-  Outputs out{plan};
+  OutputsRig out{plan};
   const auto frames = out.pack();
   ASSERT_EQ(frames.size(), 1U);
   EXPECT_EQ(frames[0], make_frame(CobId::base(0x201), {0x06, 0, 0, 0, 0, 0}));
 }
 
 TEST(PdoOutputs, SeedTheTargetFromItsFeedback) {
-  Outputs out{one_axis(1, true)};
+  OutputsRig out{one_axis(1, true)};
   out.command(controlword, 0x0006);
   EXPECT_TRUE(out.pack().empty());  // no feedback so far
 
@@ -119,7 +68,7 @@ TEST(PdoOutputs, SeedTheTargetFromItsFeedback) {
 TEST(PdoOutputs, FollowTheFeedbackOnlyUntilTheNodeIsCommanded) {
   BusPlan plan = one_axis(1, true);
   plan.layout.signals[2].safe_value = 0;
-  Outputs out{plan};
+  OutputsRig out{plan};
   out.feedback(1, {0, 0, 0x10, 0, 0, 0});
   EXPECT_EQ(out.pack().at(0).data[2], 0x10);
   out.feedback(1, {0, 0, 0x11, 0, 0, 0});
@@ -131,7 +80,7 @@ TEST(PdoOutputs, FollowTheFeedbackOnlyUntilTheNodeIsCommanded) {
 }
 
 TEST(PdoOutputs, ForgetCommandsFromBeforeTheNodeCameBack) {
-  Outputs out{one_axis()};
+  OutputsRig out{one_axis()};
   out.command(controlword, 0x000F);
   out.command(target, 5);
   EXPECT_EQ(out.pack().size(), 1U);
@@ -149,7 +98,7 @@ TEST(PdoOutputs, ForgetCommandsFromBeforeTheNodeCameBack) {
 }
 
 TEST(PdoOutputs, FallBackWhenTheCommandOutlivesItsTime) {
-  Outputs out{one_axis()};  // 3 cycles: controlword 0x0002, target held
+  OutputsRig out{one_axis()};  // 3 cycles: controlword 0x0002, target held
   out.command(controlword, 0x000F);
   out.command(target, 5);
   for (int age = 0; age < 3; ++age) EXPECT_EQ(out.pack().at(0).data[0], 0x0F);
@@ -166,7 +115,7 @@ TEST(PdoOutputs, FallBackWhenTheCommandOutlivesItsTime) {
 }
 
 TEST(PdoOutputs, TakeTheShorterOfTwoTimesToLive) {
-  Outputs out{one_axis()};
+  OutputsRig out{one_axis()};
   out.command(controlword, 0x000F, 1);
   out.command(target, 5, 100);
   EXPECT_EQ(out.pack().at(0).data[0], 0x0F);
@@ -178,7 +127,7 @@ TEST(PdoOutputs, TakeTheShorterOfTwoTimesToLive) {
 }
 
 TEST(PdoOutputs, CountMissedPeriodsAsAge) {
-  Outputs out{one_axis()};
+  OutputsRig out{one_axis()};
   out.command(controlword, 0x000F);
   out.command(target, 5);
   out.pack();
@@ -187,7 +136,7 @@ TEST(PdoOutputs, CountMissedPeriodsAsAge) {
 }
 
 TEST(PdoOutputs, NeverSendACommandThatWasTooOldWhenItWasSeen) {
-  Outputs out{one_axis()};
+  OutputsRig out{one_axis()};
   out.command(controlword, 0x000F);
   out.command(target, 5);
   out.pack();
@@ -203,7 +152,7 @@ TEST(PdoOutputs, NeverSendACommandThatWasTooOldWhenItWasSeen) {
 TEST(PdoOutputs, ALatchedCommandHasASecondUntilItIsSeen) {
   BusPlan plan = one_axis();
   for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;
-  Outputs out{plan};
+  OutputsRig out{plan};
   out.command(controlword, 0x000F);
   out.command(target, 5);
   out.pack();
@@ -216,7 +165,7 @@ TEST(PdoOutputs, ALatchedCommandHasASecondUntilItIsSeen) {
 }
 
 TEST(PdoOutputs, ReleasedOutputsTakeTheirFallbackWithoutAWarning) {
-  Outputs out{one_axis()};
+  OutputsRig out{one_axis()};
   out.command(controlword, 0x000F);
   out.command(target, 5);
   out.pack();
@@ -234,7 +183,7 @@ TEST(PdoOutputs, ReleasedOutputsTakeTheirFallbackWithoutAWarning) {
 TEST(PdoOutputs, CommandWithoutTimeToLiveNeverGrowsOld) {
   BusPlan plan = one_axis();
   for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;
-  Outputs out{plan};
+  OutputsRig out{plan};
   out.command(controlword, 0x000F);
   out.command(target, 5);
   out.pack();
@@ -242,110 +191,8 @@ TEST(PdoOutputs, CommandWithoutTimeToLiveNeverGrowsOld) {
   EXPECT_EQ(out.pack().at(0).data[0], 0x0F);
 }
 
-TEST(PdoOutputs, SendEveryRateOnItsBeat) {
-  for (unsigned n = 1; n <= 240; ++n) {
-    BusPlan plan = one_axis(static_cast<std::uint8_t>(n));
-    for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;
-    Outputs out{plan};
-    out.command(controlword, 1);
-    out.command(target, 2);
-    unsigned sent = 0;
-    for (unsigned i = 0; i < 3 * n; ++i) {
-      const auto frames = out.pack();
-      EXPECT_EQ(frames.size(), i % n == 0 ? 1U : 0U) << n;
-      sent += static_cast<unsigned>(frames.size());
-    }
-    EXPECT_EQ(sent, 3U) << n;
-  }
-}
-
-TEST(PdoOutputs, SendEventDrivenRpdosOnChangeOnly) {
-  for (const std::uint8_t type : std::vector<std::uint8_t>{0, 254, 255}) {
-    Outputs out{one_axis(type)};
-    out.command(controlword, 1);
-    out.command(target, 2);
-    EXPECT_EQ(out.pack().size(), 1U);
-    out.command(controlword, 1);
-    out.command(target, 2);
-    EXPECT_EQ(out.pack().size(), 0U);
-    out.command(target, 3);
-    EXPECT_EQ(out.pack().size(), 1U);
-  }
-}
-
-TEST(PdoOutputs, HoldChangesBackForTheInhibitTimeAndSendTheNewest) {
-  BusPlan plan = one_axis(255);
-  plan.pdos.rpdos[0].inhibit = 6ms;
-  for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;
-  Outputs out{plan};
-  out.command(controlword, 1);
-  out.command(target, 1);
-  EXPECT_EQ(out.pack().size(), 1U);
-  out.command(target, 2);
-  EXPECT_TRUE(out.pack().empty());
-  out.command(target, 3);
-  EXPECT_TRUE(out.pack().empty());
-  const auto frames = out.pack();
-  ASSERT_EQ(frames.size(), 1U);
-  EXPECT_EQ(frames[0].data[2], 3);
-}
-
-TEST(PdoOutputs, RepeatAfterTheEventTimer) {
-  BusPlan plan = one_axis(255);
-  plan.pdos.rpdos[0].event_timer = 8ms;
-  for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;
-  Outputs out{plan};
-  out.command(controlword, 1);
-  out.command(target, 1);
-  std::vector<std::size_t> sizes;
-  for (int i = 0; i < 9; ++i) sizes.push_back(out.pack().size());
-  EXPECT_EQ(sizes, (std::vector<std::size_t>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
-}
-
-TEST(PdoOutputs, CountTheirTimesInCyclesHoweverLateTheyWakeUp) {
-  BusPlan plan = one_axis(255);
-  plan.pdos.rpdos[0].event_timer = 4ms;
-  plan.pdos.rpdos[0].inhibit = 4ms;
-  for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;
-  Outputs out{plan};
-  out.command(controlword, 1);
-  out.command(target, 1);
-  std::vector<std::size_t> sizes;
-  for (const Time late : {90us, 10us, 30us, 80us, 0us, 50us, 20us}) {
-    out.late = late;
-    sizes.push_back(out.pack().size());
-  }
-  EXPECT_EQ(sizes, (std::vector<std::size_t>{1, 0, 1, 0, 1, 0, 1}));
-}
-
-TEST(PdoOutputs, KeepTheInhibitTimeAlsoAfterAStall) {
-  BusPlan plan = one_axis(255);
-  plan.pdos.rpdos[0].inhibit = 4ms;
-  Outputs out{plan};
-  out.command(controlword, 1);
-  out.command(target, 1);
-  out.late = 1ms;
-  EXPECT_EQ(out.pack().size(), 1U);
-  out.command(target, 2);
-  out.late = 0ms;
-  EXPECT_TRUE(out.pack().empty());
-  EXPECT_TRUE(out.pack().empty()) << "3 ms after the frame before";
-  EXPECT_EQ(out.pack().size(), 1U);
-}
-
-TEST(PdoOutputs, TryAgainWhatTheInterfaceDidNotTake) {
-  Outputs out{one_axis(255)};
-  out.command(controlword, 1);
-  out.command(target, 1);
-  out.accepted = 0;
-  EXPECT_EQ(out.pack().size(), 1U);
-  out.accepted = 100;
-  EXPECT_EQ(out.pack().size(), 1U);
-  EXPECT_TRUE(out.pack().empty());
-}
-
 TEST(PdoOutputs, CommandFromTheCycleItselfIsAsGoodAsAnyOther) {
-  Outputs out{one_axis()};
+  OutputsRig out{one_axis()};
   out.pdos.outputs().command(2, 0x0F, 0, {.cycle = 1});
   out.pdos.outputs().command(3, 77, 0, {.cycle = 1});
   EXPECT_EQ(out.pack().at(0), make_frame(CobId::base(0x201), {0x0F, 0, 77, 0, 0, 0}));
@@ -354,7 +201,7 @@ TEST(PdoOutputs, CommandFromTheCycleItselfIsAsGoodAsAnyOther) {
 }
 
 TEST(PdoOutputs, WhileStoppingHearNoCommandAndSendWhatIsForced) {
-  Outputs out{one_axis()};
+  OutputsRig out{one_axis()};
   out.command(controlword, 0x000F);
   out.command(target, 5);
   out.pack();
@@ -366,7 +213,7 @@ TEST(PdoOutputs, WhileStoppingHearNoCommandAndSendWhatIsForced) {
 }
 
 TEST(PdoOutputs, KeepTheFallbackUntilTheNextCommandWhenCommandsAreHeardAgain) {
-  Outputs out{one_axis()};
+  OutputsRig out{one_axis()};
   out.command(controlword, 0x000F);
   out.command(target, 5);
   out.pack();
@@ -382,7 +229,7 @@ TEST(PdoOutputs, KeepTheFallbackUntilTheNextCommandWhenCommandsAreHeardAgain) {
 }
 
 TEST(PdoOutputs, KeepWhatWasForcedUntilTheNextCommandHoweverLateItComes) {
-  Outputs out{one_axis()};
+  OutputsRig out{one_axis()};
   out.command(controlword, 0x000F);
   out.command(target, 5);
   out.pack();
@@ -398,7 +245,7 @@ TEST(PdoOutputs, KeepWhatWasForcedUntilTheNextCommandHoweverLateItComes) {
 TEST(PdoOutputs, HearNoCommandFromTheTimeOfAForcedValue) {
   BusPlan plan = one_axis();
   for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;
-  Outputs out{plan};
+  OutputsRig out{plan};
   out.command(controlword, 0x000F);
   out.command(target, 5);
   out.pack();
