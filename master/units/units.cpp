@@ -25,13 +25,6 @@ std::int64_t pattern_of(DataType type, double number) noexcept {
 
 }  // namespace
 
-double number_of(DataType type, std::int64_t raw) noexcept {
-  if (type == DataType::real32) return std::bit_cast<float>(static_cast<std::uint32_t>(raw));
-  if (type == DataType::real64) return std::bit_cast<double>(raw);
-  if (type == DataType::unsigned64) return static_cast<double>(static_cast<std::uint64_t>(raw));
-  return static_cast<double>(raw);
-}
-
 RawRange raw_range(DataType type, unsigned bits) noexcept {
   constexpr RawRange everything{std::numeric_limits<std::int64_t>::min(),
                                 std::numeric_limits<std::int64_t>::max()};

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "eds_parser/table/data_type.hpp"
+#include "eds_parser/table/raw_number.hpp"
 
 namespace takt {
 
@@ -44,9 +44,6 @@ class Units {
   // Signals whose int64_t is a bit pattern: REAL and UNSIGNED64.
   std::vector<std::size_t> patterns_;
 };
-
-/// Returns the number that an image value represents, without scale.
-double number_of(DataType type, std::int64_t raw) noexcept;
 
 /// Smallest and largest raw value of `bits` bits.
 struct RawRange {
