@@ -1,7 +1,9 @@
+#include "master/explain/boot_remedy.hpp"
+
+#include <fmt/format.h>
 #include <string>
 
 #include "master/core/request.hpp"
-#include "master/explain/boot_remedy_abort.hpp"
 #include "master/explain/boot_report.hpp"
 #include "master/explain/report_text.hpp"
 #include "master/wire/sdo_abort.hpp"
@@ -12,28 +14,26 @@ namespace {
 
 /// For a node that gets its node-ID by LSS and has given no sign of life.
 std::string against_missing_id(const BusPlan& plan, const NodePlan& node) {
-  return "node " + std::to_string(int{node.id.value()}) +
-         " has sent nothing. LSS (`lss: true`) assigns this id to a device without node id that "
-         "has " +
-         identity_text(*node.lss) +
-         ": `takt lss find` shows the devices without node id. If the device there has another "
-         "address, correct the network file; if no device is there, `takt scan` shows whether the "
-         "device has another node id already. If the log says that the device has got this id, a "
-         "reset of all nodes (`takt nmt reset-comm all`) or a power cycle may be needed before the "
-         "device uses the id. Otherwise: is the device powered and wired, is its bit rate " +
-         std::to_string(plan.bitrate / 1000) + " kbit/s, does it know LSS fastscan?";
+  return fmt::format(
+      "node {} has sent nothing. LSS (`lss: true`) assigns this id to a device without node id "
+      "that has {}: `takt lss find` shows the devices without node id. If the device there has "
+      "another address, correct the network file; if no device is there, `takt scan` shows whether "
+      "the device has another node id already. If the log says that the device has got this id, a "
+      "reset of all nodes (`takt nmt reset-comm all`) or a power cycle may be needed before the "
+      "device uses the id. Otherwise: is the device powered and wired, is its bit rate {} kbit/s, "
+      "does it know LSS fastscan?",
+      node.id.value(), identity_text(*node.lss), plan.bitrate / 1000);
 }
 
 /// If no first answer has come, the SDO channel of the network file may be the cause.
 std::string about_channel(const BusPlan& plan, const NodePlan& node, const BootFailure& failure) {
   const SdoChannel used = node.sdo.channel_of(node.id);
   if (failure.letter != 'B' || used == default_sdo_channel(node.id)) return {};
-  return " The master used the SDO channel of `sdo_channel` (" + to_string(used.request) + " and " +
-         to_string(used.answer) +
-         "): the device may lack this SDO server, or have it switched off or on other COB-IDs "
-         "(`takt sdo read " +
-         std::to_string(int{node.id.value()}) + " 1201:01 --bus " + interface_text(plan) +
-         "` uses the default channel). Without `sdo_channel` the boot uses the default channel";
+  return fmt::format(
+      " The master used the SDO channel of `sdo_channel` ({} and {}): the device may lack this SDO "
+      "server, or have it switched off or on other COB-IDs (`takt sdo read {} 1201:01 --bus {}` "
+      "uses the default channel). Without `sdo_channel` the boot uses the default channel",
+      to_string(used.request), to_string(used.answer), node.id.value(), interface_text(plan));
 }
 
 /// Returns the newest reset before the failure if the node has answered in this boot before that
@@ -55,60 +55,55 @@ const BootStep* reset_of_a_node_that_was_there(const NodePlan& node, const BootF
 }
 
 std::string against_silence(const BusPlan& plan, const NodePlan& node, const BootFailure& failure) {
-  const std::string id = std::to_string(int{node.id.value()});
   const BootStep* const reset = reset_of_a_node_that_was_there(node, failure);
   if (failure.node_state == NmtState::unknown && reset != nullptr) {
-    const bool whole = reset->command == NmtCommand::reset_node;
-    return "the node answered before, but has sent nothing since NMT reset " +
-           std::string{whole ? "node" : "communication"} + " (" + reset->purpose +
-           "): does it need longer to start (raise `boot_timeout_ms`), or does it have another "
-           "node id now (`takt scan`)? Otherwise switch it off and on";
+    return fmt::format(
+        "the node answered before, but has sent nothing since NMT reset {} ({}): does it need "
+        "longer to start (raise `boot_timeout_ms`), or does it have another node id now (`takt "
+        "scan`)? Otherwise switch it off and on",
+        reset->command == NmtCommand::reset_node ? "node" : "communication", reset->purpose);
   }
   const std::string channel = about_channel(plan, node, failure);
   if (failure.node_state == NmtState::unknown && node.lss) {
     return against_missing_id(plan, node) + channel;
   }
   if (failure.node_state == NmtState::unknown) {
-    return "node " + id +
-           " has sent nothing: is it powered and wired (CAN_H, CAN_L, ground, 120 ohm at both ends "
-           "of the line)? Is its node id " +
-           id + " and its bit rate " + std::to_string(plan.bitrate / 1000) +
-           " kbit/s? `takt dump --bus " + interface_text(plan) +
-           "` shows which nodes send on the bus" + (channel.empty() ? "" : ".") + channel;
+    return fmt::format(
+        "node {0} has sent nothing: is it powered and wired (CAN_H, CAN_L, ground, 120 ohm at both "
+        "ends of the line)? Is its node id {0} and its bit rate {1} kbit/s? `takt dump --bus {2}` "
+        "shows which nodes send on the bus{3}{4}",
+        node.id.value(), plan.bitrate / 1000, interface_text(plan), channel.empty() ? "" : ".",
+        channel);
   }
   if (failure.node_state == NmtState::stopped) {
     return "the node is in NMT state STOPPED and answers no SDO in this state: let the boot reset "
            "the node (`reset: communication`), or find out which other master stops it";
   }
-  return "the node is alive on the bus, but its SDO server does not answer" +
-         (channel.empty() ? ":" : "." + channel + ". Otherwise:") +
-         " does it need longer to start (raise `boot_timeout_ms` of the node)? Is a second node or "
-         "a second master using node id " +
-         id + "?";
-}
-
-std::string identity_key(char letter) {
-  if (letter == 'C') return "device_type";
-  return letter == 'D' ? "vendor_id" : "product_code";
+  return fmt::format(
+      "the node is alive on the bus, but its SDO server does not answer{} does it need longer to "
+      "start (raise `boot_timeout_ms` of the node)? Is a second node or a second master using node "
+      "id {}?",
+      channel.empty() ? ":" : "." + channel + ". Otherwise:", node.id.value());
 }
 
 std::string against_identity(const NodePlan& node, const BootFailure& failure) {
-  const std::string id = std::to_string(int{node.id.value()});
-  switch (failure.letter) {
-    case 'N':
-      return "the device has another firmware or hardware revision than " + node.description_file +
-             ": use the EDS of this revision, or drop `revision_number` from the network file if "
-             "the difference does not matter";
-    case 'O':
-      return "a device of the same type with another serial number is connected: enter this serial "
-             "number in the network file, or drop `serial_number` there";
-    default:
-      return "a device other than the configured one answers at node id " + id +
-             ": check the node ids and the wiring, name the EDS of the connected device instead "
-             "of " +
-             node.description_file + ", or correct `" + identity_key(failure.letter) +
-             "` where the network file gives it";
+  if (failure.letter == 'N') {
+    return "the device has another firmware or hardware revision than " + node.description_file +
+           ": use the EDS of this revision, or drop `revision_number` from the network file if the "
+           "difference does not matter";
   }
+  if (failure.letter == 'O') {
+    return "a device of the same type with another serial number is connected: enter this serial "
+           "number in the network file, or drop `serial_number` there";
+  }
+  const char* const key = failure.letter == 'C'   ? "device_type"
+                          : failure.letter == 'D' ? "vendor_id"
+                                                  : "product_code";
+  return fmt::format(
+      "a device other than the configured one answers at node id {}: check the node ids and the "
+      "wiring, name the EDS of the connected device instead of {}, or correct `{}` where the "
+      "network file gives it",
+      node.id.value(), node.description_file, key);
 }
 
 std::string against_mismatch(const NodePlan& node, const BootStep& step,
@@ -144,30 +139,27 @@ std::string against_counter() {
 std::string against_long_answer(const BootStep& step, const BootFailure& failure) {
   const std::string object = to_string(failure.object);
   if (!step.value.empty() && step.value.size() < request_bytes) {
-    return "the device sends more than " + std::to_string(request_bytes) + " bytes for " + object +
-           ", which has " + std::to_string(step.value.size()) +
-           ": its SDO server is faulty. Look for other firmware, or leave the object out of the "
-           "network file";
+    return fmt::format(
+        "the device sends more than {} bytes for {}, which has {}: its SDO server is faulty. Look "
+        "for other firmware, or leave the object out of the network file",
+        request_bytes, object, step.value.size());
   }
-  return object + " is longer than " + std::to_string(request_bytes) +
-         " bytes: remove it from the network file";
+  return fmt::format("{} is longer than {} bytes: remove it from the network file", object,
+                     request_bytes);
 }
 
 /// For an answer with fewer bytes than its command specifier needs. CiA 301, 7.2.4.3.1 demands
 /// eight bytes.
 std::string against_short_answer(const BootFailure& failure) {
-  Frame frame;
-  frame.length = failure.received_size;
-  frame.data = failure.received;
-  const std::string faulty =
-      ": its SDO server is faulty. Look for other firmware, or for whatever cuts the frames on "
-      "their way";
-  if (frame.length == 0 && failure.empty_answer) {
-    return "the device answers with an empty frame instead of 8 bytes" + faulty;
-  }
-  if (frame.length == 0 || frame.length >= sdo_answer_bytes(frame)) return {};
-  return "the device answers with " + std::to_string(int{frame.length}) +
-         " bytes instead of 8, so that a part of the answer is missing" + faulty;
+  const Frame frame{.id = {}, .length = failure.received_size, .data = failure.received};
+  const bool empty = frame.length == 0 && failure.empty_answer;
+  if (!empty && (frame.length == 0 || frame.length >= sdo_answer_bytes(frame))) return {};
+  return fmt::format(
+      "the device answers with {}: its SDO server is faulty. Look for other firmware, or for "
+      "whatever cuts the frames on their way",
+      empty ? "an empty frame instead of 8 bytes"
+            : fmt::format("{} bytes instead of 8, so that a part of the answer is missing",
+                          frame.length));
 }
 
 /// The device has answered a request after its time-out.
@@ -184,24 +176,27 @@ bool is_late(const NodePlan& node, const BootFailure& failure) noexcept {
 /// The sentence about late answers that came before the device became silent.
 std::string about_earlier_lateness(const NodePlan& node, const BootFailure& failure) {
   if (!was_late(node, failure)) return {};
-  return " Before that, the device has answered a request after " + time_text(failure.late) +
-         ": raise `sdo_timeout_ms` of this node, too, which is " + time_text(node.sdo_timeout) +
-         " now";
+  return fmt::format(
+      " Before that, the device has answered a request after {}: raise `sdo_timeout_ms` of this "
+      "node, too, which is {} now",
+      time_text(failure.late), time_text(node.sdo_timeout));
 }
 
 /// For a server that answers late, with too few bytes, or with another object than the requested
 /// one.
 std::string against_odd_answers(const NodePlan& node, const BootFailure& failure) {
   if (is_late(node, failure)) {
-    return "the device answers after " + time_text(failure.late) + ": raise `sdo_timeout_ms` of " +
-           "this node, which is " + time_text(node.sdo_timeout) + " now";
+    return fmt::format(
+        "the device answers after {}: raise `sdo_timeout_ms` of this node, which is {} now",
+        time_text(failure.late), time_text(node.sdo_timeout));
   }
   if (const std::string cut = against_short_answer(failure); !cut.empty()) return cut;
   if (!failure.answered) return {};
-  return "the device answers with " + to_string(*failure.answered) + " where " +
-         to_string(failure.object) +
-         " was requested: its SDO server is faulty (look for other firmware), or a second SDO "
-         "client uses this server at the same time (stop other masters and tools)";
+  return fmt::format(
+      "the device answers with {} where {} was requested: its SDO server is faulty (look for other "
+      "firmware), or a second SDO client uses this server at the same time (stop other masters and "
+      "tools)",
+      to_string(*failure.answered), to_string(failure.object));
 }
 
 /// For an answer that breaks the protocol, so that the master has ended the transfer.
@@ -255,10 +250,11 @@ std::string against_timeout(const BusPlan& plan, const NodePlan& node, const Boo
            "might act twice";
   }
   if (failure.downloading) {
-    return "the device needs longer than " + time_text(step.timeout) + " for " +
-           to_string(failure.object) +
-           " (flash memory takes seconds): raise `sdo_timeout_ms` of this node. The master did not "
-           "repeat the write, because the write might act twice";
+    return fmt::format(
+        "the device needs longer than {} for {} (flash memory takes seconds): raise "
+        "`sdo_timeout_ms` of this node. The master did not repeat the write, because the write "
+        "might act twice",
+        time_text(step.timeout), to_string(failure.object));
   }
   const std::string silence = against_silence(plan, node, failure);
   const std::string late = about_earlier_lateness(node, failure);
@@ -266,12 +262,12 @@ std::string against_timeout(const BusPlan& plan, const NodePlan& node, const Boo
 }
 
 std::string against_dead_node(const BootStep& step) {
-  return std::string{
-             "the node is kept running when the master starts (`reset: keep_alive`), but shows no "
-             "sign of life: at the next try the master reads it by SDO, again without a reset. "} +
-         (step.guarded ? "Set `guard_time` of this node, if the device can be guarded"
-                       : "Let the device keep its heartbeat (0x1017, stored with 0x1010)") +
-         ", or use `reset: communication` if the node may be reset";
+  return fmt::format(
+      "the node is kept running when the master starts (`reset: keep_alive`), but shows no sign of "
+      "life: at the next try the master reads it by SDO, again without a reset. {}, or use `reset: "
+      "communication` if the node may be reset",
+      step.guarded ? "Set `guard_time` of this node, if the device can be guarded"
+                   : "Let the device keep its heartbeat (0x1017, stored with 0x1010)");
 }
 
 /// The device has given an answer that tells something about its software.
@@ -283,20 +279,20 @@ bool reports_of_program(const BootFailure& failure) noexcept {
 
 std::string against_program(const NodePlan& node, const BootStep& step,
                             const BootFailure& failure) {
-  switch (failure.letter) {
-    case 'G':
-      return "the device does not report its software version in 1F56:01: drop `software_version` "
-             "from the network file";
-    case 'H':
-      return failure.running
-                 ? "the device runs other software than the network file requires, and the node is "
-                   "OPERATIONAL: stop the machine and reset the node (`takt nmt reset " +
-                       std::to_string(int{node.id.value()}) + "`), so that the master updates it"
-                 : "the device runs other software than the network file requires: name the file "
-                   "with `software_file`, so that the master loads it, or correct "
-                   "`software_version`";
-    default:
-      break;
+  if (failure.letter == 'G') {
+    return "the device does not report its software version in 1F56:01: drop `software_version` "
+           "from the network file";
+  }
+  if (failure.letter == 'H' && failure.running) {
+    return fmt::format(
+        "the device runs other software than the network file requires, and the node is "
+        "OPERATIONAL: stop the machine and reset the node (`takt nmt reset {}`), so that the "
+        "master updates it",
+        node.id.value());
+  }
+  if (failure.letter == 'H') {
+    return "the device runs other software than the network file requires: name the file with "
+           "`software_file`, so that the master loads it, or correct `software_version`";
   }
   if (failure.fault == SdoFault::none && failure.object.index == 0x1F56) {
     return "the program was loaded, but its version differs from `software_version`: correct "
@@ -317,11 +313,11 @@ std::string against_program(const NodePlan& node, const BootStep& step,
 }
 
 std::string against_running_node(const NodePlan& node, const BootFailure& failure) {
-  return "the node was OPERATIONAL already, so the master did not configure it, but " +
-         to_string(failure.object) +
-         " differs from the network file, and the PDOs can't be used: stop the machine and let the "
-         "master configure the node (`takt nmt reset-comm " +
-         std::to_string(int{node.id.value()}) + "`), or correct the network file";
+  return fmt::format(
+      "the node was OPERATIONAL already, so the master did not configure it, but {} differs from "
+      "the network file, and the PDOs can't be used: stop the machine and let the master configure "
+      "the node (`takt nmt reset-comm {}`), or correct the network file",
+      to_string(failure.object), node.id.value());
 }
 
 }  // namespace
@@ -346,17 +342,9 @@ std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure&
     case SdoFault::cancelled:
       return "the node restarts again and again during its boot: check the power supply, the "
              "watchdog of the device, and whether another master resets the node";
-    case SdoFault::no_such_node:
-    case SdoFault::refused:
-    case SdoFault::no_such_pdo:
-    case SdoFault::not_exchanging:
-    case SdoFault::lss_failed:
-    case SdoFault::axes_not_stopped:
-    case SdoFault::lss_refused:
-    case SdoFault::wrong_length:
-      break;
+    default:  // no step of a boot ends in this way
+      return {};
   }
-  return {};
 }
 
 }  // namespace takt

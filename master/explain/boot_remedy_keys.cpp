@@ -1,8 +1,9 @@
-#include "master/explain/boot_remedy_keys.hpp"
-
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
 #include <string_view>
+
+#include "master/explain/boot_remedy.hpp"
 
 namespace takt {
 namespace {
@@ -42,35 +43,28 @@ constexpr bool is_communication(std::uint16_t index) noexcept {
 }
 
 std::string_view pdo_key(ObjectKey object) noexcept {
-  switch (object.sub) {
-    case 1:
-      return "cob_id";
-    case 2:
-      return "transmission";
-    case 3:
-      return "inhibit_time";
-    case 5:
-      return object.index < 0x1800 ? "event_deadline" : "event_timer";
-    case 6:
-      return "sync_start";
-    default:
-      return "";
-  }
+  constexpr std::string_view keys[] = {"", "cob_id", "transmission", "inhibit_time",
+                                       "", "",       "sync_start"};
+  if (object.sub == 5) return object.index < 0x1800 ? "event_deadline" : "event_timer";
+  return object.sub < std::size(keys) ? keys[object.sub] : "";
 }
 
 std::string against_refused_pdo(ObjectKey object) {
   const std::string pdo =
-      (object.index < 0x1800 ? "RPDO" : "TPDO") + std::to_string((object.index & 0x1FFU) + 1);
+      fmt::format("{}{}", object.index < 0x1800 ? "RPDO" : "TPDO", (object.index & 0x1FFU) + 1);
   if (object.sub == 1) {
-    return "the device does not let " + pdo +
-           " be switched off or moved to another COB-ID, so its mapping can't be changed either: "
-           "leave `cob_id` and `mapping` of " +
-           pdo + " out, so that the settings of the device are used";
+    return fmt::format(
+        "the device does not let {0} be switched off or moved to another COB-ID, so its mapping "
+        "can't be changed either: leave `cob_id` and `mapping` of {0} out, so that the settings of "
+        "the device are used",
+        pdo);
   }
-  const std::string key{pdo_key(object)};
+  const std::string_view key = pdo_key(object);
   if (key.empty()) return {};
-  return "the device does not accept this `" + key + "` of " + pdo +
-         ": look up the allowed values in its manual, or leave `" + key + "` out";
+  return fmt::format(
+      "the device does not accept this `{0}` of {1}: look up the allowed values in its manual, or "
+      "leave `{0}` out",
+      key, pdo);
 }
 
 }  // namespace
@@ -80,10 +74,10 @@ std::string against_refused_setting(const NodePlan& node, const BootFailure& fai
   if (is_communication(failure.object.index)) return against_refused_pdo(failure.object);
   const auto found = std::ranges::find(settings, failure.object.index, &Setting::index);
   if (found == settings.end()) return {};
-  return "`" + std::string{found->key} + "` sets " + to_string(failure.object) +
-         ": look up which values the device accepts (`takt sdo read " +
-         std::to_string(int{node.id.value()}) + " " + to_string(failure.object) +
-         "` shows the present value), or " + std::string{found->without};
+  return fmt::format(
+      "`{0}` sets {1}: look up which values the device accepts (`takt sdo read {2} {1}` shows the "
+      "present value), or {3}",
+      found->key, to_string(failure.object), node.id.value(), found->without);
 }
 
 }  // namespace takt

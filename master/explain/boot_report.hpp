@@ -17,9 +17,6 @@ namespace takt {
 /// the EDS says, and what the user can try.
 std::string explain(const BusPlan& plan, std::size_t node_index, const BootFailure& failure);
 
-/// Says what the user can try against the cause of a failed boot.
-std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure& failure);
-
 /// Describes the error status of CiA 302-2 in words, for example "vendor id differs".
 std::string_view letter_text(char letter) noexcept;
 

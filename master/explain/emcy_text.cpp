@@ -137,6 +137,12 @@ std::string_view emcy_text(std::uint16_t code) noexcept {
       ->text;
 }
 
+std::string_view emcy_text(const NodePlan* node, std::uint16_t code) noexcept {
+  if (node == nullptr) return emcy_text(code);
+  const auto own = std::ranges::find(node->emcy_texts, code, &EmcyText::code);
+  return own == node->emcy_texts.end() ? emcy_text(code) : std::string_view{own->text};
+}
+
 std::string error_register_text(std::uint8_t error_register) {
   std::string text;
   for (std::size_t bit = 0; bit < register_bits.size(); ++bit) {

@@ -1,21 +1,18 @@
-#include "master/explain/limit_text.hpp"
-
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cstdio>
+#include <fmt/format.h>
 #include <string_view>
 
 #include "eds_parser/table/limit_names.hpp"
+#include "eds_parser/table/raw_number.hpp"
+#include "master/explain/event_text.hpp"
 #include "master/wire/bytes.hpp"
 
 namespace takt {
 namespace {
 
 std::string number(double value, const std::string& unit) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data() + (unit.empty() ? std::string{} : " " + unit);
+  return fmt::format("{:.6g}{}{}", value, unit.empty() ? "" : " ", unit);
 }
 
 /// The unit of the line that limits this signal in this way.
@@ -26,13 +23,6 @@ std::string unit_of(const BusPlan& plan, SignalIndex signal, LimitKind kind) {
     }
   }
   return {};
-}
-
-double raw_number(const Signal& signal, std::int64_t raw) {
-  if (signal.type == DataType::real32) {
-    return double{std::bit_cast<float>(static_cast<std::uint32_t>(raw))};
-  }
-  return signal.type == DataType::real64 ? std::bit_cast<double>(raw) : static_cast<double>(raw);
 }
 
 /// A limit as text: `-1.5 .. 1.5 rad`, `from 0 rad`, `2 rad/s`.
@@ -67,36 +57,38 @@ std::string limit_text(const BusPlan& plan, const Event& event) {
   const auto measured = std::bit_cast<float>(load_le<std::uint32_t>(bytes));
   const auto limit = std::bit_cast<float>(load_le<std::uint32_t>(bytes.subspan(4)));
   const std::string unit = unit_of(plan, static_cast<SignalIndex>(index), kind);
-  const double commanded = raw_number(signal, event.value) * signal.scale + signal.offset;
-  const std::string output = signal.name + " (" + to_string(signal.object) + ")";
-  const std::string limits = " is outside its limits: " + std::string{name(kind)} + " " +
-                             number(double{measured}, unit) + ", limit " +
-                             number(double{limit}, unit);
+  const double commanded = number_of(signal.type, event.value) * signal.scale + signal.offset;
+  const std::string output = fmt::format("{} ({})", signal.name, to_string(signal.object));
+  const std::string limits =
+      fmt::format("is outside its limits: {} {}, limit {}; takt does not send", name(kind),
+                  number(double{measured}, unit), number(double{limit}, unit));
   if ((event.detail & held_set_point) != 0) {
-    return "the set-point " + number(commanded, signal.unit) + " that " + output + " still has" +
-           limits +
-           "; takt does not send the command that would make the axis follow it, and the outputs "
-           "of "
-           "the node take their fallback until a set-point is within the limits again";
+    return fmt::format(
+        "the set-point {} that {} still has {} the command that would make the axis follow it, and "
+        "the outputs of the node take their fallback until a set-point is within the limits again",
+        number(commanded, signal.unit), output, limits);
   }
-  return "command " + number(commanded, signal.unit) + " to " + output + limits +
-         "; takt does not send it, and the outputs of the node take their fallback until a command "
-         "is within the limits again";
+  return fmt::format(
+      "command {} to {} {} it, and the outputs of the node take their fallback until a command is "
+      "within the limits again",
+      number(commanded, signal.unit), output, limits);
 }
 
 std::string read_limit_text(const BusPlan& plan, const Event& event) {
   const std::size_t place = event.detail >> 8U;
   if (place >= plan.limits.lines.size()) return "a limit of the drive";
   const LimitLine& line = plan.limits.lines[place];
-  const std::string key{name(line.kind)};
-  const std::string axis = line.axis > 1 ? " of axis " + std::to_string(line.axis) : "";
-  const std::string what = key + axis + " " + read_value(line, event.value) +
-                           ", read from the device (" + to_string(line.object) + ")";
+  const std::string_view key = name(line.kind);
+  const std::string what = fmt::format("{}{} {}, read from the device ({})", key,
+                                       line.axis > 1 ? fmt::format(" of axis {}", line.axis) : "",
+                                       read_value(line, event.value), to_string(line.object));
   if (static_cast<LimitVerdict>(event.detail & 0xFFU) == LimitVerdict::good) {
     return "limit: " + what;
   }
-  return "no limit: " + what + ", is implausible and is ignored; write `limits: {" + key +
-         ": ...}` in the network file";
+  return fmt::format(
+      "no limit: {}, is implausible and is ignored; write `limits: {{{}: ...}}` in the network "
+      "file",
+      what, key);
 }
 
 }  // namespace takt

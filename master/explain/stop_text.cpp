@@ -1,12 +1,10 @@
-#include "master/explain/stop_text.hpp"
-
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
+#include <fmt/format.h>
 
 #include "master/core/network/axis_stop.hpp"
 #include "master/explain/boot_report.hpp"
+#include "master/explain/event_text.hpp"
 #include "master/explain/report_text.hpp"
 #include "master/wire/sdo_abort.hpp"
 
@@ -17,12 +15,6 @@ constexpr unsigned axis_step = 0x800;
 constexpr std::uint32_t by_position = 1U << 16U;
 
 unsigned axis_number(const Event& event) { return event.detail >> 8U & 0xFF; }
-
-std::string number_text(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
 
 /// The units of this axis, or nullptr if the plan has no such axis.
 const AxisPlan* axis_of(const BusPlan& plan, const Event& event) {
@@ -41,21 +33,20 @@ std::string velocity_text(const BusPlan& plan, const Event& event) {
   const RawUnit own = axis == nullptr ? RawUnit{}
                       : differences   ? axis->position_unit
                                       : axis->velocity_unit;
-  if (own.unit.empty()) return number_text(raw) + (differences ? " counts/s" : " (606C)");
+  if (own.unit.empty()) return fmt::format("{:.3g}{}", raw, differences ? " counts/s" : " (606C)");
   const double speed = std::abs(raw * own.scale);
   const std::string unit = own.unit + (differences ? "/s" : "");
-  if (unit == "m/s" && speed < 1) return number_text(speed * 1000) + " mm/s";
-  return number_text(speed) + " " + unit;
+  if (unit == "m/s" && speed < 1) return fmt::format("{:.3g} mm/s", speed * 1000);
+  return fmt::format("{:.3g} {}", speed, unit);
 }
 
 std::string refusal_text(const Event& event) {
   const auto code = static_cast<std::uint32_t>(event.value);
   const auto index = static_cast<std::uint16_t>(0x6041 + axis_number(event) * axis_step);
-  const std::string object =
-      "statusword " + to_string(ObjectKey{index, 0}) + " (" + abort_digits(code) + ")";
-  const bool missing = code == abort_code::no_object;
-  return (missing ? "reports that it has no " : "refuses to send its ") + object +
-         ": takt does not know whether the drive is enabled";
+  return fmt::format(
+      "{} statusword {} ({}): takt does not know whether the drive is enabled",
+      code == abort_code::no_object ? "reports that it has no" : "refuses to send its",
+      to_string(ObjectKey{index, 0}), abort_digits(code));
 }
 
 }  // namespace
@@ -97,21 +88,21 @@ std::string axis_stop_text(const BusPlan& plan, const Event& event) {
 
 std::string named_axis_stop_text(const BusPlan& plan, const Event& event) {
   const NodePlan* const node = plan.find(event.node);
-  std::string text = node == nullptr ? "node " + std::to_string(int{event.node}) : node->name;
-  if (const unsigned axis = axis_number(event); axis != 0) {
-    text += " axis " + std::to_string(axis + 1);
-  }
+  const unsigned axis = axis_number(event);
   const auto verdict = static_cast<AxisVerdict>(event.detail & 0xFF);
   const bool sentence = verdict != AxisVerdict::silent && verdict != AxisVerdict::lost;
-  return text + (sentence ? " " : ": ") + axis_stop_text(plan, event);
+  return fmt::format("{}{}{} {}", node == nullptr ? fmt::format("node {}", event.node) : node->name,
+                     axis == 0 ? "" : fmt::format(" axis {}", axis + 1), sentence ? "" : ":",
+                     axis_stop_text(plan, event));
 }
 
 std::string coasting_text(const Event& event) {
   const std::string object = to_string(quick_stop_option(static_cast<unsigned>(event.value)));
-  return "a quick stop disables the drive at once, and the axis coasts, because " + object +
-         " is 0 in the device: an ordered stop confirms the axis only if it stood still before; "
-         "write `sdo: [{index: 0x" +
-         object.substr(0, 4) + ", value: 2}]` for a ramp";
+  return fmt::format(
+      "a quick stop disables the drive at once, and the axis coasts, because {} is 0 in the "
+      "device: an ordered stop confirms the axis only if it stood still before; write `sdo: "
+      "[{{index: 0x{}, value: 2}}]` for a ramp",
+      object, object.substr(0, 4));
 }
 
 std::string still_armed_text(const Event& event) {
@@ -120,10 +111,13 @@ std::string still_armed_text(const Event& event) {
   std::string why = "did not confirm the write";
   if (event.value < 0) why = "gave no answer within " + time_text(Time{-event.value});
   if (event.value > 0) {
-    why = "refused the write (" + abort_digits(static_cast<std::uint32_t>(event.value)) + ")";
+    why = fmt::format("refused the write ({})",
+                      abort_digits(static_cast<std::uint32_t>(event.value)));
   }
-  return "the write that disarms " + to_string(object) + " failed, because the device " + why +
-         ": it may report the loss of its master";
+  return fmt::format(
+      "the write that disarms {} failed, because the device {}: it may report the loss of its "
+      "master",
+      to_string(object), why);
 }
 
 }  // namespace takt

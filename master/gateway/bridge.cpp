@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "master/explain/boot_report.hpp"
-#include "master/explain/stop_text.hpp"
+#include "master/explain/event_text.hpp"
 #include "master/gateway/message/pdo_messages.hpp"
 #include "master/gateway/message/sync_message.hpp"
 #include "master/lcm/channel_names.hpp"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "master/explain/boot_report.hpp"
-#include "master/explain/stop_text.hpp"
+#include "master/explain/event_text.hpp"
 
 namespace takt {
 namespace {

@@ -1,10 +1,9 @@
-#include "master/explain/frame/emergency_text.hpp"
-
 #include <array>
 #include <fmt/format.h>
 
 #include "master/explain/emcy_text.hpp"
 #include "master/explain/frame/frame_value_text.hpp"
+#include "master/explain/frame/service_texts.hpp"
 #include "master/wire/emcy.hpp"
 
 namespace takt {

@@ -1,23 +1,18 @@
 #include "master/explain/frame/error_control_text.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <utility>
 
 namespace takt {
 namespace {
 
 std::string state_text(unsigned state) {
-  switch (state) {
-    case 0:
-      return "boot-up";
-    case 4:
-      return "stopped";
-    case 5:
-      return "operational";
-    case 127:
-      return "pre-operational";
-    default:
-      return fmt::format("unknown state 0x{:02X}", state);
-  }
+  constexpr std::pair<unsigned, std::string_view> states[] = {
+      {0, "boot-up"}, {4, "stopped"}, {5, "operational"}, {127, "pre-operational"}};
+  const auto found = std::ranges::find(states, state, [](const auto& row) { return row.first; });
+  if (found != std::end(states)) return std::string{found->second};
+  return fmt::format("unknown state 0x{:02X}", state);
 }
 
 }  // namespace

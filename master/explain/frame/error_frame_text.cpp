@@ -1,5 +1,6 @@
 #include "master/explain/frame/error_frame_text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fmt/format.h>
 #include <string_view>
@@ -17,6 +18,10 @@ constexpr std::uint32_t counters = 0x200;
 
 struct Bit {
   std::uint32_t mask;
+  std::string_view text;
+};
+struct Position {
+  std::uint8_t code;
   std::string_view text;
 };
 
@@ -47,37 +52,20 @@ constexpr std::array<Bit, 8> protocol_bits{{
     {0x40, "active error announcement"},
     {0x80, "while sending"},
 }};
-
-std::string_view position_text(std::uint8_t position) {
-  switch (position) {
-    case 0x03:
-      return "at the start of the frame";
-    case 0x02:
-    case 0x06:
-    case 0x07:
-    case 0x0E:
-    case 0x0F:
-      return "in the identifier";
-    case 0x0A:
-      return "in the data";
-    case 0x0B:
-      return "in the length";
-    case 0x08:
-      return "in the CRC";
-    case 0x18:
-      return "in the CRC delimiter";
-    case 0x19:
-      return "in the acknowledge slot";
-    case 0x1B:
-      return "in the acknowledge delimiter";
-    case 0x1A:
-      return "at the end of the frame";
-    case 0x12:
-      return "between two frames";
-    default:
-      return {};
-  }
-}
+constexpr Position positions[] = {{0x03, "at the start of the frame"},
+                                  {0x02, "in the identifier"},
+                                  {0x06, "in the identifier"},
+                                  {0x07, "in the identifier"},
+                                  {0x0E, "in the identifier"},
+                                  {0x0F, "in the identifier"},
+                                  {0x0A, "in the data"},
+                                  {0x0B, "in the length"},
+                                  {0x08, "in the CRC"},
+                                  {0x18, "in the CRC delimiter"},
+                                  {0x19, "in the acknowledge slot"},
+                                  {0x1B, "in the acknowledge delimiter"},
+                                  {0x1A, "at the end of the frame"},
+                                  {0x12, "between two frames"}};
 
 template <std::size_t n>
 std::string bits_text(std::uint32_t value, const std::array<Bit, n>& bits) {
@@ -90,8 +78,10 @@ std::string bits_text(std::uint32_t value, const std::array<Bit, n>& bits) {
 
 std::string protocol_text(std::uint8_t what, std::uint8_t where) {
   std::string text = bits_text(what, protocol_bits);
-  const std::string_view position = position_text(where);
-  if (!position.empty()) text += (text.empty() ? "" : ", ") + std::string{position};
+  const auto position = std::ranges::find(positions, where, &Position::code);
+  if (position != std::end(positions)) {
+    text.append(text.empty() ? "" : ", ").append(position->text);
+  }
   return text.empty() ? "protocol error" : "protocol error: " + text;
 }
 

@@ -112,12 +112,9 @@ std::string communication_object_name(ObjectKey key) {
 }
 
 std::string FrameNames::node(unsigned id) const {
-  if (plan_ != nullptr) {
-    for (const NodePlan& node : plan_->nodes) {
-      if (node.id.value() == id) return node.name;
-    }
-    if (id == plan_->master_id.value()) return "master";
-  }
+  const NodePlan* const planned = plan_ == nullptr ? nullptr : plan_->find(id);
+  if (planned != nullptr) return planned->name;
+  if (plan_ != nullptr && id == plan_->master_id.value()) return "master";
   return fmt::format("node {}", id);
 }
 
@@ -144,14 +141,7 @@ DataType FrameNames::type(unsigned node, ObjectKey key) const {
 }
 
 std::string_view FrameNames::emcy(unsigned node, std::uint16_t code) const {
-  if (plan_ != nullptr) {
-    for (const NodePlan& known : plan_->nodes) {
-      if (known.id.value() != node) continue;
-      const auto own = std::ranges::find(known.emcy_texts, code, &EmcyText::code);
-      if (own != known.emcy_texts.end()) return own->text;
-    }
-  }
-  return emcy_text(code);
+  return emcy_text(plan_ == nullptr ? nullptr : plan_->find(node), code);
 }
 
 std::optional<NodeId> FrameNames::emcy_sender(CobId id) const {

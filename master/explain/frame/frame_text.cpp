@@ -4,10 +4,8 @@
 #include <chrono>
 #include <fmt/format.h>
 
-#include "master/explain/frame/emergency_text.hpp"
 #include "master/explain/frame/frame_value_text.hpp"
-#include "master/explain/frame/lss_text.hpp"
-#include "master/explain/frame/pdo_text.hpp"
+#include "master/explain/frame/service_texts.hpp"
 #include "master/wire/nmt.hpp"
 #include "master/wire/time_of_day.hpp"
 
@@ -15,19 +13,15 @@ namespace takt {
 namespace {
 
 std::string_view command_text(NmtCommand command) {
-  switch (command) {
-    case NmtCommand::start:
-      return "start";
-    case NmtCommand::stop:
-      return "stop";
-    case NmtCommand::enter_preoperational:
-      return "enter pre-operational";
-    case NmtCommand::reset_node:
-      return "reset";
-    case NmtCommand::reset_communication:
-      return "reset communication";
-  }
-  return "unknown";
+  using enum NmtCommand;
+  constexpr std::pair<NmtCommand, std::string_view> texts[] = {
+      {start, "start"},
+      {stop, "stop"},
+      {enter_preoperational, "enter pre-operational"},
+      {reset_node, "reset"},
+      {reset_communication, "reset communication"}};
+  const auto found = std::ranges::find(texts, command, [](const auto& row) { return row.first; });
+  return found == std::end(texts) ? "unknown" : found->second;
 }
 
 /// Describes TIME_OF_DAY: milliseconds since midnight (28 bits) and days since 1984-01-01. CiA 301,
@@ -48,22 +42,12 @@ std::string time_text(const Frame& frame) {
 /// Describes the frames with which several masters agree on the active one. CiA 302-2, flying
 /// master.
 std::string_view master_text(std::uint32_t id) {
-  switch (id) {
-    case 0x071:
-      return "the active master answers";
-    case 0x072:
-      return "negotiation: a master offers itself";
-    case 0x073:
-      return "which master is active?";
-    case 0x074:
-      return "a master answers that it is present";
-    case 0x075:
-      return "is there a master?";
-    case 0x076:
-      return "a new negotiation is forced";
-    default:
-      return {};
-  }
+  constexpr std::uint32_t first = 0x071;
+  constexpr std::string_view texts[] = {
+      "the active master answers", "negotiation: a master offers itself",
+      "which master is active?",   "a master answers that it is present",
+      "is there a master?",        "a new negotiation is forced"};
+  return id - first < std::size(texts) ? texts[id - first] : std::string_view{};
 }
 
 }  // namespace

@@ -1,54 +1,31 @@
 #include "master/explain/frame/frame_value_text.hpp"
 
-#include <bit>
+#include <algorithm>
 #include <fmt/format.h>
 
+#include "eds_parser/table/raw_number.hpp"
 #include "master/wire/bytes.hpp"
 
 namespace takt {
 namespace {
 
-std::int64_t signed_value(std::uint64_t raw, unsigned bits) {
-  const unsigned unused = 64 - bits;
-  return static_cast<std::int64_t>(raw << unused) >> unused;
-}
-
 std::string number_text(DataType type, unsigned bits, std::uint64_t raw) {
-  if (type == DataType::real32) {
-    return fmt::format("{:g}", std::bit_cast<float>(static_cast<std::uint32_t>(raw)));
-  }
-  if (type == DataType::real64) return fmt::format("{:g}", std::bit_cast<double>(raw));
-  if (is_signed(type)) return fmt::format("{}", signed_value(raw, bits));
-  return fmt::format("{}", raw);
+  if (is_real(type)) return fmt::format("{:g}", number_of(type, static_cast<std::int64_t>(raw)));
+  return is_signed(type) ? fmt::format("{}", sign_extended(raw, bits)) : fmt::format("{}", raw);
 }
 
-/// Returns true for objects of CiA 301, CiA 402 and CiA 401 whose bits are flags.
+/// Returns true for objects of CiA 301, CiA 402 and CiA 401 (digital I/O) whose bits are flags.
 bool is_bit_field(ObjectKey object) {
-  switch (object.index) {
-    case 0x1001:
-    case 0x1002:
-    case 0x6040:
-    case 0x6041:
-    case 0x60FD:
-    case 0x60FE:
-      return true;
-    default:
-      return object.index >= 0x6000 && object.index <= 0x6380;  // CiA 401: digital I/O
-  }
+  return object.index == 0x1001 || object.index == 0x1002 ||
+         (object.index >= 0x6000 && object.index <= 0x6380);
 }
 
 bool printable(std::span<const std::uint8_t> bytes) {
-  for (const std::uint8_t byte : bytes) {
-    if (byte < 0x20 || byte == 0x7F) return false;
-  }
-  return !bytes.empty();
+  const auto control = [](std::uint8_t byte) { return byte < 0x20 || byte == 0x7F; };
+  return !bytes.empty() && std::ranges::none_of(bytes, control);
 }
 
 }  // namespace
-
-std::string bytes_text(std::span<const std::uint8_t> bytes) {
-  return fmt::format("{:02X}", fmt::join(bytes, " "));
-}
 
 std::string value_text(DataType type, std::span<const std::uint8_t> bytes) {
   while (type == DataType::visible_string && !bytes.empty() && bytes.back() == 0) {
@@ -70,7 +47,7 @@ std::string value_text(DataType type, std::span<const std::uint8_t> bytes) {
 std::string value_text(const Signal& signal, std::uint64_t raw) {
   if (!signal.unit.empty() && !is_real(signal.type)) {
     const double counts = is_signed(signal.type)
-                              ? static_cast<double>(signed_value(raw, signal.bits))
+                              ? static_cast<double>(sign_extended(raw, signal.bits))
                               : static_cast<double>(raw);
     return fmt::format("{:g} {}", counts * signal.scale + signal.offset, signal.unit);
   }

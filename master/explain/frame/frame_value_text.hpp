@@ -4,11 +4,9 @@
 #include <string>
 
 #include "eds_parser/table/bus_plan.hpp"
+#include "master/explain/report_text.hpp"
 
 namespace takt {
-
-/// Returns bytes in hex, `37 06`.
-std::string bytes_text(std::span<const std::uint8_t> bytes);
 
 /// Returns the value of an object as its type reads it: `1591 (0x637)`, `-5`, `1.5` or `"Drive"`.
 /// The bytes begin with the least significant one. Returns bytes_text() if they do not fit the

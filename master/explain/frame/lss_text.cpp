@@ -1,10 +1,9 @@
-#include "master/explain/frame/lss_text.hpp"
-
 #include <array>
 #include <fmt/format.h>
 #include <string_view>
 
 #include "master/explain/frame/frame_value_text.hpp"
+#include "master/explain/frame/service_texts.hpp"
 #include "master/wire/bytes.hpp"
 #include "master/wire/lss.hpp"
 

@@ -1,8 +1,7 @@
-#include "master/explain/frame/object_meaning.hpp"
-
 #include <fmt/format.h>
 #include <string_view>
 
+#include "master/explain/frame/service_texts.hpp"
 #include "master/wire/bytes.hpp"
 
 namespace takt {
@@ -12,8 +11,10 @@ constexpr std::uint32_t bit_31 = 0x8000'0000;
 constexpr std::uint32_t bit_30 = 0x4000'0000;
 constexpr std::uint32_t bit_29 = 0x2000'0000;
 
-bool in(std::uint16_t index, std::uint16_t first, std::uint16_t last) {
-  return index >= first && index <= last;
+bool is_rpdo(std::uint16_t index) { return index >= 0x1400 && index <= 0x15FF; }
+bool is_tpdo(std::uint16_t index) { return index >= 0x1800 && index <= 0x19FF; }
+bool is_mapping(std::uint16_t index) {
+  return (index >= 0x1600 && index <= 0x17FF) || (index >= 0x1A00 && index <= 0x1BFF);
 }
 
 std::string identifier(std::uint32_t raw) {
@@ -44,24 +45,12 @@ std::string transmission(unsigned type) {
 }
 
 std::string nmt_request(const FrameNames& names, unsigned target, unsigned value) {
-  const auto command = [value]() -> std::string_view {
-    switch (value) {
-      case 4:
-        return "stop";
-      case 5:
-        return "start";
-      case 6:
-        return "reset";
-      case 7:
-        return "reset communication of";
-      case 127:
-        return "enter pre-operational:";
-      default:
-        return {};
-    }
-  }();
-  if (command.empty()) return {};
-  return fmt::format("{} {}", command, target >= 0x80 ? "all nodes" : names.node(target));
+  constexpr unsigned first = 4;
+  constexpr std::string_view commands[] = {"stop", "start", "reset", "reset communication of"};
+  const bool known = value >= first && value - first < std::size(commands);
+  if (!known && value != 127) return {};
+  return fmt::format("{} {}", known ? commands[value - first] : "enter pre-operational:",
+                     target >= 0x80 ? "all nodes" : names.node(target));
 }
 
 std::string_view program_control(unsigned value) {
@@ -70,14 +59,12 @@ std::string_view program_control(unsigned value) {
 }
 
 std::string of_32_bits(const FrameNames& names, unsigned node, ObjectKey key, std::uint32_t raw) {
-  if (in(key.index, 0x1400, 0x15FF) && key.sub == 1) return pdo_cob_id(raw, false);
-  if (in(key.index, 0x1800, 0x19FF) && key.sub == 1) return pdo_cob_id(raw, true);
-  if ((in(key.index, 0x1600, 0x17FF) || in(key.index, 0x1A00, 0x1BFF)) && key.sub != 0) {
-    return mapping_entry(names, node, raw);
-  }
-  if (in(key.index, 0x1200, 0x12FF) && (key.sub == 1 || key.sub == 2)) {
+  const bool is_channel = key.index >= 0x1200 && key.index <= 0x12FF;
+  if (is_tpdo(key.index) && key.sub == 1) return pdo_cob_id(raw, true);
+  if ((is_rpdo(key.index) && key.sub == 1) || (is_channel && (key.sub == 1 || key.sub == 2))) {
     return pdo_cob_id(raw, false);
   }
+  if (is_mapping(key.index) && key.sub != 0) return mapping_entry(names, node, raw);
   switch (key.index) {
     case 0x1005:
       return identifier(raw) + ((raw & bit_30) != 0 ? ", produces SYNC" : "");
@@ -105,11 +92,10 @@ std::string object_meaning(const FrameNames& names, unsigned node, ObjectKey key
                            std::span<const std::uint8_t> bytes) {
   if (bytes.size() == 4) return of_32_bits(names, node, key, load_le<std::uint32_t>(bytes));
   if (bytes.size() != 1) return {};
-  const bool pdo = in(key.index, 0x1400, 0x15FF) || in(key.index, 0x1800, 0x19FF);
-  if (pdo && key.sub == 2) return transmission(bytes[0]);
-  const bool mapping = in(key.index, 0x1600, 0x17FF) || in(key.index, 0x1A00, 0x1BFF);
-  if (mapping && key.sub == 0 && bytes[0] == 0xFE) return "SAM-MPDO";
-  if (mapping && key.sub == 0 && bytes[0] == 0xFF) return "DAM-MPDO";
+  const bool is_pdo = is_rpdo(key.index) || is_tpdo(key.index);
+  if (is_pdo && key.sub == 2) return transmission(bytes[0]);
+  if (is_mapping(key.index) && key.sub == 0 && bytes[0] == 0xFE) return "SAM-MPDO";
+  if (is_mapping(key.index) && key.sub == 0 && bytes[0] == 0xFF) return "DAM-MPDO";
   if (key.index == 0x1F82 && key.sub != 0) return nmt_request(names, key.sub, bytes[0]);
   if (key.index == 0x1F51 && key.sub != 0) return std::string{program_control(bytes[0])};
   return {};

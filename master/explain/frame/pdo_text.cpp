@@ -1,9 +1,8 @@
-#include "master/explain/frame/pdo_text.hpp"
-
 #include <fmt/format.h>
 #include <string_view>
 
 #include "master/explain/frame/frame_value_text.hpp"
+#include "master/explain/frame/service_texts.hpp"
 #include "master/wire/bytes.hpp"
 #include "master/wire/parameter_channel.hpp"
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "master/wire/bytes.hpp"
+
 namespace takt {
 namespace {
 
@@ -15,10 +17,7 @@ constexpr std::uint32_t extended_bit = 0x2000'0000;
 std::optional<CobId> cob_id(const DeviceTable& device, ObjectKey key) {
   const auto at = std::ranges::lower_bound(device.objects, key, {}, &DeviceObject::key);
   if (at == device.objects.end() || at->key != key || at->value.size() != 4) return {};
-  std::uint32_t raw = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    raw |= std::to_integer<std::uint32_t>(at->value[i]) << 8 * i;
-  }
+  const auto raw = load_le<std::uint32_t>(std::span{at->value});
   if ((raw & not_valid) != 0 || (raw & 0x1FFF'FFFF) == 0) return {};
   return (raw & extended_bit) != 0 ? CobId::extended(raw) : CobId::base(raw);
 }

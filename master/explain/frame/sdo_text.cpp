@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "master/explain/frame/frame_value_text.hpp"
-#include "master/explain/frame/object_meaning.hpp"
+#include "master/explain/frame/service_texts.hpp"
 #include "master/wire/sdo_abort.hpp"
 #include "master/wire/sdo_codec.hpp"
 

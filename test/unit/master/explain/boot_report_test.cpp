@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
+#include "master/explain/boot_remedy.hpp"
 #include "test/unit/master/core/network/network_rig.hpp"
 
 namespace takt {
