@@ -1,8 +1,9 @@
 #pragma once
-#include <optional>
+#include <expected>
 #include <string>
 
 #include "master/lcm/rate_limit.hpp"
+#include "master/linux/file_descriptor.hpp"
 
 namespace takt {
 
@@ -14,9 +15,9 @@ class AcceptPause {
   static constexpr Time length = std::chrono::milliseconds{100};
   static constexpr Time sentence_pause = std::chrono::seconds{10};
 
-  /// Takes the errno of an accept() that failed. Begins a pause if resources are missing. Returns
-  /// the reason, for people, at most once in `sentence_pause`.
-  std::optional<std::string> failed(int error, Time now);
+  /// Accepts a connection. Begins a pause if resources are missing. The error is the reason, for
+  /// people, at most once in `sentence_pause`; it is empty if there is nothing to report.
+  std::expected<FileDescriptor, std::string> accept(int listener, Time now);
   /// Returns true while the listening socket must be left alone.
   bool active(Time now) const noexcept { return now < until_; }
 

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "master/lcm/big_endian.hpp"
+
 namespace takt {
 namespace {
 
@@ -41,17 +43,9 @@ class ShapeWalk {
   }
 
   static std::size_t fixed_size(char kind) noexcept {
-    switch (kind) {
-      case 'b':
-        return 1;
-      case 'h':
-        return 2;
-      case 'i':
-      case 'f':
-        return 4;
-      default:
-        return 8;
-    }
+    if (kind == 'b') return 1;
+    if (kind == 'h') return 2;
+    return kind == 'i' || kind == 'f' ? 4 : 8;
   }
 
   // Each round takes at least one byte, so a huge count ends with the message.
@@ -72,9 +66,7 @@ class ShapeWalk {
 
   std::optional<std::uint32_t> take_length() noexcept {
     if (rest_.size() < 4) return std::nullopt;
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-      value = value << 8 | std::to_integer<std::uint32_t>(rest_[i]);
+    const auto value = load_be<std::uint32_t>(rest_);
     rest_ = rest_.subspan(4);
     if (value > 0x7FFF'FFFF) return std::nullopt;
     return value;

@@ -1,4 +1,5 @@
 #pragma once
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <expected>
@@ -19,6 +20,7 @@
 #include <takt/transfer_t.hpp>
 #include <vector>
 
+#include "master/lcm/big_endian.hpp"
 #include "master/lcm/message_shape.hpp"
 
 namespace takt {
@@ -49,42 +51,44 @@ std::string daemon_schema_text(std::int16_t schema);
 
 /// Fingerprint of a type in schema 1; 0 if the type has not changed since.
 template <class T>
-inline constexpr std::uint64_t fingerprint_of_schema_1 = 0;
-template <>
-inline constexpr std::uint64_t fingerprint_of_schema_1<command_t> = 0xE6CF45B76FC2022E;
-template <>
-inline constexpr std::uint64_t fingerprint_of_schema_1<image_t> = 0x802677B48765DA81;
-template <>
-inline constexpr std::uint64_t fingerprint_of_schema_1<status_t> = 0xB1E043970713C28C;
+inline constexpr std::uint64_t fingerprint_of_schema_1 =
+    std::same_as<T, command_t>  ? 0xE6CF45B76FC2022E
+    : std::same_as<T, image_t>  ? 0x802677B48765DA81
+    : std::same_as<T, status_t> ? 0xB1E043970713C28C
+                                : 0;
 
 /// Layout of the bytes of a type, see has_shape.
 template <class T>
-inline constexpr std::string_view message_layout;
-template <>
-inline constexpr std::string_view message_layout<command_t> = "lhllslibn(i)(l)";
-template <>
-inline constexpr std::string_view message_layout<event_t> = "lhllhsshs";
-template <>
-inline constexpr std::string_view message_layout<image_t> = "llhhhlllin(l)n(i)";
-template <>
-inline constexpr std::string_view message_layout<layout_t> = "lhhhllliiin(shsihbhhsdd)";
-template <>
-inline constexpr std::string_view message_layout<pdo_status_t> = "lhhhlln(hhbibhllbibhllll)";
-template <>
-inline constexpr std::string_view message_layout<sync_status_t> = "lhlhshllllls";
-template <>
-inline constexpr std::string_view message_layout<reply_t> = "lhllsblsn(b)";
-template <>
-inline constexpr std::string_view message_layout<request_t> = "lhllsshihhin(b)";
-template <>
-inline constexpr std::string_view message_layout<status_t> =
-    "lhhhlssislllllllllllllfhhhhslhhbbbbbbllllbn(hshhhhihiiiiilsn(i))";
-template <>
-inline constexpr std::string_view message_layout<timing_t> = "lhlln(slffffn(l))";
-template <>
-inline constexpr std::string_view message_layout<transfer_t> = "lhllsshihilln(b)";
-template <>
-inline constexpr std::string_view message_layout<transfer_state_t> = "lhllssllllsln(b)";
+consteval std::string_view message_layout() {
+  if (std::same_as<T, command_t>) return "lhllslibn(i)(l)";
+  if (std::same_as<T, event_t>) return "lhllhsshs";
+  if (std::same_as<T, image_t>) return "llhhhlllin(l)n(i)";
+  if (std::same_as<T, layout_t>) return "lhhhllliiin(shsihbhhsdd)";
+  if (std::same_as<T, pdo_status_t>) return "lhhhlln(hhbibhllbibhllll)";
+  if (std::same_as<T, sync_status_t>) return "lhlhshllllls";
+  if (std::same_as<T, reply_t>) return "lhllsblsn(b)";
+  if (std::same_as<T, request_t>) return "lhllsshihhin(b)";
+  if (std::same_as<T, status_t>)
+    return "lhhhlssislllllllllllllfhhhhslhhbbbbbbllllbn(hshhhhihiiiiilsn(i))";
+  if (std::same_as<T, timing_t>) return "lhlln(slffffn(l))";
+  if (std::same_as<T, transfer_t>) return "lhllsshihilln(b)";
+  if (std::same_as<T, transfer_state_t>) return "lhllssllllsln(b)";
+  return {};
+}
+
+/// The same bytes in the type that messages use.
+inline std::span<const std::uint8_t> octets(Bytes bytes) noexcept {
+  return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+}
+
+/// Numbers the messages that together hold one list.
+template <class T>
+void number_parts(std::vector<T>& messages) {
+  for (std::size_t part = 0; part < messages.size(); ++part) {
+    messages[part].part = static_cast<std::int16_t>(part);
+    messages[part].parts = static_cast<std::int16_t>(messages.size());
+  }
+}
 
 /// Decodes bytes from outside. Hostile bytes cost no more than their own size.
 template <class T>
@@ -92,16 +96,13 @@ std::expected<T, DecodeFault> decode(Bytes bytes) {
   if (bytes.size() < 8 || bytes.size() > 0x7FFF'FFFF) {
     return std::unexpected{DecodeFault::malformed};
   }
-  std::uint64_t fingerprint = 0;
-  for (std::size_t i = 0; i < 8; ++i) {
-    fingerprint = fingerprint << 8 | std::to_integer<std::uint64_t>(bytes[i]);
-  }
+  const auto fingerprint = load_be<std::uint64_t>(bytes);
   if (fingerprint != static_cast<std::uint64_t>(T::getHash())) {
     const bool old = fingerprint != 0 && fingerprint == fingerprint_of_schema_1<T>;
     return std::unexpected{old ? DecodeFault::schema_1 : DecodeFault::other_version};
   }
   T message;
-  if (!has_shape(bytes.subspan(8), message_layout<T>) ||
+  if (!has_shape(bytes.subspan(8), message_layout<T>()) ||
       message.decode(bytes.data(), 0, static_cast<int>(bytes.size())) < 0) {
     return std::unexpected{DecodeFault::malformed};
   }

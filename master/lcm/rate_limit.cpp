@@ -1,6 +1,7 @@
 #include "master/lcm/rate_limit.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <utility>
 
 namespace takt {
@@ -22,6 +23,11 @@ std::optional<std::uint64_t> RateLimit::allow(const std::string& thing, Time now
   }
   entries_.push_back({.thing = thing, .reported = now, .kept_back = 0});
   return 0;
+}
+
+std::string with_kept_back(std::string sentence, std::uint64_t kept_back) {
+  if (kept_back == 0) return sentence;
+  return fmt::format("{} ({} earlier ones were not reported)", sentence, kept_back);
 }
 
 }  // namespace takt

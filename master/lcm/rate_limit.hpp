@@ -29,4 +29,7 @@ class RateLimit {
   std::vector<Entry> entries_;
 };
 
+/// Adds to a sentence how many earlier ones were withheld, if any.
+std::string with_kept_back(std::string sentence, std::uint64_t kept_back);
+
 }  // namespace takt

@@ -82,18 +82,14 @@ AsciiServer::~AsciiServer() {
 void AsciiServer::accept_clients() {
   const Time now = clock_();
   for (std::size_t i = 0; i < most_clients && !accept_pause_.active(now); ++i) {
-    FileDescriptor socket{
-        ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)};
-    if (!socket) {
-      const auto why = accept_pause_.failed(errno, now);
-      if (why) handler_.warn("CiA 309-3 gateway: " + *why);
-      return;
-    }
+    auto socket = accept_pause_.accept(listener_.get(), now);
+    if (!socket && !socket.error().empty()) handler_.warn("CiA 309-3 gateway: " + socket.error());
+    if (!socket) return;
     if (clients_.size() == most_clients && !displace_silent()) continue;
     auto client = std::make_unique<Client>();
     client->id = next_id_++;
     client->since = clock_();
-    client->socket = std::move(socket);
+    client->socket = std::move(*socket);
     clients_.push_back(std::move(client));
     handler_.connected(clients_.back()->id);
   }

@@ -64,7 +64,7 @@ class AsciiServer {
   const std::string& where() const noexcept { return where_; }
 
  private:
-  /// A file, whatever its name is.
+  /// Identifies a file independently of its name.
   struct FileId {
     std::uint64_t device = 0;
     std::uint64_t inode = 0;

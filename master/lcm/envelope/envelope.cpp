@@ -18,9 +18,8 @@ using Mac = std::array<std::uint8_t, mac_bytes>;
 /// MAC over all bytes of an encoded envelope except the MAC itself, which comes last.
 Mac mac_of(Bytes encoded, const EnvelopeKey& key) noexcept {
   Mac mac{};
-  ::crypto_generichash(mac.data(), mac.size(),
-                       reinterpret_cast<const unsigned char*>(encoded.data()),
-                       encoded.size() - mac_bytes, key.secret.data(), key.secret.size());
+  ::crypto_generichash(mac.data(), mac.size(), octets(encoded).data(), encoded.size() - mac_bytes,
+                       key.secret.data(), key.secret.size());
   return mac;
 }
 
@@ -51,18 +50,15 @@ EnvelopeSeal::EnvelopeSeal(EnvelopeKey key, std::int64_t instance) : key_{std::m
 }
 
 Bytes EnvelopeSeal::seal(std::string_view channel, Bytes message, std::int64_t session, Time wall) {
-  using std::chrono::microseconds;
-  envelope_.utime = std::chrono::duration_cast<microseconds>(wall).count();
+  envelope_.utime = wall / std::chrono::microseconds{1};
   envelope_.session = session;
   ++envelope_.counter;
   envelope_.channel = channel;
-  const auto* const first = reinterpret_cast<const std::uint8_t*>(message.data());
-  envelope_.data.assign(first, first + message.size());
+  envelope_.data.assign(octets(message).begin(), octets(message).end());
   envelope_.size = static_cast<std::int32_t>(message.size());
   const Bytes encoded = encode(envelope_, buffer_);
   const Mac mac = mac_of(encoded, key_);
-  std::ranges::transform(mac, buffer_.end() - mac_bytes,
-                         [](std::uint8_t byte) { return std::byte{byte}; });
+  std::ranges::copy(std::as_bytes(std::span{mac}), buffer_.end() - mac_bytes);
   return encoded;
 }
 
@@ -82,9 +78,8 @@ std::expected<envelope_t, EnvelopeFault> EnvelopeGuard::open(Bytes bytes, Time w
   const Time made = std::chrono::microseconds{std::max<std::int64_t>(0, envelope->utime)};
   if (made < wall - longest_age) return std::unexpected{EnvelopeFault::too_old};
   if (made > wall + longest_age) return std::unexpected{EnvelopeFault::from_the_future};
-  if (const auto good = check_sender(*envelope, made, wall); !good) {
-    return std::unexpected{good.error()};
-  }
+  const auto good = check_sender(*envelope, made, wall);
+  if (!good) return std::unexpected{good.error()};
   return std::move(*envelope);
 }
 

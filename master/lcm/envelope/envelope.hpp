@@ -16,8 +16,9 @@
 namespace takt {
 
 template <>
-inline constexpr std::string_view message_layout<envelope_t> =
-    "lhlllssn(b)bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb";
+consteval std::string_view message_layout<envelope_t>() {
+  return "lhlllssn(b)bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb";
+}
 
 /// Puts messages into envelopes, on the side of the sender. One thread.
 class EnvelopeSeal {

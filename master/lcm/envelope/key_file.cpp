@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <fcntl.h>
 #include <sodium.h>
@@ -36,6 +35,10 @@ std::unexpected<std::string> failed(const std::string& path, const std::string& 
   return std::unexpected{"key file " + path + ": " + why};
 }
 
+std::unexpected<ReadTrouble> unusable(const std::expected<void, std::string>& checked) {
+  return std::unexpected{ReadTrouble{checked.error()}};
+}
+
 bool is_name(std::string_view text) noexcept {
   const auto allowed = [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' ||
@@ -53,13 +56,9 @@ std::string_view take_word(std::string_view& line) noexcept {
 }
 
 bool read_secret(std::string_view hex, EnvelopeKey& key) noexcept {
-  if (hex.size() != 2 * EnvelopeKey::bytes) return false;
-  for (std::size_t i = 0; i < EnvelopeKey::bytes; ++i) {
-    const char* const digits = hex.data() + 2 * i;
-    const auto [end, error] = std::from_chars(digits, digits + 2, key.secret[i], 16);
-    if (error != std::errc{} || end != digits + 2) return false;
-  }
-  return true;
+  return hex.size() == 2 * EnvelopeKey::bytes &&
+         ::sodium_hex2bin(key.secret.data(), key.secret.size(), hex.data(), hex.size(), nullptr,
+                          nullptr, nullptr) == 0;
 }
 
 /// Checks the owner, the mode and the size. The error says what to do about it.
@@ -87,7 +86,7 @@ std::expected<std::string, ReadTrouble> read_all(int fd, const std::string& path
     if (size == 0) return text;
     text.append(chunk.data(), static_cast<std::size_t>(size));
     if (text.size() > most_bytes) {
-      return std::unexpected{ReadTrouble{failed(path, "the file is longer than 64 KiB").error()}};
+      return unusable(failed(path, "the file is longer than 64 KiB"));
     }
   }
 }
@@ -95,15 +94,11 @@ std::expected<std::string, ReadTrouble> read_all(int fd, const std::string& path
 /// Reads the whole text of a key file that has the right owner and mode.
 std::expected<std::string, ReadTrouble> read_key_file(const std::string& path) {
   const FileDescriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK)};
-  if (!file && errno == ELOOP) {
-    return std::unexpected{ReadTrouble{failed(path, "it is not a regular file").error()}};
-  }
+  if (!file && errno == ELOOP) return unusable(failed(path, "it is not a regular file"));
   if (!file) return unreadable(path, errno);
   struct stat status{};
   if (::fstat(file.get(), &status) != 0) return unreadable(path, errno);
-  if (auto good = check_permissions(path, status); !good) {
-    return std::unexpected{ReadTrouble{good.error()}};
-  }
+  if (auto good = check_permissions(path, status); !good) return unusable(good);
   return read_all(file.get(), path);
 }
 

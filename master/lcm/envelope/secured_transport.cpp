@@ -101,10 +101,7 @@ bool SecuredTransport::is_echo(Bytes envelope, Time now) {
 
 void SecuredTransport::refuse(const std::string& what) {
   const auto kept_back = reported_.allow(what, clocks_.now());
-  if (!kept_back) return;
-  options_.say(*kept_back == 0
-                   ? what
-                   : what + " (" + std::to_string(*kept_back) + " earlier ones were not reported)");
+  if (kept_back) options_.say(with_kept_back(what, *kept_back));
 }
 
 }  // namespace takt

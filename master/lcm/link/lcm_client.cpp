@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <utility>
 
 #include "master/lcm/envelope/checked_transport.hpp"
@@ -16,11 +15,6 @@ namespace {
 
 constexpr std::chrono::milliseconds hub_answer_limit{200};
 
-bool url_is_given(const std::string& url) {
-  const char* const environment = std::getenv("LCM_DEFAULT_URL");
-  return !url.empty() || (environment != nullptr && *environment != '\0');
-}
-
 }  // namespace
 
 std::expected<LcmClient, std::string> LcmClient::open(
@@ -31,8 +25,9 @@ std::expected<LcmClient, std::string> LcmClient::open(
   LcmClient client;
   auto first = open_transport(*parsed);
   if (first) client.transports_.push_back(std::move(*first));
+  const bool is_given = !url.empty() || lcm_url_is_from_environment({}, {});
   const bool hub =
-      !url_is_given(url) && tcpq_server_answers("127.0.0.1", tcpq::default_port, hub_answer_limit);
+      !is_given && tcpq_server_answers("127.0.0.1", tcpq::default_port, hub_answer_limit);
   if (hub) {
     client.transports_.push_back(std::make_unique<TcpqClient>("127.0.0.1", tcpq::default_port));
   }
@@ -40,8 +35,7 @@ std::expected<LcmClient, std::string> LcmClient::open(
     const std::string& obstacle = first.error();
     return std::unexpected{parsed->text + ": " +
                            (obstacle.empty() ? "LCM can't be opened" : obstacle) +
-                           ". No hub answers at tcpq://127.0.0.1:7700 either: is "
-                           "taktd running?"};
+                           ". No hub answers at tcpq://127.0.0.1:7700 either: is taktd running?"};
   }
   for (auto& transport : client.transports_) {
     if (signers) {

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fmt/format.h>
 #include <utility>
 
 #include "master/lcm/tcpq/tcpq_broker.hpp"
@@ -19,12 +20,11 @@ constexpr const char* by_environment =
     "message. --lcm-url or `lcm: {url: ...}` names it without this warning";
 
 std::string port_is_taken(std::uint16_t port) {
-  const std::string number = std::to_string(port);
-  return "port " + number +
-         " of loopback is used by another program, and no setting tells taktd to trust it: taktd "
-         "serves no hub there and tries again every 5 s. To use the hub of that program: --lcm-url "
-         "tcpq://127.0.0.1:" +
-         number + ", or `lcm: {url: ...}` without `broker`";
+  return fmt::format(
+      "port {0} of loopback is used by another program, and no setting tells taktd to trust it: "
+      "taktd serves no hub there and tries again every 5 s. To use the hub of that program: "
+      "--lcm-url tcpq://127.0.0.1:{0}, or `lcm: {{url: ...}}` without `broker`",
+      port);
 }
 
 }  // namespace
@@ -80,10 +80,10 @@ void LcmLink::open_tcpq(const LcmUrl& url) {
   auto client = std::make_unique<TcpqClient>(url.address, url.port);
   const bool chosen = hub_ == Hub::named;
   say_(answers && chosen ? Weight::note : Weight::warning,
-       "LCM: " +
-           (answers ? "taktd uses the hub at " + client->url()
-                    : "no hub answers at " + client->url() + "; taktd keeps trying") +
-           (chosen ? "" : by_environment));
+       fmt::format("LCM: {}{}",
+                   answers ? "taktd uses the hub at " + client->url()
+                           : "no hub answers at " + client->url() + "; taktd keeps trying",
+                   chosen ? "" : by_environment));
   use(std::move(client));
 }
 
@@ -141,11 +141,10 @@ void LcmLink::fall_back(const std::string& why) {
                      "; a hub on loopback is not possible either: " + std::strerror(hub.error()));
   }
   for (const std::string& pattern : patterns_) fallback_->subscribe(pattern);
-  say_(Weight::note,
-       "LCM: " + why +
-           ". taktd serves LCM's tcpq protocol on loopback instead; other programs: export "
-           "LCM_DEFAULT_URL=" +
-           fallback_->url());
+  say_(Weight::note, "LCM: " + why +
+                         ". taktd serves LCM's tcpq protocol on loopback instead; other programs: "
+                         "export LCM_DEFAULT_URL=" +
+                         fallback_->url());
 }
 
 bool LcmLink::publish(const std::string& channel, std::span<const std::byte> data) {

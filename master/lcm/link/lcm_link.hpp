@@ -30,9 +30,9 @@ class LcmLink final : public Transport {
 
   /// Whose hub the daemon uses, if the URL is one of tcpq.
   enum class Hub : std::uint8_t {
-    own,             ///< only its own one
-    named,           ///< the one that the command line or the network file names
-    by_environment,  ///< the one that LCM_DEFAULT_URL names; a warning tells so
+    own,             ///< only its own hub
+    named,           ///< the hub that the command line or the network file names
+    by_environment,  ///< the hub that LCM_DEFAULT_URL names; a warning reports this
   };
 
   /// `say` receives what users must know: which URL to set, or what is missing. All `patterns` are

@@ -54,25 +54,19 @@ void TcpqBroker::relay(const tcpq::Message& message) {
 void TcpqBroker::close(Client& client, const std::string& why) {
   client.connection.close();
   const auto kept_back = reported_.allow(why.substr(0, 40), options_.clock());
-  if (!kept_back) return;
-  std::string sentence = "LCM hub: a connection was closed: " + why;
-  if (*kept_back != 0)
-    sentence += " (" + std::to_string(*kept_back) + " earlier ones were not reported)";
-  options_.say(sentence);
+  if (kept_back) {
+    options_.say(with_kept_back("LCM hub: a connection was closed: " + why, *kept_back));
+  }
 }
 
 void TcpqBroker::accept_clients(Time now) {
   for (int i = 0; i < most_accepts && !accept_pause_.active(now); ++i) {
-    FileDescriptor socket{
-        ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)};
-    if (!socket) {
-      const auto why = accept_pause_.failed(errno, now);
-      if (why) options_.warn("LCM hub: " + *why);
-      return;
-    }
+    auto socket = accept_pause_.accept(listener_.get(), now);
+    if (!socket && !socket.error().empty()) options_.warn("LCM hub: " + socket.error());
+    if (!socket) return;
     if (clients_.size() == most_clients && !make_room(now)) continue;
     clients_.push_back(std::make_unique<Client>(
-        Client{.connection = {std::move(socket), tcpq::magic_server, tcpq::magic_client},
+        Client{.connection = {std::move(*socket), tcpq::magic_server, tcpq::magic_client},
                .since = now,
                .heard = now,
                .read = now}));

@@ -27,10 +27,8 @@ Connection::Connection(FileDescriptor socket, std::uint32_t own_magic, std::uint
 }
 
 bool Connection::queue(const Message& message) {
-  if (unsent_.size() - sent_ + message.data.size() + message.channel.size() + 12 > unsent_limit) {
-    ++lost_;
-    return false;
-  }
+  const std::size_t size = message.data.size() + message.channel.size() + 12;
+  if (unsent_.size() - sent_ + size > unsent_limit) return false;
   append(unsent_, message);
   return true;
 }

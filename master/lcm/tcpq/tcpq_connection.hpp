@@ -23,7 +23,6 @@ class Connection {
   bool closed() const noexcept { return closed_; }
   bool opened() const noexcept { return parser_.opened(); }
   bool wants_to_write() const noexcept { return sent_ < unsent_.size(); }
-  std::uint64_t lost() const noexcept { return lost_; }
   /// Bytes that the kernel has taken since the start.
   std::uint64_t taken() const noexcept { return taken_; }
 
@@ -36,7 +35,6 @@ class Connection {
   void receive(const std::function<void(const Message&)>& handler, const FrontBudget& budget);
   /// Returns true if the last receive() found the end of what had arrived.
   bool drained() const noexcept { return drained_; }
-  /// Returns true if the last receive() read messages that it had no time to hand over.
   /// Events for poll() in addition to POLLIN. Messages that wait here for the next round end its
   /// wait by POLLOUT, because nearly every socket is writable.
   short other_reason_to_wake() const noexcept {
@@ -51,7 +49,6 @@ class Connection {
   Parser parser_;
   std::vector<std::byte> unsent_;
   std::size_t sent_ = 0;  // bytes of unsent_ already sent
-  std::uint64_t lost_ = 0;
   std::uint64_t taken_ = 0;
   bool unhandled_ = false;
   bool drained_ = true;

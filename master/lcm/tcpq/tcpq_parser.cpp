@@ -1,29 +1,26 @@
 #include "master/lcm/tcpq/tcpq_parser.hpp"
 
+#include "master/lcm/big_endian.hpp"
+
 namespace takt::tcpq {
 namespace {
 
-void append_number(std::vector<std::byte>& out, std::uint32_t value) {
-  for (int shift = 24; shift >= 0; shift -= 8)
-    out.push_back(static_cast<std::byte>(value >> shift));
-}
-
 void append_sized(std::vector<std::byte>& out, std::span<const std::byte> bytes) {
-  append_number(out, static_cast<std::uint32_t>(bytes.size()));
+  append_be(out, static_cast<std::uint32_t>(bytes.size()));
   out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
 }  // namespace
 
 void append(std::vector<std::byte>& out, const Message& message) {
-  append_number(out, static_cast<std::uint32_t>(message.type));
+  append_be(out, static_cast<std::uint32_t>(message.type));
   append_sized(out, std::as_bytes(std::span{message.channel}));
   if (message.type == Type::publish) append_sized(out, message.data);
 }
 
 void append_opening(std::vector<std::byte>& out, std::uint32_t magic) {
-  append_number(out, magic);
-  append_number(out, version);
+  append_be(out, magic);
+  append_be(out, version);
 }
 
 void Parser::feed(std::span<const std::byte> bytes) {
@@ -34,11 +31,7 @@ void Parser::feed(std::span<const std::byte> bytes) {
 
 std::optional<std::uint32_t> Parser::number_at(std::size_t at) const noexcept {
   if (buffer_.size() < start_ + at + 4) return std::nullopt;
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    value = value << 8 | std::to_integer<std::uint32_t>(buffer_[start_ + at + i]);
-  }
-  return value;
+  return load_be<std::uint32_t>(std::span{buffer_}.subspan(start_ + at));
 }
 
 bool Parser::take_opening() noexcept {

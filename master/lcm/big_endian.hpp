@@ -1,0 +1,29 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace takt {
+
+/// Reads an integer from the first sizeof(T) bytes, most significant byte first, as LCM sends it.
+/// Missing bytes are not counted.
+template <class T>
+T load_be(std::span<const std::byte> bytes) noexcept {
+  std::uint64_t value = 0;
+  for (const std::byte byte : bytes.first(std::min(sizeof(T), bytes.size()))) {
+    value = value << 8 | std::to_integer<std::uint64_t>(byte);
+  }
+  return static_cast<T>(value);
+}
+
+/// Appends an integer, most significant byte first.
+template <class T>
+void append_be(std::vector<std::byte>& out, T value) {
+  for (std::size_t left = sizeof value; left-- > 0;) {
+    out.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(value) >> (8 * left)));
+  }
+}
+
+}  // namespace takt
