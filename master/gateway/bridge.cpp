@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fmt/format.h>
 #include <utility>
 
 #include "master/explain/boot_report.hpp"
 #include "master/explain/event_text.hpp"
-#include "master/gateway/message/pdo_messages.hpp"
-#include "master/gateway/message/sync_message.hpp"
 #include "master/lcm/channel_names.hpp"
 #include "master/lcm/printable_text.hpp"
 #include "master/lcm/random_number.hpp"
@@ -63,9 +62,11 @@ Bridge::Bridge(MasterRun& master, Transport& transport, const Clocks& clocks, Br
                  {.session = options_.session, .observe = options_.observe},
                  master.transfers(),
                  {.submit = [this](const Request& request) { return master_.submit(request); },
-                  .state = [this](const transfer_state_t& state) { report_transfer(state); }}},
+                  .state =
+                      [this](transfer_state_t state) {
+                        publish(channels_.transfer_state, state, clocks_.now());
+                      }}},
       outages_{master.plan()},
-      emcys_{master.plan().nodes.size()},
       wall_minus_monotonic_{clocks_.wall_offset()},
       image_wait_{std::min(most_images * master.plan().cycle.period, longest_wait)},
       gap_{master.plan().cycle.period},
@@ -75,8 +76,7 @@ Bridge::Bridge(MasterRun& master, Transport& transport, const Clocks& clocks, Br
 }
 
 std::int64_t Bridge::wall_microseconds(Time monotonic) const noexcept {
-  using std::chrono::microseconds;
-  return std::chrono::duration_cast<microseconds>(monotonic + wall_minus_monotonic_).count();
+  return (monotonic + wall_minus_monotonic_) / std::chrono::microseconds{1};
 }
 
 void Bridge::notice_gap() {
@@ -87,14 +87,20 @@ void Bridge::notice_gap() {
   ++gaps_;
   if (!gap_.discards_requests(now)) return;
   ++long_gaps_;
-  const auto milliseconds = gap_.length() / std::chrono::milliseconds{1};
-  announce({.when = now,
-            .cycle = cycle_at(now),
-            .node = 0,
-            .kind = "front_gap",
-            .weight = Weight::warning,
-            .text = "taktd's front thread did not run for " + std::to_string(milliseconds) +
-                    " ms: taktd discards the commands and requests that waited in this time"});
+  warn("front_gap", fmt::format("taktd's front thread did not run for {} ms: taktd discards the "
+                                "commands and requests that waited in this time",
+                                gap_.length() / std::chrono::milliseconds{1}));
+}
+
+/// Reports a warning of the gateway itself.
+void Bridge::warn(const std::string& kind, const std::string& text) {
+  const Time now = clocks_.now();
+  announce(Notice{.when = now,
+                  .cycle = cycle_at(now),
+                  .node = 0,
+                  .kind = kind,
+                  .weight = Weight::warning,
+                  .text = text});
 }
 
 std::uint64_t Bridge::cycle_at(Time now) const noexcept {
@@ -253,18 +259,11 @@ bool Bridge::command(const std::string& sender, std::span<const SignalIndex> sig
 
 void Bridge::report_damaged(const std::string& channel, DecodeFault fault) {
   ++damaged_count_;
-  const Time now = clocks_.now();
-  const auto kept_back = damaged_.allow(channel + std::string{text(fault)}, now);
+  const std::string why{fault == DecodeFault::schema_1 ? schema_refusal(1) : text(fault)};
+  const auto kept_back = damaged_.allow(channel + why, clocks_.now());
   if (!kept_back) return;
-  std::string sentence = "a message on " + channel + " can't be read: ";
-  sentence += fault == DecodeFault::schema_1 ? schema_refusal(1) : std::string{text(fault)};
-  if (*kept_back != 0) sentence += " (" + std::to_string(*kept_back) + " more)";
-  announce({.when = now,
-            .cycle = cycle_,
-            .node = 0,
-            .kind = "bad_message",
-            .weight = Weight::warning,
-            .text = std::move(sentence)});
+  warn("bad_message",
+       with_kept_back(fmt::format("a message on {} can't be read: {}", channel, why), *kept_back));
 }
 
 void Bridge::take_events() {
@@ -279,7 +278,6 @@ void Bridge::take_events() {
 }
 
 void Bridge::take_event(const Event& event) {
-  remember(event);
   if (guest_ != nullptr) guest_->hear(event);
   emcy_log_.take(event, wall_microseconds(event.when));
   announce(event);
@@ -293,13 +291,9 @@ void Bridge::report_lost_events() {
   const std::uint64_t lost = events_lost();
   const std::uint64_t more = lost - std::exchange(events_lost_reported_, lost);
   if (more == 0) return;
-  announce({.when = clocks_.now(),
-            .cycle = cycle_,
-            .node = 0,
-            .kind = "events_lost",
-            .weight = Weight::warning,
-            .text = subject(master_.plan(), 0) + ": " + std::to_string(more) +
-                    " events were lost: more events came at once than the queue holds"});
+  warn("events_lost",
+       fmt::format("{}: {} events were lost: more events came at once than the queue holds",
+                   subject(master_.plan(), 0), more));
 }
 
 /// Adds what only the gateway knows: the limit that the last command had, and its sender.
@@ -307,7 +301,7 @@ Notice Bridge::fallback_notice(Event event) const {
   if (const auto limit = commands_.newest_limit(event.value)) event.bytes = pack_limit(*limit);
   Notice notice = to_notice(master_.plan(), event);
   const std::string_view sender = commands_.last_holder(master_.plan().index_of(event.node));
-  if (!sender.empty()) notice.text += "; its last sender was '" + std::string{sender} + "'";
+  if (!sender.empty()) notice.text += fmt::format("; its last sender was '{}'", sender);
   return notice;
 }
 
@@ -329,40 +323,23 @@ void Bridge::announce(const Event& event) {
   }
 }
 
-/// Remembers the error code of an EMCY, except code 0, which reports that all errors are gone.
-void Bridge::remember(const Event& event) {
-  const auto code = load_le<std::uint16_t>(std::span{event.bytes});
-  const bool coded = event.kind == EventKind::emcy && event.detail != 1;
-  if (!coded || code == 0) return;
-  emcys_.add(master_.plan().index_of(event.node), code);
-}
-
 void Bridge::announce(Notice notice) {
   const auto kept_back = limit_.allow(notice);
   if (!kept_back) return;
-  if (*kept_back != 0) {
-    notice.text +=
-        " (" + std::to_string(*kept_back) + " earlier ones of this kind were not reported)";
-  }
-  send(notice);
+  notice.text = with_kept_back(std::move(notice.text), *kept_back);
+  send(std::move(notice));
 }
 
 /// Sends a notice. Its text may contain texts of devices and senders, and goes to terminals and
 /// logs, so it is made printable first.
 void Bridge::send(Notice notice) {
   notice.text = printable_lines(notice.text);
-  event_t message = to_message(master_.plan(), notice);
-  message.utime = wall_microseconds(notice.when);
-  message.session = options_.session;
-  publish(channels_.event, message);
+  publish(channels_.event, to_message(master_.plan(), notice), notice.when);
   announce_(notice);
 }
 
 void Bridge::publish_layout(Time now) {
-  for (layout_t& part : layout_messages_) {
-    part.utime = wall_microseconds(now);
-    publish(channels_.layout, part);
-  }
+  for (layout_t& part : layout_messages_) publish(channels_.layout, part, now);
 }
 
 void Bridge::publish_status(Time now) {
@@ -371,33 +348,25 @@ void Bridge::publish_status(Time now) {
                         .commands_taken = commands_.taken(),
                         .commands_refused = commands_.refused(),
                         .holders = {},
-                        .emcys = &emcys_,
+                        .emcys = &emcy_log_,
                         .stop_text = stop_text_};
   for (std::size_t i = 0; i < master_.plan().nodes.size(); ++i) {
     gateway.holders.emplace_back(commands_.holder(i, cycle_at(now)));
   }
   for (status_t& part : status_messages_.fill(snapshot_, gateway, now)) {
-    part.utime = wall_microseconds(now);
-    publish(channels_.status, part);
+    publish(channels_.status, part, now);
   }
-  sync_status_t sync = sync_message(master_.plan(), snapshot_.bus);
-  sync.utime = wall_microseconds(now);
-  sync.session = options_.session;
-  publish(channels_.sync, sync);
+  publish(channels_.sync, sync_message(master_.plan(), snapshot_.bus), now);
 }
 
 void Bridge::publish_pdos(Time now) {
   for (pdo_status_t& part : pdo_messages(master_.plan(), snapshot_, marks_, cycle_)) {
-    part.utime = wall_microseconds(now);
-    part.session = options_.session;
-    publish(channels_.pdos, part);
+    publish(channels_.pdos, part, now);
   }
 }
 
 void Bridge::publish_timing(Time now) {
-  timing_t message = timing_messages_.fill(master_.timing(), sync_to_lcm_, cycle_);
-  message.utime = wall_microseconds(now);
-  publish(channels_.timing, message);
+  publish(channels_.timing, timing_messages_.fill(master_.timing(), sync_to_lcm_, cycle_), now);
 }
 
 }  // namespace takt

@@ -16,7 +16,6 @@
 #include "master/gateway/message/image_messages.hpp"
 #include "master/gateway/message/status_messages.hpp"
 #include "master/gateway/message/typed_channels.hpp"
-#include "master/gateway/notice/emcy_history.hpp"
 #include "master/gateway/notice/emcy_log.hpp"
 #include "master/gateway/notice/notice.hpp"
 #include "master/gateway/notice/notice_limit.hpp"
@@ -49,7 +48,7 @@ struct BridgeOptions {
 /// messages into set-points and requests. Reads clocks and never waits.
 class Bridge {
  public:
-  /// `tell` receives all events and notices of the gateway, right after LCM.
+  /// `announce` receives all events and notices of the gateway, right after LCM.
   Bridge(MasterRun& master, Transport& transport, const Clocks& clocks, BridgeOptions options,
          NoticeSink announce);
 
@@ -77,8 +76,8 @@ class Bridge {
   Time next_message() const noexcept;
   /// Takes an event of the bus thread or of the diagnostic socket.
   void announce(const Event& event);
-  /// Takes a notice from elsewhere. Sends it to LCM and to `tell`, unless there are too many of its
-  /// kind.
+  /// Takes a notice from elsewhere. Sends it to LCM and to `announce`, unless there are too many of
+  /// its kind.
   void announce(Notice notice);
 
   /// Begins what `record` requests ask for, and returns why it can't begin. answer() must follow.
@@ -115,8 +114,8 @@ class Bridge {
   /// Events lost in the bus thread and on the way from it.
   std::uint64_t events_lost() const noexcept;
   void report_lost_events();
+  void warn(const std::string& kind, const std::string& text);
   Notice fallback_notice(Event event) const;
-  void remember(const Event& event);
   void take_replies(const FrontBudget& budget);
   void take_reply(const Reply& reply);
   void serve_requests();
@@ -127,8 +126,6 @@ class Bridge {
   void take_command(const command_t& command, std::optional<std::size_t> only_node = {});
   void on_request(Bytes data);
   void send(Notice notice);
-  reply_t reply_to(const request_t& request) const;
-  void refuse(const request_t& request, const std::string& why);
   void answer_history(const request_t& request);
   void on_transfer(Bytes data);
   void report_damaged(const std::string& channel, DecodeFault fault);
@@ -146,11 +143,17 @@ class Bridge {
   void publish_pdos(Time now);
   void publish_timing(Time now);
   void answer(reply_t reply);
-  void report_transfer(transfer_state_t state);
   std::int64_t wall_microseconds(Time monotonic) const noexcept;
   template <class T>
   void publish(const std::string& channel, const T& message) {
     transport_.publish(channel, encode(message, buffer_));
+  }
+  /// Publishes a message of this session that was made at `when`.
+  template <class T>
+  void publish(const std::string& channel, T&& message, Time when) {
+    message.utime = wall_microseconds(when);
+    message.session = options_.session;
+    publish(channel, message);
   }
 
   MasterRun& master_;
@@ -173,7 +176,6 @@ class Bridge {
   Transfers transfers_;
   PdoOutages outages_;
   NoticeLimit limit_;
-  EmcyHistory emcys_;
   std::string stop_text_;  ///< one line for each axis that the newest stop did not confirm
   Time stop_reported_{};   ///< end of that stop
   std::uint64_t damaged_count_ = 0;

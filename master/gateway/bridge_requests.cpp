@@ -1,4 +1,5 @@
 #include <chrono>
+#include <fmt/format.h>
 #include <utility>
 
 #include "master/gateway/bridge.hpp"
@@ -41,10 +42,7 @@ void Bridge::take_reply(const Reply& reply) {
   }
 }
 
-void Bridge::answer(reply_t reply) {
-  reply.utime = wall_microseconds(clocks_.now());
-  publish(channels_.reply, reply);
-}
+void Bridge::answer(reply_t reply) { publish(channels_.reply, reply, clocks_.now()); }
 
 void Bridge::on_request(Bytes data) {
   const auto request = decode<request_t>(data);
@@ -54,7 +52,7 @@ void Bridge::on_request(Bytes data) {
   const bool fits = !Requests::oversize(*request);
   const std::string trouble = age_trouble(request->utime, now);
   const bool old = fits && request->schema == message_schema && !trouble.empty();
-  if (old) return refuse(*request, trouble);
+  if (old) return answer(requests_.refusal(*request, trouble));
   if (fits && request->service == "emcy_history") return answer_history(*request);
   const bool records = fits && request->service == "record" && record_;
   auto reply = records ? requests_.take(*request, now, record_) : requests_.take(*request, now);
@@ -63,64 +61,47 @@ void Bridge::on_request(Bytes data) {
 
 std::string Bridge::age_trouble(std::int64_t utime, Time now) const {
   const auto wall = [this](Time monotonic) {
-    const Time time = monotonic + clocks_.wall_offset();
-    return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
+    return (monotonic + clocks_.wall_offset()) / std::chrono::microseconds{1};
   };
   const auto& [length, end] = gap_.newest_long();
   const bool old = utime < wall(now - longest_wait);
   const bool before_gap_ended = end != Time{0} && utime < wall(end);
   if (gap_.discards_requests(now) || (before_gap_ended && !old)) {
-    return "taktd did not run for " + std::to_string(length / std::chrono::milliseconds{1}) +
-           " ms, and the request may have waited as long: send it again";
+    return fmt::format(
+        "taktd did not run for {} ms, and the request may have waited as long: send it again",
+        length / std::chrono::milliseconds{1});
   }
   if (old) {
     return "the time of the request (utime) is more than 10 s before the clock of taktd's machine: "
-           "the "
-           "request waited too long, comes from a log, or the clocks of the two machines differ";
+           "the request waited too long, comes from a log, or the clocks of the two machines "
+           "differ";
   }
   if (utime <= wall(now + most_ahead)) return {};
   return "the time of the request (utime) is more than 1 s ahead of the clock of taktd's machine: "
-         "the "
-         "clocks of the two machines differ";
-}
-
-reply_t Bridge::reply_to(const request_t& request) const {
-  reply_t reply{};
-  reply.schema = message_schema;
-  reply.session = options_.session;
-  reply.id = request.id;
-  reply.sender = request.sender;
-  return reply;
+         "the clocks of the two machines differ";
 }
 
 void Bridge::answer(const request_t& request, bool good, const std::string& text) {
-  reply_t reply = reply_to(request);
+  reply_t reply = requests_.reply_to(request);
   reply.good = good ? 1 : 0;
   reply.text = text;
   requests_.finish(request, reply, clocks_.now());
   answer(std::move(reply));
 }
 
-void Bridge::refuse(const request_t& request, const std::string& why) {
-  reply_t reply = reply_to(request);
-  reply.text = why;
-  answer(std::move(reply));
-}
-
 /// Answers from the log of the bridge, because the bus thread keeps no history.
 void Bridge::answer_history(const request_t& request) {
   if (auto refused = requests_.refuse_foreign(request)) return answer(std::move(*refused));
-  reply_t reply = reply_to(request);
+  reply_t reply = requests_.reply_to(request);
   reply.good = request.node_id > 0 && request.node_id <= 127 ? 1 : 0;
   if (reply.good == 0) {
-    reply.text = "node " + std::to_string(request.node_id) + " is not in 1..127";
+    reply.text = fmt::format("node {} is not in 1..127", request.node_id);
   } else {
     const auto& records = emcy_log_.of(static_cast<std::uint8_t>(request.node_id));
     const NodePlan* const node = master_.plan().find(static_cast<unsigned>(request.node_id));
     if (node != nullptr) reply.text = pack_texts(records, node->emcy_texts);
-    const auto bytes = pack(records);
-    reply.data.assign(bytes.begin(), bytes.end());
-    reply.size = static_cast<std::int32_t>(bytes.size());
+    reply.data = pack(records);
+    reply.size = static_cast<std::int32_t>(reply.data.size());
   }
   answer(std::move(reply));
 }
@@ -132,11 +113,6 @@ void Bridge::on_transfer(Bytes data) {
   const std::string trouble = age_trouble(transfer->utime, now);
   if (trouble.empty()) return transfers_.take(*transfer, now);
   transfers_.take_old(*transfer, trouble);
-}
-
-void Bridge::report_transfer(transfer_state_t state) {
-  state.utime = wall_microseconds(clocks_.now());
-  publish(channels_.transfer_state, state);
 }
 
 }  // namespace takt

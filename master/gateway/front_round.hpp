@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 
@@ -55,6 +57,12 @@ struct FrontRound {
 };
 
 /// Returns the time to sleep at `now` if the next image is predicted for `next_image`.
-Time pause_before_image(Time now, Time next_image) noexcept;
+inline Time pause_before_image(Time now, Time next_image) noexcept {
+  constexpr Time shortest = std::chrono::microseconds{15};
+  constexpr Time longest = std::chrono::milliseconds{20};
+  if (now < next_image) return std::min(next_image - now, longest);
+  // A tenth of the present delay: an image then waits at most this much longer.
+  return std::clamp((now - next_image) / 10, shortest, longest);
+}
 
 }  // namespace takt

@@ -1,5 +1,7 @@
 #include "master/gateway/ascii/ascii_command.hpp"
 
+#include <algorithm>
+#include <fmt/format.h>
 #include <span>
 
 #include "master/core/request.hpp"
@@ -11,12 +13,8 @@ namespace {
 using namespace ascii;
 
 Read<void> read_object(Words words, AsciiCommand& out) {
-  const auto index = number(words, 1, 0xFFFF, "index");
-  if (!index) return std::unexpected{index.error()};
-  const auto sub = number(words, 2, 0xFF, "sub-index");
-  if (!sub) return std::unexpected{sub.error()};
-  out.object = {static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*sub)};
-  return {};
+  if (auto good = number(words, 1, 0xFFFF, "index", out.object.index); !good) return good;
+  return number(words, 2, 0xFF, "sub-index", out.object.sub);
 }
 
 Read<void> read_type(Words words, AsciiCommand& out) {
@@ -27,25 +25,23 @@ Read<void> read_type(Words words, AsciiCommand& out) {
 }
 
 Read<void> read_pdo(Words words, AsciiCommand& out) {
-  const auto pdo = number(words, 2, 512, "PDO number");
-  if (!pdo) return std::unexpected{pdo.error()};
-  out.number = *pdo;
+  if (auto good = number(words, 2, 512, "PDO number", out.number); !good) return good;
   if (out.verb == AsciiVerb::pdo_read) return end_at(words, 3);
   const auto count = number(words, 3, 64, "number of values");
   if (!count) return std::unexpected{count.error()};
   for (std::size_t i = 0; i < *count; ++i) {
     const auto value = 4 + i < words.size() ? parse_ascii_integer(words[4 + i].text) : std::nullopt;
-    if (!value) return wrong("expected value " + std::to_string(i + 1));
+    if (!value) return wrong(fmt::format("expected value {}", i + 1));
     out.values.push_back(*value);
   }
   return end_at(words, 4 + *count);
 }
 
-bool is_pdo(Words words) { return words.size() > 1 && is(words[1], "p", "pdo"); }
+bool is_pdo(Words words) { return is_second(words, "p", "pdo"); }
 
 Read<void> read_read(Words words, AsciiCommand& out) {
-  out.verb = is_pdo(words) ? AsciiVerb::pdo_read : AsciiVerb::sdo_read;
-  if (out.verb == AsciiVerb::pdo_read) return read_pdo(words, out);
+  if (is_pdo(words)) out.verb = AsciiVerb::pdo_read;
+  if (is_pdo(words)) return read_pdo(words, out);
   if (auto good = read_object(words, out); !good) return good;
   if (words.size() < 4) return {};
   if (auto good = read_type(words, out); !good) return good;
@@ -53,8 +49,8 @@ Read<void> read_read(Words words, AsciiCommand& out) {
 }
 
 Read<void> read_write(Words words, AsciiCommand& out) {
-  out.verb = is_pdo(words) ? AsciiVerb::pdo_write : AsciiVerb::sdo_write;
-  if (out.verb == AsciiVerb::pdo_write) return read_pdo(words, out);
+  if (is_pdo(words)) out.verb = AsciiVerb::pdo_write;
+  if (is_pdo(words)) return read_pdo(words, out);
   if (auto good = read_object(words, out); !good) return good;
   if (words.size() < 5) return wrong("expected data type and value");
   if (auto good = read_type(words, out); !good) return good;
@@ -64,20 +60,24 @@ Read<void> read_write(Words words, AsciiCommand& out) {
   auto bytes = ascii_bytes(out.type, value);
   if (!bytes) return wrong(bytes.error());
   if (bytes->size() > request_bytes) {
-    return unsupported("a value has at most " + std::to_string(request_bytes) + " bytes here");
+    return unsupported(fmt::format("a value has at most {} bytes here", request_bytes));
   }
   out.value = std::move(*bytes);
   return joins ? Read<void>{} : end_at(words, 5);
 }
 
+template <NmtCommand command>
+Read<void> read_nmt(Words words, AsciiCommand& out) {
+  out.nmt = command;
+  return end_at(words, 1);
+}
+
 Read<void> read_reset(Words words, AsciiCommand& out) {
-  if (words.size() > 1 && is(words[1], "node")) {
-    out.nmt = NmtCommand::reset_node;
-  } else if (words.size() > 1 && is(words[1], "comm", "communication")) {
-    out.nmt = NmtCommand::reset_communication;
-  } else {
+  const bool whole = is_second(words, "node", "node");
+  if (!whole && !is_second(words, "comm", "communication")) {
     return wrong("expected 'node' or 'comm'");
   }
+  out.nmt = whole ? NmtCommand::reset_node : NmtCommand::reset_communication;
   return end_at(words, 2);
 }
 
@@ -95,57 +95,65 @@ Read<void> read_set(Words words, AsciiCommand& out) {
   for (const Setting& setting : settings) {
     if (!is(words[1], setting.name)) continue;
     out.verb = setting.verb;
-    const auto value = number(words, 2, setting.most, "value");
-    if (!value) return std::unexpected{value.error()};
-    out.number = *value;
+    if (auto good = number(words, 2, setting.most, "value", out.number); !good) return good;
     return end_at(words, 3);
   }
   return unsupported("'set " + words[1].text +
-                     "' is not for a running taktd: the network file says it");
+                     "' is not possible while taktd runs: the network file has this setting");
 }
 
 Read<void> read_indication(Words words, AsciiCommand& out) {
-  out.verb = AsciiVerb::boot_up_indication;
-  const bool enables = words.size() > 1 && is(words[1], "enable");
-  if (!enables && (words.size() < 2 || !is(words[1], "disable"))) {
+  const bool enables = is_second(words, "enable", "enable");
+  if (!enables && !is_second(words, "disable", "disable")) {
     return wrong("expected Enable or Disable");
   }
   out.number = enables ? 1 : 0;
   return end_at(words, 2);
 }
 
+Read<void> read_info(Words words, AsciiCommand&) {
+  if (!is_second(words, "version", "version")) return wrong("expected 'version'");
+  return end_at(words, 2);
+}
+
+Read<void> read_help(Words, AsciiCommand&) { return {}; }
+
+Read<void> refuse_setting(Words words, AsciiCommand&) {
+  return unsupported("'" + words[0].text +
+                     "' is not possible while taktd runs: the network file has this setting");
+}
+
+/// The commands of CiA 309-3 except those of LSS. A reader may select a more specific verb.
+struct Command {
+  std::string_view short_form;
+  std::string_view full;
+  AsciiVerb verb;
+  Reader read;
+};
+constexpr Command commands[] = {
+    {"r", "read", AsciiVerb::sdo_read, read_read},
+    {"w", "write", AsciiVerb::sdo_write, read_write},
+    {"start", "start", AsciiVerb::nmt, read_nmt<NmtCommand::start>},
+    {"stop", "stop", AsciiVerb::nmt, read_nmt<NmtCommand::stop>},
+    {"preop", "preoperational", AsciiVerb::nmt, read_nmt<NmtCommand::enter_preoperational>},
+    {"reset", "reset", AsciiVerb::nmt, read_reset},
+    {"set", "set", AsciiVerb::set_node, read_set},
+    {"boot_up_indication", "boot_up_indication", AsciiVerb::boot_up_indication, read_indication},
+    {"info", "info", AsciiVerb::info_version, read_info},
+    {"help", "help", AsciiVerb::help, read_help},
+    {"enable", "enable", AsciiVerb::help, refuse_setting},
+    {"disable", "disable", AsciiVerb::help, refuse_setting},
+    {"init", "init", AsciiVerb::help, refuse_setting}};
+
 Read<void> read_command(Words words, AsciiCommand& out) {
   const Word& name = words[0];
-  const auto nmt = [&](NmtCommand command) {
-    out.verb = AsciiVerb::nmt;
-    out.nmt = command;
-    return end_at(words, 1);
-  };
-  if (is(name, "r", "read")) return read_read(words, out);
-  if (is(name, "w", "write")) return read_write(words, out);
-  if (is(name, "start")) return nmt(NmtCommand::start);
-  if (is(name, "stop")) return nmt(NmtCommand::stop);
-  if (is(name, "preop", "preoperational")) return nmt(NmtCommand::enter_preoperational);
-  if (is(name, "reset")) {
-    out.verb = AsciiVerb::nmt;
-    return read_reset(words, out);
-  }
-  if (is(name, "set")) return read_set(words, out);
-  if (is(name, "boot_up_indication")) return read_indication(words, out);
-  if (is(name, "info")) {
-    out.verb = AsciiVerb::info_version;
-    if (words.size() < 2 || !is(words[1], "version")) return wrong("expected 'version'");
-    return end_at(words, 2);
-  }
-  if (is(name, "help")) {
-    out.verb = AsciiVerb::help;
-    return {};
+  for (const Command& command : commands) {
+    if (!is(name, command.short_form, command.full)) continue;
+    out.verb = command.verb;
+    return command.read(words, out);
   }
   if (name.text.starts_with("lss_") || name.text.starts_with("_lss_")) return read_lss(words, out);
-  if (is(name, "enable") || is(name, "disable") || is(name, "init")) {
-    return unsupported("'" + name.text + "' is not for a running taktd: the network file says it");
-  }
-  return wrong("no command '" + name.text + "'; there is 'help'");
+  return wrong("no command '" + name.text + "'; 'help' lists the commands");
 }
 
 /// Reads `[seq]`, also with blanks inside, and returns the rest of the line.
@@ -165,18 +173,7 @@ Read<std::string_view> read_sequence(std::string_view line, std::uint32_t& seque
   return line.substr(close + 1);
 }
 
-bool about_network(const AsciiCommand& command) noexcept {
-  switch (command.verb) {
-    case AsciiVerb::sdo_read:
-    case AsciiVerb::sdo_write:
-    case AsciiVerb::pdo_read:
-    case AsciiVerb::pdo_write:
-    case AsciiVerb::nmt:
-      return false;
-    default:
-      return true;
-  }
-}
+bool about_network(AsciiVerb verb) noexcept { return verb > AsciiVerb::nmt; }
 
 /// Reads the numbers before the command: `node` or `net node`, or `net` for a command that concerns
 /// the network.
@@ -198,7 +195,7 @@ Read<void> read_line(Words words, AsciiCommand& out) {
   const auto begin = read_address(words, address);
   if (!begin) return std::unexpected{begin.error()};
   if (auto good = read_command(words.subspan(*begin), out); !good) return good;
-  if (about_network(out)) {
+  if (about_network(out.verb)) {
     if (address.size() > 1) return wrong("this command takes a net and no node");
     if (!address.empty()) out.net = address[0];
     return {};
@@ -211,49 +208,33 @@ Read<void> read_line(Words words, AsciiCommand& out) {
 }  // namespace
 
 std::string_view text(AsciiError error) noexcept {
-  switch (error) {
-    case AsciiError::not_supported:
-      return "request not supported";
-    case AsciiError::syntax:
-      return "syntax error";
-    case AsciiError::internal_state:
-      return "request not processed due to internal state";
-    case AsciiError::timeout:
-      return "time-out";
-    case AsciiError::no_default_net:
-      return "no default net set";
-    case AsciiError::no_default_node:
-      return "no default node set";
-    case AsciiError::unsupported_net:
-      return "unsupported net";
-    case AsciiError::unsupported_node:
-      return "unsupported node";
-    case AsciiError::guarding_lost:
-      return "lost guarding message";
-    case AsciiError::heartbeat_started:
-      return "heartbeat started";
-    case AsciiError::heartbeat_lost:
-      return "heartbeat lost";
-    case AsciiError::error_passive:
-      return "error passive";
-    case AsciiError::bus_off:
-      return "bus off";
-    case AsciiError::buffer_overflow:
-      return "CAN buffer overflow";
-    case AsciiError::pdo_length:
-      return "PDO length exceeded";
-    case AsciiError::lss_manufacturer:
-      return "LSS manufacturer-specific error";
-    case AsciiError::lss_node_id:
-      return "LSS node-ID not supported";
-    case AsciiError::lss_bit_rate:
-      return "LSS bit-rate not supported";
-    case AsciiError::lss_store:
-      return "LSS parameter storing failed";
-    case AsciiError::lss_media:
-      return "LSS command failed because of media error";
-  }
-  return "unknown error";
+  using enum AsciiError;
+  struct Text {
+    AsciiError error;
+    std::string_view text;
+  };
+  static constexpr Text texts[] = {{not_supported, "request not supported"},
+                                   {syntax, "syntax error"},
+                                   {internal_state, "request not processed due to internal state"},
+                                   {timeout, "time-out"},
+                                   {no_default_net, "no default net set"},
+                                   {no_default_node, "no default node set"},
+                                   {unsupported_net, "unsupported net"},
+                                   {unsupported_node, "unsupported node"},
+                                   {guarding_lost, "lost guarding message"},
+                                   {heartbeat_started, "heartbeat started"},
+                                   {heartbeat_lost, "heartbeat lost"},
+                                   {error_passive, "error passive"},
+                                   {bus_off, "bus off"},
+                                   {buffer_overflow, "CAN buffer overflow"},
+                                   {pdo_length, "PDO length exceeded"},
+                                   {lss_manufacturer, "LSS manufacturer-specific error"},
+                                   {lss_node_id, "LSS node-ID not supported"},
+                                   {lss_bit_rate, "LSS bit-rate not supported"},
+                                   {lss_store, "LSS parameter storing failed"},
+                                   {lss_media, "LSS command failed because of media error"}};
+  const auto found = std::ranges::find(texts, error, &Text::error);
+  return found == std::end(texts) ? "unknown error" : found->text;
 }
 
 std::expected<std::optional<AsciiCommand>, AsciiRefusal> parse_ascii(std::string_view line) {

@@ -39,11 +39,13 @@ enum class AsciiError : std::uint16_t {
 std::string_view text(AsciiError error) noexcept;
 
 enum class AsciiVerb : std::uint8_t {
+  // commands to a node
   sdo_read,
   sdo_write,
   pdo_read,
   pdo_write,
   nmt,
+  // commands about the network
   set_network,
   set_node,
   set_sdo_timeout,

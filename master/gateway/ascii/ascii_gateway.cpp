@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fmt/format.h>
+#include <ranges>
 #include <utility>
 
 #include "master/core/lss/lss_command.hpp"
 #include "master/gateway/ascii/ascii_text.hpp"
 #include "master/units/units.hpp"
+#include "master/wire/sdo_abort.hpp"
 
 namespace takt {
 namespace {
@@ -44,20 +47,15 @@ void AsciiGateway::disconnect(int client) {
 }
 
 void AsciiGateway::finish(int client, std::uint32_t sequence, const Answer& answer) {
-  if (answer) {
-    ports_.send(client, "[" + std::to_string(sequence) + "] " + *answer);
-  } else {
-    ports_.send(client, error_line(sequence, std::to_string(static_cast<unsigned>(answer.error())),
-                                   text(answer.error())));
-  }
+  ports_.send(client, answer ? fmt::format("[{}] {}", sequence, *answer)
+                             : error_line(sequence, answer.error(), text(answer.error())));
 }
 
 void AsciiGateway::refuse(int client, const AsciiRefusal& refusal) {
   std::string why{text(refusal.error)};
   if (!refusal.why.empty()) why += ": " + refusal.why;
   std::ranges::replace_if(why, [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
-  ports_.send(client, error_line(refusal.sequence,
-                                 std::to_string(static_cast<unsigned>(refusal.error)), why));
+  ports_.send(client, error_line(refusal.sequence, refusal.error, why));
 }
 
 void AsciiGateway::command(int client, std::string_view line) {
@@ -75,8 +73,9 @@ void AsciiGateway::refuse_waited(int client, std::string_view line, Time gap) {
   refuse(client,
          {.sequence = (*command)->sequence,
           .error = AsciiError::internal_state,
-          .why = "taktd did not run for " + std::to_string(gap / std::chrono::milliseconds{1}) +
-                 " ms, and this line may have waited as long: send it again"});
+          .why = fmt::format(
+              "taktd did not run for {} ms, and this line may have waited as long: send it again",
+              gap / std::chrono::milliseconds{1})});
 }
 
 void AsciiGateway::refuse_waited_outputs(int client, std::string_view line, Time gap) {
@@ -90,33 +89,22 @@ void AsciiGateway::refuse_long_line(int client) {
   refuse(client, {.sequence = 0, .error = AsciiError::syntax, .why = "the line is too long"});
 }
 
-/// Returns false if the command was refused.
-bool AsciiGateway::address(int client, const Client& state, const AsciiCommand& command,
-                           std::uint32_t& node) {
-  if (command.net && *command.net != only_net) {
-    finish(client, command.sequence, std::unexpected{AsciiError::unsupported_net});
-    return false;
-  }
-  node = command.node.value_or(state.node);
-  const bool any = command.verb == AsciiVerb::nmt && command.node == 0U;
-  if (node == 0 && !any && !command.node) {
-    finish(client, command.sequence, std::unexpected{AsciiError::no_default_node});
-    return false;
-  }
-  if (node > 127 || (node == 0 && !any)) {
-    finish(client, command.sequence, std::unexpected{AsciiError::unsupported_node});
-    return false;
-  }
-  return true;
+std::expected<std::uint32_t, AsciiError> AsciiGateway::address(const Client& state,
+                                                               const AsciiCommand& command) {
+  if (command.net && *command.net != only_net) return std::unexpected{AsciiError::unsupported_net};
+  const std::uint32_t node = command.node.value_or(state.node);
+  const bool all = command.verb == AsciiVerb::nmt && command.node == 0U;
+  if (node == 0 && !command.node) return std::unexpected{AsciiError::no_default_node};
+  if (node > 127 || (node == 0 && !all)) return std::unexpected{AsciiError::unsupported_node};
+  return node;
 }
 
 void AsciiGateway::run(int client, Client& state, const AsciiCommand& command) {
-  const auto done = [&](std::string text) { finish(client, command.sequence, std::move(text)); };
-  std::uint32_t node = 0;
+  const auto done = [&](const Answer& answer) { finish(client, command.sequence, answer); };
   switch (command.verb) {
     case AsciiVerb::set_network:
       if (command.number == only_net) return done("OK");
-      return finish(client, command.sequence, std::unexpected{AsciiError::unsupported_net});
+      return done(std::unexpected{AsciiError::unsupported_net});
     case AsciiVerb::set_node:
       state.node = command.number;
       return done("OK");
@@ -129,36 +117,32 @@ void AsciiGateway::run(int client, Client& state, const AsciiCommand& command) {
     case AsciiVerb::info_version:  // vendor product revision serial class protocol implementation
       return done("0 0 0.0 0 3 3.0 0.1");
     case AsciiVerb::help:
-      for (std::string_view left = ascii_help(); !left.empty();) {
-        const std::string_view line = left.substr(0, left.find('\n'));
-        ports_.send(client, std::string{line});
-        left.remove_prefix(std::min(left.size(), line.size() + 1));
+      for (const auto line : std::views::split(ascii_help(), '\n')) {
+        ports_.send(client, {line.begin(), line.end()});
       }
       return done("OK");
     case AsciiVerb::lss:
     case AsciiVerb::lss_all_nodes:
       return submit_lss(client, state, command);
     case AsciiVerb::pdo_read:
-      if (address(client, state, command, node)) {
-        finish(client, command.sequence, read_pdo(node, command));
-      }
-      return;
     case AsciiVerb::pdo_write:
-      if (address(client, state, command, node)) write_pdo(client, node, command);
-      return;
     case AsciiVerb::sdo_read:
     case AsciiVerb::sdo_write:
     case AsciiVerb::nmt:
       break;
   }
-  if (!address(client, state, command, node)) return;
-  Request request{.node = static_cast<std::uint8_t>(node), .object = command.object};
-  request.timeout = state.sdo_timeout;
-  request.command = command.nmt;
-  request.kind = command.verb == AsciiVerb::nmt         ? RequestKind::nmt
-                 : command.verb == AsciiVerb::sdo_write ? RequestKind::sdo_download
-                                                        : RequestKind::sdo_upload;
-  request.size = static_cast<std::uint16_t>(command.value.size());
+  const auto node = address(state, command);
+  if (!node) return done(std::unexpected{node.error()});
+  if (command.verb == AsciiVerb::pdo_read) return done(read_pdo(*node, command));
+  if (command.verb == AsciiVerb::pdo_write) return write_pdo(client, *node, command);
+  Request request{.kind = command.verb == AsciiVerb::nmt         ? RequestKind::nmt
+                          : command.verb == AsciiVerb::sdo_write ? RequestKind::sdo_download
+                                                                 : RequestKind::sdo_upload,
+                  .node = static_cast<std::uint8_t>(*node),
+                  .object = command.object,
+                  .command = command.nmt,
+                  .timeout = state.sdo_timeout,
+                  .size = static_cast<std::uint16_t>(command.value.size())};
   std::ranges::copy(command.value, request.data.begin());
   submit(client, state, command, request);
 }
@@ -195,12 +179,12 @@ void AsciiGateway::submit_lss(int client, Client& state, const AsciiCommand& com
 AsciiGateway::Answer AsciiGateway::read_pdo(std::uint32_t node, const AsciiCommand& command) const {
   const PdoRow* const row = find_row(plan_.pdos.tpdos, node, command.number);
   if (row == nullptr) return std::unexpected{AsciiError::unsupported_node};
-  std::string text = std::to_string(only_net) + " pdo " + std::to_string(row->field_count);
+  std::string text = fmt::format("{} pdo {}", only_net, row->field_count);
   for (std::uint16_t i = 0; i < row->field_count; ++i) {
     const std::size_t signal = plan_.pdos.fields[row->first_field + i].signal;
     const bool known = signal < values_.size() && (stale_[signal / 64] >> (signal % 64) & 1) == 0;
     if (!known) return std::unexpected{AsciiError::timeout};
-    text += ' ' + std::to_string(values_[signal]);
+    text += fmt::format(" {}", values_[signal]);
   }
   return text;
 }
@@ -219,8 +203,8 @@ void AsciiGateway::write_pdo(int client, std::uint32_t node, const AsciiCommand&
     if (fits(signal.type, signal.bits, command.values[i])) continue;
     return refuse(client, {.sequence = command.sequence,
                            .error = AsciiError::syntax,
-                           .why = std::to_string(command.values[i]) + " does not fit the " +
-                                  std::to_string(signal.bits) + " bits of " + signal.name});
+                           .why = fmt::format("{} does not fit the {} bits of {}",
+                                              command.values[i], signal.bits, signal.name)});
   }
   if (!ports_.write(signals, command.values)) return wrong(AsciiError::internal_state);
   finish(client, command.sequence, "OK");
@@ -236,20 +220,20 @@ void AsciiGateway::take(const Reply& reply) {
   --client->second.pending;
   const AsciiCommand& command = pending.command;
   if (command.verb == AsciiVerb::lss_all_nodes) return follow_all_nodes(std::move(pending), reply);
+  const auto finished = [&](const Answer& answer) {
+    finish(pending.client, command.sequence, answer);
+  };
+  if (reply.fault != SdoFault::none && reply.abort_code == 0) {
+    return finished(std::unexpected{error_of(reply)});
+  }
   if (reply.fault != SdoFault::none) {
-    if (reply.abort_code != 0) {
-      return ports_.send(pending.client, abort_line(command.sequence, reply.abort_code));
-    }
-    return finish(pending.client, command.sequence, std::unexpected{error_of(reply)});
+    return ports_.send(pending.client, abort_line(command.sequence, reply.abort_code));
   }
-  if (command.verb == AsciiVerb::lss) {
-    return finish(pending.client, command.sequence, lss_answer(command, reply));
-  }
-  if (command.verb != AsciiVerb::sdo_read) return finish(pending.client, command.sequence, "OK");
+  if (command.verb == AsciiVerb::lss) return finished(lss_answer(command, reply));
+  if (command.verb != AsciiVerb::sdo_read) return finished("OK");
   const auto value = ascii_text(command.type, std::span{reply.data}.first(reply.size));
-  constexpr std::uint32_t length_mismatch = 0x0607'0010;
-  if (!value) return ports_.send(pending.client, abort_line(command.sequence, length_mismatch));
-  finish(pending.client, command.sequence, *value);
+  if (value) return finished(*value);
+  ports_.send(pending.client, abort_line(command.sequence, abort_code::length_mismatch));
 }
 
 /// Assigns node-IDs to one device after the other, until no device or no node-ID is left.
@@ -262,8 +246,8 @@ void AsciiGateway::follow_all_nodes(Pending pending, const Reply& reply) {
     return finish(client, command.sequence, std::unexpected{error_of(reply)});
   }
   if (!nobody && !results.empty()) {
-    ports_.send(client, "# node-ID " + std::to_string(command.number) +
-                            " assigned to: " + address_text(results.front()));
+    ports_.send(client, fmt::format("# node-ID {} assigned to: {}", command.number,
+                                    address_text(results.front())));
     ++command.number;
   }
   if (nobody || command.number > 127) return finish(client, command.sequence, "OK");
@@ -277,16 +261,17 @@ void AsciiGateway::report_all(const std::string& line, bool bootup) {
 }
 
 void AsciiGateway::hear(const Event& event) {
-  const std::string net = std::to_string(only_net) + " ";
+  const auto from_node = [&](std::string_view text) {
+    return fmt::format("{} {} {}", only_net, event.node, text);
+  };
   if (event.node == 0) {
     const std::string text = bus_event(event.kind);
-    if (!text.empty()) report_all(net + text);
-    return;
+    if (!text.empty()) report_all(fmt::format("{} {}", only_net, text));
+  } else if (is_bootup(event)) {
+    report_all(from_node("BOOT_UP"), true);
+  } else if (const std::string text = node_event(event); !text.empty()) {
+    report_all(from_node(text));
   }
-  const std::string from = net + std::to_string(event.node) + " ";
-  if (is_bootup(event)) return report_all(from + "BOOT_UP", true);
-  const std::string text = node_event(event);
-  if (!text.empty()) report_all(from + text);
 }
 
 void AsciiGateway::see(const ImageView& image) {

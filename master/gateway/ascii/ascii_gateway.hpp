@@ -70,7 +70,9 @@ class AsciiGateway final : public FrontGuest {
   void run(int client, Client& state, const AsciiCommand& command);
   void finish(int client, std::uint32_t sequence, const Answer& answer);
   void refuse(int client, const AsciiRefusal& refusal);
-  bool address(int client, const Client& state, const AsciiCommand& command, std::uint32_t& node);
+  /// Returns the node that a command is for.
+  static std::expected<std::uint32_t, AsciiError> address(const Client& state,
+                                                          const AsciiCommand& command);
   void submit(int client, Client& state, AsciiCommand command, Request request);
   void submit_lss(int client, Client& state, const AsciiCommand& command);
   Answer read_pdo(std::uint32_t node, const AsciiCommand& command) const;

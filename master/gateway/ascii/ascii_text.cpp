@@ -1,20 +1,15 @@
 #include "master/gateway/ascii/ascii_text.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <fmt/format.h>
 #include <span>
+#include <utility>
 
 #include "master/wire/bytes.hpp"
 #include "master/wire/sdo_abort.hpp"
 
 namespace takt::ascii {
 namespace {
-
-std::string hex_text(std::uint32_t value, int digits) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%0*X", digits, value);
-  return text;
-}
 
 AsciiError error_of(const LssResult& result) noexcept {
   if (result.outcome != LssOutcome::refused) return AsciiError::timeout;
@@ -24,7 +19,7 @@ AsciiError error_of(const LssResult& result) noexcept {
   return result.error == 2 ? AsciiError::lss_media : AsciiError::lss_store;
 }
 
-std::string state_text(NmtState state) {
+std::string_view state_text(NmtState state) {
   switch (state) {
     case NmtState::stopped:
       return "STOP";
@@ -32,35 +27,39 @@ std::string state_text(NmtState state) {
       return "OPER";
     case NmtState::preoperational:
       return "PREO";
-    case NmtState::bootup:
-    case NmtState::unknown:
-      break;
+    default:
+      return {};
   }
-  return {};
 }
 
 std::string error_event(AsciiError error) {
-  return "ERROR " + std::to_string(static_cast<unsigned>(error)) + " (" + std::string{text(error)} +
-         ")";
+  return fmt::format("ERROR {} ({})", std::to_underlying(error), text(error));
 }
 
 /// Formats `EMCY code register vendor bytes` as in CiA 309-3.
 std::string emcy_event(const Event& event) {
-  char text[64];
-  const auto& b = event.bytes;
-  std::snprintf(text, sizeof text, "EMCY %04X %02X %u %u %u %u %u",
-                load_le<std::uint16_t>(std::span{b}), b[2], b[3], b[4], b[5], b[6], b[7]);
+  const std::span bytes{event.bytes};
+  return fmt::format("EMCY {:04X} {:02X} {}", load_le<std::uint16_t>(bytes), bytes[2],
+                     fmt::join(bytes.subspan(3), " "));
+}
+
+/// The first number of each result, in hex.
+std::string first_numbers(std::span<const LssResult> results) {
+  std::string text;
+  for (const LssResult& result : results) {
+    text += fmt::format("{}0x{:08X}", text.empty() ? "" : " ", result.numbers[0]);
+  }
   return text;
 }
 
 }  // namespace
 
-std::string error_line(std::uint32_t sequence, const std::string& code, std::string_view why) {
-  return "[" + std::to_string(sequence) + "] ERROR: " + code + " (" + std::string{why} + ")";
+std::string error_line(std::uint32_t sequence, AsciiError error, std::string_view why) {
+  return fmt::format("[{}] ERROR: {} ({})", sequence, std::to_underlying(error), why);
 }
 
 std::string abort_line(std::uint32_t sequence, std::uint32_t code) {
-  return error_line(sequence, hex_text(code, 8), abort_text(code));
+  return fmt::format("[{}] ERROR: 0x{:08X} ({})", sequence, code, abort_text(code));
 }
 
 std::vector<LssResult> lss_results(const Reply& reply) {
@@ -74,12 +73,6 @@ std::vector<LssResult> lss_results(const Reply& reply) {
 
 AsciiError error_of(const Reply& reply) {
   switch (reply.fault) {
-    case SdoFault::none:
-    case SdoFault::aborted_by_device:
-    case SdoFault::aborted_by_master:
-    case SdoFault::too_long:
-    case SdoFault::timeout:
-      return AsciiError::timeout;
     case SdoFault::no_such_node:
     case SdoFault::no_such_pdo:
       return AsciiError::unsupported_node;
@@ -91,19 +84,17 @@ AsciiError error_of(const Reply& reply) {
     case SdoFault::lss_refused:
     case SdoFault::wrong_length:
       return AsciiError::not_supported;
-    case SdoFault::lss_failed:
-      break;
+    case SdoFault::lss_failed: {
+      const auto results = lss_results(reply);
+      return results.empty() ? AsciiError::timeout : error_of(results.back());
+    }
+    default:
+      return AsciiError::timeout;
   }
-  const auto results = lss_results(reply);
-  return results.empty() ? AsciiError::timeout : error_of(results.back());
 }
 
 std::string address_text(const LssResult& result) {
-  std::string text;
-  for (const std::uint32_t part : result.numbers) {
-    text += (text.empty() ? "" : " ") + hex_text(part, 8);
-  }
-  return text;
+  return fmt::format("0x{:08X}", fmt::join(result.numbers, " 0x"));
 }
 
 std::string lss_answer(const AsciiCommand& command, const Reply& reply) {
@@ -119,15 +110,10 @@ std::string lss_answer(const AsciiCommand& command, const Reply& reply) {
     case LssOp::inquire_product:
     case LssOp::inquire_revision:
     case LssOp::inquire_serial:
-      break;
+      return first_numbers(results);
     default:
       return "OK";
   }
-  std::string text;
-  for (const LssResult& result : results) {
-    text += (text.empty() ? "" : " ") + hex_text(result.numbers[0], 8);
-  }
-  return text;
 }
 
 std::string node_event(const Event& event) {
@@ -146,8 +132,8 @@ std::string node_event(const Event& event) {
       return std::string{"USER BOOT "} + event.failure.letter;
     case EventKind::node_state: {
       const auto state = static_cast<NmtState>(static_cast<std::uint8_t>(event.value));
-      const std::string name = state_text(state);
-      return name.empty() ? name : "USER STATE " + name;
+      const std::string_view name = state_text(state);
+      return name.empty() ? "" : fmt::format("USER STATE {}", name);
     }
     default:
       return {};

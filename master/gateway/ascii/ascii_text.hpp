@@ -14,7 +14,7 @@
 namespace takt::ascii {
 
 /// `[seq] ERROR: code (why)`.
-std::string error_line(std::uint32_t sequence, const std::string& code, std::string_view why);
+std::string error_line(std::uint32_t sequence, AsciiError error, std::string_view why);
 std::string abort_line(std::uint32_t sequence, std::uint32_t code);
 /// Error code for a reply that failed and has no abort code.
 AsciiError error_of(const Reply& reply);

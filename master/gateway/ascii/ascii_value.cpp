@@ -1,86 +1,49 @@
 #include "master/gateway/ascii/ascii_value.hpp"
 
-#include <algorithm>
-#include <array>
 #include <charconv>
+#include <fmt/format.h>
+#include <sodium.h>
 
 #include "master/gateway/message/value_text.hpp"
+#include "master/lcm/messages.hpp"
+#include "master/wire/bytes.hpp"
 
 namespace takt {
 namespace {
 
-constexpr std::string_view digits64 =
-    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-constexpr std::string_view digits16 = "0123456789ABCDEF";
+constexpr int padded = sodium_base64_VARIANT_ORIGINAL;
 
 std::string base64(std::span<const std::byte> bytes) {
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      group = group << 8 | (k < left ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += k <= left ? digits64[group >> (18 - 6 * k) & 0x3F] : '=';
-    }
-  }
+  std::string text(sodium_base64_ENCODED_LEN(bytes.size(), padded), '\0');
+  ::sodium_bin2base64(text.data(), text.size(), octets(bytes).data(), bytes.size(), padded);
+  text.pop_back();  // the zero at the end
   return text;
 }
 
 std::expected<std::vector<std::byte>, std::string> from_base64(std::string_view text) {
-  std::vector<std::byte> bytes;
-  std::uint32_t group = 0;
-  unsigned bits = 0;
-  const std::size_t end = text.find_last_not_of('=') + 1;
-  if (text.size() % 4 != 0 || text.size() - end > 2) {
-    return std::unexpected{std::string{"base64 comes in groups of four characters"}};
+  std::vector<std::byte> bytes(text.size());
+  std::size_t size = 0;
+  if (::sodium_base642bin(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), text.data(),
+                          text.size(), nullptr, &size, nullptr, padded) != 0) {
+    return std::unexpected{std::string{"this is no base64"}};
   }
-  for (const char c : text.substr(0, end)) {
-    const std::size_t digit = digits64.find(c);
-    if (digit == digits64.npos) return std::unexpected{std::string{"this is no base64"}};
-    group = (group << 6 | static_cast<std::uint32_t>(digit)) & 0xFF'FFFF;
-    bits += 6;
-    if (bits < 8) continue;
-    bits -= 8;
-    bytes.push_back(static_cast<std::byte>(group >> bits & 0xFF));
-  }
+  bytes.resize(size);
   return bytes;
 }
 
 /// Quotes a string and escapes control characters, which must not break the line.
 std::string quoted(std::span<const std::byte> bytes) {
   std::string text{'"'};
-  for (const std::byte byte : bytes) {
-    const auto c = std::to_integer<unsigned char>(byte);
+  for (const std::uint8_t c : octets(bytes)) {
     if (c == '"') {
       text += "\"\"";
     } else if (c < 0x20 || c == 0x7F) {
-      text += {'\\', 'x', digits16[c >> 4], digits16[c & 0xF]};
+      text += fmt::format("\\x{:02X}", c);
     } else {
       text += static_cast<char>(c);
     }
   }
   return text + '"';
-}
-
-std::string hex_number(std::span<const std::byte> bytes) {
-  std::string text = "0x";
-  for (std::size_t i = bytes.size(); i-- > 0;) {
-    text += digits16[std::to_integer<std::size_t>(bytes[i]) >> 4];
-    text += digits16[std::to_integer<std::size_t>(bytes[i]) & 0xF];
-  }
-  return text;
-}
-
-std::string hex_bytes_text(std::span<const std::byte> bytes) {
-  std::string text;
-  for (const std::byte byte : bytes) {
-    if (!text.empty()) text += ' ';
-    text += digits16[std::to_integer<std::size_t>(byte) >> 4];
-    text += digits16[std::to_integer<std::size_t>(byte) & 0xF];
-  }
-  return text;
 }
 
 }  // namespace
@@ -111,7 +74,8 @@ std::optional<std::string> ascii_text(AsciiType type, std::span<const std::byte>
     case AsciiType::Form::plain:
       return value_text(type.type, bytes);
     case AsciiType::Form::hex:
-      return is_bytes(type.type) ? hex_bytes_text(bytes) : hex_number(bytes);
+      if (is_bytes(type.type)) return fmt::format("{:02X}", fmt::join(octets(bytes), " "));
+      return fmt::format("0x{:0{}X}", load_le<std::uint64_t>(bytes), 2 * bytes.size());
     case AsciiType::Form::quoted:
       return quoted(bytes);
     case AsciiType::Form::base64:

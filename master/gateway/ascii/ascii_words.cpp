@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <fmt/format.h>
 
 namespace takt::ascii {
 namespace {
@@ -57,10 +58,8 @@ Read<std::vector<Word>> split(std::string_view line) {
 
 Read<std::uint32_t> number(Words words, std::size_t at, std::uint32_t most, const char* what) {
   const auto value = at < words.size() ? parse_ascii_integer(words[at].text) : std::nullopt;
-  if (!value) return wrong(std::string{"expected "} + what + " (decimal, or 0x hex)");
-  if (*value < 0 || *value > most) {
-    return wrong(std::string{what} + " is not in 0.." + std::to_string(most));
-  }
+  if (!value) return wrong(fmt::format("expected {} (decimal, or 0x hex)", what));
+  if (*value < 0 || *value > most) return wrong(fmt::format("{} is not in 0..{}", what, most));
   return static_cast<std::uint32_t>(*value);
 }
 
@@ -72,7 +71,7 @@ bool is(const Word& word, std::string_view short_form, std::string_view full) {
 }
 
 Read<void> end_at(Words words, std::size_t count) {
-  if (words.size() > count) return wrong("'" + words[count].text + "' is too much");
+  if (words.size() > count) return wrong("unexpected word '" + words[count].text + "'");
   return {};
 }
 

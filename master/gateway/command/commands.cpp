@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fmt/format.h>
 #include <utility>
 
 #include "master/core/set_point.hpp"
@@ -21,13 +22,10 @@ std::uint32_t cycles_in(Time span, Time period) noexcept {
   return static_cast<std::uint32_t>(std::max<std::int64_t>(1, span / period));
 }
 
-std::string signal_text(const BusPlan& plan, const Signal& signal) {
-  return plan.nodes[signal.node_index].name + "." + signal.name;
-}
-
 std::string too_old(const command_t& command, const CommandContext& context) {
-  return "the command is too old: it is computed from cycle " + std::to_string(command.cycle) +
-         ", the present cycle is " + std::to_string(context.cycle);
+  return fmt::format(
+      "the command is too old: it is computed from cycle {}, the present cycle is {}",
+      command.cycle, context.cycle);
 }
 
 std::string overtaken(const command_t& command) {
@@ -66,20 +64,18 @@ std::string_view name(CommandRefusal refusal) noexcept {
   return refusal_names[std::to_underlying(refusal)];
 }
 
-bool Commands::refuse(const Refused& refused, const std::string& why) {
-  const auto& [context, command, reason, node] = refused;
+bool Commands::refuse(const Received& from, const Refused& refused, const std::string& why) {
+  const auto& [reason, node] = refused;
   count(reason);
-  const std::string sender = shown(command.sender);
-  const std::string thing = sender + '/' + std::to_string(node) + '/' + why.substr(0, 24);
-  const auto kept_back = reported_.allow(thing, context.now);
+  const std::string sender = shown(from.command.sender);
+  const auto kept_back =
+      reported_.allow(fmt::format("{}/{}/{:.24}", sender, node, why), from.context.now);
   if (!kept_back) return false;
-  std::string text = "command of '" + sender + "' refused";
-  if (node != 0)
-    text += " for node " + std::to_string(node) + " (" + std::string{node_name(plan_, node)} + ")";
-  text += ": " + why;
-  if (*kept_back != 0) text += " (" + std::to_string(*kept_back) + " more since the last message)";
-  announce_({.when = context.now,
-             .cycle = context.cycle,
+  std::string text = fmt::format("command of '{}' refused", sender);
+  if (node != 0) text += fmt::format(" for node {} ({})", node, node_name(plan_, node));
+  text = with_kept_back(fmt::format("{}: {}", text, why), *kept_back);
+  announce_({.when = from.context.now,
+             .cycle = from.context.cycle,
              .node = node,
              .kind = "command_refused",
              .weight = Weight::warning,
@@ -87,26 +83,26 @@ bool Commands::refuse(const Refused& refused, const std::string& why) {
   return false;
 }
 
-bool Commands::check_message(const command_t& command, const CommandContext& context) {
+bool Commands::check_message(const Received& from) {
   if (options_.observe) {
-    return refuse({context, command, CommandRefusal::observing}, "taktd only observes (--observe)");
+    return refuse(from, {CommandRefusal::observing}, "taktd only observes (--observe)");
   }
-  if (command.schema != message_schema) {
-    return refuse({context, command, CommandRefusal::schema}, schema_refusal(command.schema));
+  if (from.command.schema != message_schema) {
+    return refuse(from, {CommandRefusal::schema}, schema_refusal(from.command.schema));
   }
-  if (command.session != options_.session) {
-    return refuse({context, command, CommandRefusal::session},
+  if (from.command.session != options_.session) {
+    return refuse(from, {CommandRefusal::session},
                   "the command is for another session of taktd (a replayed log, or taktd has "
                   "restarted); use the session of the newest image_t");
   }
-  if (command.sender.empty() || command.sender.size() > longest_sender ||
-      std::ranges::any_of(command.sender, is_control)) {
-    return refuse({context, command, CommandRefusal::sender},
+  if (from.command.sender.empty() || from.command.sender.size() > longest_sender ||
+      std::ranges::any_of(from.command.sender, is_control)) {
+    return refuse(from, {CommandRefusal::sender},
                   "the sender must have a name of 1 to 64 characters without control characters");
   }
-  if (command.instance == 0) {
+  if (from.command.instance == 0) {
     return refuse(
-        {context, command, CommandRefusal::sender},
+        from, {CommandRefusal::sender},
         "the command has instance 0; a sender chooses a random number other than 0 at its start");
   }
   return true;
@@ -114,43 +110,44 @@ bool Commands::check_message(const command_t& command, const CommandContext& con
 
 /// Checks the cycle of the command. Only a command computed from an image of this run can be
 /// judged.
-bool Commands::check_cycle(const command_t& command, const CommandContext& context) {
-  if (command.cycle < 1) {
-    return refuse({context, command, CommandRefusal::no_cycle},
-                  "the command is computed from cycle " + std::to_string(command.cycle) +
-                      ", which does not exist: a command repeats the cycle of the image from which "
-                      "it was computed");
+bool Commands::check_cycle(const Received& from) {
+  if (from.command.cycle < 1) {
+    return refuse(from, {CommandRefusal::no_cycle},
+                  fmt::format("the command is computed from cycle {}, which does not exist: a "
+                              "command repeats the cycle of the image from which it was computed",
+                              from.command.cycle));
   }
-  if (static_cast<std::uint64_t>(command.cycle) <= context.cycle + 1) return true;
-  return refuse({context, command, CommandRefusal::future},
-                "the command comes from the future: it is computed from cycle " +
-                    std::to_string(command.cycle) + ", the present cycle is " +
-                    std::to_string(context.cycle));
+  if (static_cast<std::uint64_t>(from.command.cycle) <= from.context.cycle + 1) return true;
+  return refuse(from, {CommandRefusal::future},
+                fmt::format("the command comes from the future: it is computed from cycle {}, the "
+                            "present cycle is {}",
+                            from.command.cycle, from.context.cycle));
 }
 
-bool Commands::read_items(const command_t& command, const CommandContext& context) {
+bool Commands::read_items(const Received& from) {
   items_.clear();
-  for (std::size_t i = 0; i < command.signals.size(); ++i) {
-    const std::int32_t position = command.signals[i];
+  for (std::size_t i = 0; i < from.command.signals.size(); ++i) {
+    const std::int32_t position = from.command.signals[i];
     const auto index = static_cast<std::size_t>(position);
     if (position < 0 || index >= plan_.layout.signals.size() ||
         !plan_.layout.signals[index].output) {
-      return refuse({context, command, CommandRefusal::bad_signal},
-                    "signal " + std::to_string(position) + " is not an output of the layout");
+      return refuse(from, {CommandRefusal::bad_signal},
+                    fmt::format("signal {} is not an output of the layout", position));
     }
     const Signal& signal = plan_.layout.signals[index];
-    if (!fits(signal.type, signal.bits, command.values[i])) {
-      return refuse({context, command, CommandRefusal::bad_value, signal.node.value()},
-                    "the value of " + signal_text(plan_, signal) + ", " +
-                        std::to_string(command.values[i]) + ", does not fit its " +
-                        std::to_string(signal.bits) + " bits");
+    if (!fits(signal.type, signal.bits, from.command.values[i])) {
+      return refuse(from, {CommandRefusal::bad_value, signal.node.value()},
+                    fmt::format("the value of {}.{}, {}, does not fit its {} bits",
+                                plan_.nodes[signal.node_index].name, signal.name,
+                                from.command.values[i], signal.bits));
     }
-    const Freshness left = freshness_of(command, context.cycle, signal.fallback_cycles);
+    const Freshness left = freshness_of(from.command, from.context.cycle, signal.fallback_cycles);
     if (!left.fresh) {
-      return refuse({context, command, CommandRefusal::too_old, signal.node.value()},
-                    too_old(command, context));
+      return refuse(from, {CommandRefusal::too_old, signal.node.value()},
+                    too_old(from.command, from.context));
     }
-    items_.push_back({static_cast<SignalIndex>(index), command.values[i], left.cycles, left.limit});
+    items_.push_back(
+        {static_cast<SignalIndex>(index), from.command.values[i], left.cycles, left.limit});
   }
   return !items_.empty();
 }
@@ -174,44 +171,39 @@ std::uint32_t Commands::lease_cycles(std::size_t node_index) const noexcept {
   return longest;
 }
 
-bool Commands::check_node(std::size_t node_index, const command_t& command,
-                          const CommandContext& context) {
+bool Commands::check_node(std::size_t node_index, const Received& from) {
   const std::uint8_t node = plan_.nodes[node_index].id.value();
-  const NodeStatus& status = context.nodes[node_index];
+  const NodeStatus& status = from.context.nodes[node_index];
   if (plan_.nodes[node_index].boot && status.boot != BootState::ready) {
-    return refuse({context, command, CommandRefusal::not_ready, node},
-                  "the node has not booted yet");
+    return refuse(from, {CommandRefusal::not_ready, node}, "the node has not booted yet");
   }
   if (status.nmt != NmtState::operational) {
-    return refuse({context, command, CommandRefusal::not_ready, node},
-                  "the node is not operational");
+    return refuse(from, {CommandRefusal::not_ready, node}, "the node is not operational");
   }
-  const Sender sender{.instance = command.instance, .name = command.sender};
-  const LeaseTerm term{.now = context.cycle,
+  const Sender sender{.instance = from.command.instance, .name = from.command.sender};
+  const LeaseTerm term{.now = from.context.cycle,
                        .cycles = lease_cycles(node_index),
-                       .computed_from = static_cast<std::uint64_t>(command.cycle)};
+                       .computed_from = static_cast<std::uint64_t>(from.command.cycle)};
   switch (leases_.take(node_index, sender, term)) {
     case LeaseVerdict::taken:
       return true;
     case LeaseVerdict::held:
-      return refuse({context, command, CommandRefusal::held, node},
-                    owned_text(node_index, command, context));
+      return refuse(from, {CommandRefusal::held, node}, owned_text(node_index, from));
     case LeaseVerdict::overtaken:
-      return refuse({context, command, CommandRefusal::overtaken, node}, overtaken(command));
+      return refuse(from, {CommandRefusal::overtaken, node}, overtaken(from.command));
     case LeaseVerdict::released:
-      return refuse({context, command, CommandRefusal::overtaken, node}, after_release(command));
+      return refuse(from, {CommandRefusal::overtaken, node}, after_release(from.command));
   }
   return false;
 }
 
-std::string Commands::owned_text(std::size_t node_index, const command_t& command,
-                                 const CommandContext& context) const {
-  const std::string holder{leases_.holder(node_index, context.cycle)};
-  const std::string who = holder == command.sender
-                              ? "another program of the same name, '" + holder + "',"
-                              : "'" + holder + "'";
-  return "the outputs of the node belong to " + who +
-         " until this sender releases them or the time to live of its commands has expired";
+std::string Commands::owned_text(std::size_t node_index, const Received& from) const {
+  const std::string_view holder = leases_.holder(node_index, from.context.cycle);
+  const bool same_name = holder == from.command.sender;
+  return fmt::format(
+      "the outputs of the node belong to {}'{}'{} until this sender releases them or the time to "
+      "live of its commands has expired",
+      same_name ? "another program of the same name, " : "", holder, same_name ? "," : "");
 }
 
 /// Returns the shortest configured time to live of the node's outputs; 0 means no limit.
@@ -226,16 +218,15 @@ std::uint32_t Commands::shortest_limit(std::size_t node) const noexcept {
 }
 
 /// A release is judged like a command: a copy of an old one must not stop the axes.
-bool Commands::release_node(std::size_t node, const command_t& command,
-                            const CommandContext& context) {
-  if (!leases_.holds(node, command.instance, context.cycle)) return false;
+bool Commands::release_node(std::size_t node, const Received& from) {
+  if (!leases_.holds(node, from.command.instance, from.context.cycle)) return false;
   const std::uint8_t id = plan_.nodes[node].id.value();
-  if (!freshness_of(command, context.cycle, shortest_limit(node)).fresh) {
-    return refuse({context, command, CommandRefusal::too_old, id}, too_old(command, context));
+  if (!freshness_of(from.command, from.context.cycle, shortest_limit(node)).fresh) {
+    return refuse(from, {CommandRefusal::too_old, id}, too_old(from.command, from.context));
   }
-  const auto computed_from = static_cast<std::uint64_t>(command.cycle);
-  if (!leases_.release(node, context.cycle, computed_from)) {
-    return refuse({context, command, CommandRefusal::overtaken, id}, overtaken(command));
+  const auto computed_from = static_cast<std::uint64_t>(from.command.cycle);
+  if (!leases_.release(node, from.context.cycle, computed_from)) {
+    return refuse(from, {CommandRefusal::overtaken, id}, overtaken(from.command));
   }
   for (std::size_t i = plan_.layout.inputs; i < plan_.layout.signals.size(); ++i) {
     if (plan_.layout.signals[i].node_index != node) continue;
@@ -244,21 +235,21 @@ bool Commands::release_node(std::size_t node, const command_t& command,
   return true;
 }
 
-bool Commands::release(const command_t& command, const CommandContext& context) {
+bool Commands::release(const Received& from) {
   std::string nodes;
   for (std::size_t node = 0; node < plan_.nodes.size(); ++node) {
-    if (context.only_node.value_or(node) != node) continue;
-    if (!release_node(node, command, context)) continue;
+    if (from.context.only_node.value_or(node) != node) continue;
+    if (!release_node(node, from)) continue;
     nodes += (nodes.empty() ? "" : ", ") + plan_.nodes[node].name;
   }
   if (nodes.empty()) return false;
   ++taken_;
-  announce_({.when = context.now,
-             .cycle = context.cycle,
+  announce_({.when = from.context.now,
+             .cycle = from.context.cycle,
              .node = 0,
              .kind = "outputs_released",
              .weight = Weight::note,
-             .text = "'" + command.sender + "' has released the outputs of " + nodes});
+             .text = "'" + from.command.sender + "' has released the outputs of " + nodes});
   return true;
 }
 
@@ -268,17 +259,18 @@ std::optional<CommandLimit> Commands::newest_limit(std::int64_t signal) const no
 }
 
 bool Commands::take(const command_t& command, const CommandContext& context) {
-  if (!check_message(command, context)) return false;
-  if (!check_cycle(command, context)) return false;
-  if (command.release != 0) return release(command, context);
-  if (!read_items(command, context)) return false;
+  const Received from{command, context};
+  if (!check_message(from)) return false;
+  if (!check_cycle(from)) return false;
+  if (command.release != 0) return release(from);
+  if (!read_items(from)) return false;
   std::ranges::fill(verdicts_, Verdict::unknown);
   bool any = false;
   for (const Item& item : items_) {
     const std::size_t node = plan_.layout.signals[item.signal].node_index;
     if (node >= context.nodes.size()) continue;
     if (verdicts_[node] == Verdict::unknown) {
-      verdicts_[node] = check_node(node, command, context) ? Verdict::accepted : Verdict::refused;
+      verdicts_[node] = check_node(node, from) ? Verdict::accepted : Verdict::refused;
     }
     if (verdicts_[node] == Verdict::refused) continue;
     set_output_(item.signal, item.value, item.cycles);

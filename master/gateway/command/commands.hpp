@@ -93,26 +93,29 @@ class Commands {
   };
   enum class Verdict : std::uint8_t { unknown, accepted, refused };
 
-  bool check_message(const command_t& command, const CommandContext& context);
-  bool read_items(const command_t& command, const CommandContext& context);
-  bool check_node(std::size_t node_index, const command_t& command, const CommandContext& context);
-  bool check_cycle(const command_t& command, const CommandContext& context);
-  std::string owned_text(std::size_t node_index, const command_t& command,
-                         const CommandContext& context) const;
-  bool release(const command_t& command, const CommandContext& context);
-  bool release_node(std::size_t node, const command_t& command, const CommandContext& context);
+  /// A message and the state of the bus when it arrived.
+  struct Received {
+    const command_t& command;
+    const CommandContext& context;
+  };
+
+  bool check_message(const Received& from);
+  bool read_items(const Received& from);
+  bool check_node(std::size_t node_index, const Received& from);
+  bool check_cycle(const Received& from);
+  std::string owned_text(std::size_t node_index, const Received& from) const;
+  bool release(const Received& from);
+  bool release_node(std::size_t node, const Received& from);
   Freshness freshness_of(const command_t& command, std::uint64_t now,
                          std::uint32_t configured) const noexcept;
   std::uint32_t shortest_limit(std::size_t node) const noexcept;
   std::uint32_t lease_cycles(std::size_t node_index) const noexcept;
-  /// The refused command, the reason and the node concerned.
+  /// The reason and the node concerned; 0 stands for none.
   struct Refused {
-    const CommandContext& context;
-    const command_t& command;
     CommandRefusal reason;
     std::uint8_t node = 0;
   };
-  bool refuse(const Refused& refused, const std::string& why);
+  bool refuse(const Received& from, const Refused& refused, const std::string& why);
   void count(CommandRefusal reason) noexcept { ++refused_[std::to_underlying(reason)]; }
 
   const BusPlan& plan_;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fmt/format.h>
 #include <iterator>
 #include <tuple>
 #include <utility>
 
+#include "eds_parser/table/name_of.hpp"
 #include "master/core/lss/lss_command.hpp"
 #include "master/gateway/notice/notice.hpp"
 #include "master/lcm/messages.hpp"
@@ -27,10 +29,6 @@ constexpr std::size_t longest_service = 32;
 constexpr Time remembered = 12s;
 constexpr Time echo_limit = 50ms;  // time between the arrivals of one message by two ways
 
-bool same_asker(const request_t& a, const request_t& b) {
-  return a.id == b.id && a.sender == b.sender;
-}
-
 bool same_message(const request_t& a, const request_t& b) {
   const auto fields = [](const request_t& m) {
     return std::tie(m.utime, m.schema, m.session, m.id, m.sender, m.service, m.node_id, m.index,
@@ -39,26 +37,31 @@ bool same_message(const request_t& a, const request_t& b) {
   return fields(a) == fields(b);
 }
 
-std::optional<NmtCommand> nmt_command(std::int16_t code) noexcept {
-  switch (static_cast<NmtCommand>(code)) {
-    case NmtCommand::start:
-    case NmtCommand::stop:
-    case NmtCommand::enter_preoperational:
-    case NmtCommand::reset_node:
-    case NmtCommand::reset_communication:
-      return static_cast<NmtCommand>(code);
-  }
-  return std::nullopt;
+bool is_nmt_command(std::int16_t code) noexcept {
+  constexpr std::int16_t commands[] = {1, 2, 128, 129, 130};
+  return std::ranges::find(commands, code) != std::end(commands);
 }
+
+struct Service {
+  std::string_view name;
+  RequestKind kind;
+};
+constexpr Service services[] = {{"sdo_upload", RequestKind::sdo_upload},
+                                {"sdo_download", RequestKind::sdo_download},
+                                {"pdo_poll", RequestKind::pdo_poll},
+                                {"pdo_exchange", RequestKind::pdo_exchange},
+                                {"lss", RequestKind::lss},
+                                {"nmt", RequestKind::nmt}};
 
 std::string silence_text(const SdoSilence& silence) {
   std::string text = "the device did not answer in time";
   if (silence.answered) {
-    text += "; it sent an answer for " + to_string(*silence.answered) + " instead";
+    text += fmt::format("; it sent an answer for {} instead", to_string(*silence.answered));
   } else if (silence.late != Time{}) {
-    text += "; it answered an earlier request after " +
-            std::to_string(silence.late / std::chrono::milliseconds{1}) +
-            " ms: raise `sdo_timeout_ms` of the node, or the time-out of this request";
+    text += fmt::format(
+        "; it answered an earlier request after {} ms: raise `sdo_timeout_ms` of the node, or the "
+        "time-out of this request",
+        silence.late / std::chrono::milliseconds{1});
   }
   return text;
 }
@@ -66,44 +69,29 @@ std::string silence_text(const SdoSilence& silence) {
 }  // namespace
 
 std::string fault_text(SdoFault fault, std::uint32_t abort_code, const SdoSilence& silence) {
-  const auto abort = [&] {
-    return hex(abort_code, 8) + " (" + std::string{abort_text(abort_code)} + ")";
-  };
-  switch (fault) {
-    case SdoFault::none:
-      return {};
-    case SdoFault::aborted_by_device:
-      return "the device refused the access with SDO abort " + abort();
-    case SdoFault::aborted_by_master:
-      return "the device violated the SDO protocol; takt ended the transfer with " + abort();
-    case SdoFault::timeout:
-      return silence_text(silence);
-    case SdoFault::too_long:
-      return "the value is longer than " + std::to_string(request_bytes) +
-             " bytes, the maximum of a request; read it as a file";
-    case SdoFault::no_such_node:
-      return "the network file has no such node";
-    case SdoFault::refused:
-      return "the master only observes and sends nothing";
-    case SdoFault::cancelled:
-      return "the node was reset, or the master stops";
-    case SdoFault::axes_not_stopped:
-      return "the command was executed, but not every axis was seen at standstill and disabled "
-             "before";
-    case SdoFault::no_such_pdo:
-      return "the network file has no such PDO of this node, or it can't be requested: `takt plan` "
-             "lists the PDOs";
-    case SdoFault::not_exchanging:
-      return "the node is not operational: PDOs are exchanged in OPERATIONAL only";
-    case SdoFault::lss_failed:
-      return "an LSS service failed";
-    case SdoFault::lss_refused:
-      return "the daemon accepts 1 to 28 LSS services in a request, and does not activate another "
-             "bit rate while it runs: stop the daemon and use takt lss with --bus";
-    case SdoFault::wrong_length:
-      return "the RPDO has another number of bytes: `takt plan` shows its mapping";
-  }
-  return {};
+  static constexpr std::string_view texts[] = {
+      // transfers
+      "", "the device refused the access with SDO abort",
+      "the device violated the SDO protocol; takt ended the transfer with",
+      "the device did not answer in time",
+      "the value is longer than 1024 bytes, the maximum of a request; read it as a file",
+      "the node was reset, or the master stops",
+      // requests
+      "the network file has no such node", "the master only observes and sends nothing",
+      "the network file has no such PDO of this node, or it can't be requested: `takt plan` lists "
+      "the PDOs",
+      "the node is not operational: PDOs are exchanged in OPERATIONAL only",
+      "an LSS service failed",
+      "the daemon accepts 1 to 28 LSS services in a request, and does not activate another bit "
+      "rate while it runs: stop the daemon and use takt lss with --bus",
+      "the RPDO has another number of bytes: `takt plan` shows its mapping",
+      "the command was executed, but not every axis was seen at standstill and disabled before"};
+  static_assert(request_bytes == 1024);
+  const std::string_view text = name_of(fault, texts);
+  if (fault == SdoFault::timeout) return silence_text(silence);
+  const bool aborted = fault == SdoFault::aborted_by_device || fault == SdoFault::aborted_by_master;
+  if (!aborted) return std::string{text};
+  return fmt::format("{} {} ({})", text, hex(abort_code, 8), abort_text(abort_code));
 }
 
 std::string lss_fault_text(const Reply& reply) {
@@ -135,14 +123,15 @@ reply_t Requests::refusal(const request_t& message, const std::string& why) cons
 
 std::optional<std::string> Requests::oversize(const request_t& message) {
   if (message.sender.size() > longest_sender) {
-    return "the sender's name is longer than " + std::to_string(longest_sender) + " bytes";
+    return fmt::format("the sender's name is longer than {} bytes", longest_sender);
   }
   if (message.service.size() > longest_service) {
-    return "service '" + message.service.substr(0, longest_service) +
-           "...' is not known: the name of a service has at most 32 bytes";
+    return fmt::format(
+        "service '{:.32}...' is not known: the name of a service has at most {} bytes",
+        message.service, longest_service);
   }
   if (message.data.size() > request_bytes) {
-    return "a request carries at most " + std::to_string(request_bytes) + " bytes";
+    return fmt::format("a request carries at most {} bytes", request_bytes);
   }
   return std::nullopt;
 }
@@ -171,8 +160,11 @@ void Requests::forget(Time now) {
 std::optional<reply_t> Requests::take_again(const Known& known, const request_t& message) const {
   if (known.answered == never) return std::nullopt;
   if (same_message(known.message, message)) return known.reply;
-  return refusal(message, "id " + std::to_string(message.id) + " of this sender was used " +
-                              "some seconds ago already; each request needs a new id");
+  return refusal(
+      message,
+      fmt::format(
+          "id {} of this sender was used some seconds ago already; each request needs a new id",
+          message.id));
 }
 
 std::optional<reply_t> Requests::take(const request_t& message, Time now) {
@@ -210,8 +202,9 @@ void Requests::finish(const request_t& message, const reply_t& reply, Time now) 
 }
 
 Requests::Known* Requests::find(const request_t& message) {
-  const auto found = std::ranges::find_if(
-      known_, [&](const Known& known) { return same_asker(known.message, message); });
+  const auto found = std::ranges::find_if(known_, [&](const Known& known) {
+    return known.message.id == message.id && known.message.sender == message.sender;
+  });
   return found == known_.end() ? nullptr : &*found;
 }
 
@@ -228,103 +221,81 @@ std::optional<reply_t> Requests::refuse_foreign(const request_t& message) const 
 
 std::expected<Request, std::string> Requests::translate(const request_t& message) const {
   if (const auto why = foreign(message)) return std::unexpected{*why};
-  if (options_.observe) {
-    return std::unexpected{std::string{"taktd only observes (--observe) and sends nothing"}};
-  }
+  if (options_.observe) return std::unexpected{std::string{observing_text}};
   if (message.node_id < 0 || message.node_id > 127) {
-    return std::unexpected{"node " + std::to_string(message.node_id) + " is not in 1..127"};
+    return std::unexpected{fmt::format("node {} is not in 1..127", message.node_id)};
   }
-  if (message.service == "nmt") return translate_nmt(message);
-  if (message.service == "sdo_upload" || message.service == "sdo_download") {
-    return translate_sdo(message);
+  const auto service = std::ranges::find(services, message.service, &Service::name);
+  if (service == std::end(services)) {
+    return std::unexpected{
+        fmt::format("service '{}' is not known; the services are sdo_upload, sdo_download, "
+                    "pdo_poll, pdo_exchange, lss and nmt",
+                    message.service)};
   }
-  if (message.service == "pdo_poll" || message.service == "pdo_exchange") {
-    return translate_pdo(message);
+  Request request{.kind = service->kind,
+                  .node = static_cast<std::uint8_t>(message.node_id),
+                  .timeout = request_timeout(message.timeout_ms),
+                  .size = static_cast<std::uint16_t>(message.data.size())};
+  std::ranges::copy(std::as_bytes(std::span{message.data}), request.data.begin());
+  std::string obstacle;
+  switch (service->kind) {
+    case RequestKind::sdo_upload:
+    case RequestKind::sdo_download:
+      obstacle = object_obstacle(plan_, message.node_id, message.index, message.sub);
+      request.object = {static_cast<std::uint16_t>(message.index),
+                        static_cast<std::uint8_t>(message.sub)};
+      break;
+    case RequestKind::pdo_poll:
+    case RequestKind::pdo_exchange:
+      obstacle = pdo_obstacle(message);
+      request.object = {static_cast<std::uint16_t>(message.index), 0};
+      break;
+    case RequestKind::nmt:
+      obstacle = nmt_obstacle(message);
+      request.command = static_cast<NmtCommand>(message.nmt_command);
+      break;
+    case RequestKind::lss:
+      break;
   }
-  if (message.service == "lss") return translate_lss(message);
-  return std::unexpected{"service '" + message.service.substr(0, 32) +
-                         "' is not known; the services are sdo_upload, sdo_download, pdo_poll, "
-                         "pdo_exchange, lss and nmt"};
-}
-
-std::expected<Request, std::string> Requests::translate_lss(const request_t& message) {
-  if (message.data.size() > request_bytes) {
-    return std::unexpected{fault_text(SdoFault::lss_refused, 0)};
-  }
-  Request request;
-  request.kind = RequestKind::lss;
-  request.timeout = std::chrono::milliseconds{std::clamp(message.timeout_ms, 0, 60'000)};
-  request.size = static_cast<std::uint16_t>(message.data.size());
-  std::ranges::transform(message.data, request.data.begin(),
-                         [](std::uint8_t byte) { return std::byte{byte}; });
+  if (!obstacle.empty()) return std::unexpected{std::move(obstacle)};
   return request;
 }
 
-/// `index` of the message is the number of the PDO.
-std::expected<Request, std::string> Requests::translate_pdo(const request_t& message) const {
-  const auto node = static_cast<std::uint8_t>(message.node_id);
-  if (node_name(plan_, node).empty()) {
-    return std::unexpected{"node " + std::to_string(message.node_id) +
-                           " is not in the network file of bus '" + plan_.name + "'"};
-  }
+std::string node_obstacle(const BusPlan& plan, std::int32_t node) {
+  if (plan.find(static_cast<unsigned>(node)) != nullptr) return {};
+  return fmt::format("node {} is not in the network file of bus '{}'", node, plan.name);
+}
+
+std::string object_obstacle(const BusPlan& plan, std::int32_t node, std::int32_t index,
+                            std::int32_t sub) {
+  std::string obstacle = node_obstacle(plan, node);
+  if (!obstacle.empty()) return obstacle;
+  const bool fits = index >= 0 && index <= 0xFFFF && sub >= 0 && sub <= 0xFF;
+  return fits ? "" : "index or sub-index is out of range";
+}
+
+std::string Requests::pdo_obstacle(const request_t& message) const {
+  std::string obstacle = node_obstacle(plan_, message.node_id);
+  if (!obstacle.empty()) return obstacle;
   if (message.index < 1 || message.index > 512) {
-    return std::unexpected{"PDO number " + std::to_string(message.index) + " is not in 1..512"};
+    return fmt::format("PDO number {} is not in 1..512", message.index);
   }
-  if (message.data.size() > 8) return std::unexpected{std::string{"a PDO has at most 8 bytes"}};
-  Request request;
-  request.kind = message.service == "pdo_poll" ? RequestKind::pdo_poll : RequestKind::pdo_exchange;
-  request.node = node;
-  request.object = {static_cast<std::uint16_t>(message.index), 0};
-  request.timeout = std::chrono::milliseconds{std::clamp(message.timeout_ms, 0, 60'000)};
-  request.size = static_cast<std::uint16_t>(message.data.size());
-  std::ranges::transform(message.data, request.data.begin(),
-                         [](std::uint8_t byte) { return std::byte{byte}; });
-  return request;
+  return message.data.size() > 8 ? "a PDO has at most 8 bytes" : "";
 }
 
-std::expected<Request, std::string> Requests::translate_nmt(const request_t& message) const {
-  const auto command = nmt_command(message.nmt_command);
-  if (!command) {
-    return std::unexpected{"NMT command " + std::to_string(message.nmt_command) +
-                           " is not one of 1, 2, 128, 129, 130"};
+std::string Requests::nmt_obstacle(const request_t& message) const {
+  if (!is_nmt_command(message.nmt_command)) {
+    return fmt::format("NMT command {} is not one of 1, 2, 128, 129, 130", message.nmt_command);
   }
-  const bool of_all = message.node_id == 0;
-  const bool of_master = message.node_id == plan_.master_id.value();
-  if (!of_all && !of_master && plan_.find(static_cast<unsigned>(message.node_id)) == nullptr) {
-    return std::unexpected{"node " + std::to_string(message.node_id) +
-                           " is not in the network file of bus '" + plan_.name +
-                           "'; the master is node " + std::to_string(plan_.master_id.value())};
-  }
-  Request request;
-  request.kind = RequestKind::nmt;
-  request.node = static_cast<std::uint8_t>(message.node_id);
-  request.command = *command;
-  return request;
+  const unsigned master = plan_.master_id.value();
+  const bool known = message.node_id == 0 || static_cast<unsigned>(message.node_id) == master;
+  const std::string obstacle = known ? "" : node_obstacle(plan_, message.node_id);
+  if (obstacle.empty()) return {};
+  return fmt::format("{}; the master is node {}", obstacle, master);
 }
 
-std::expected<Request, std::string> Requests::translate_sdo(const request_t& message) const {
-  const auto node = static_cast<std::uint8_t>(message.node_id);
-  if (node_name(plan_, node).empty()) {
-    return std::unexpected{"node " + std::to_string(message.node_id) +
-                           " is not in the network file of bus '" + plan_.name + "'"};
-  }
-  if (message.index < 0 || message.index > 0xFFFF || message.sub < 0 || message.sub > 0xFF) {
-    return std::unexpected{std::string{"index or sub-index is out of range"}};
-  }
-  if (message.data.size() > request_bytes) {
-    return std::unexpected{"a request carries at most " + std::to_string(request_bytes) + " bytes"};
-  }
-  Request request;
-  const bool upload = message.service == "sdo_upload";
-  request.kind = upload ? RequestKind::sdo_upload : RequestKind::sdo_download;
-  request.node = node;
-  request.object = {static_cast<std::uint16_t>(message.index),
-                    static_cast<std::uint8_t>(message.sub)};
-  request.timeout = std::chrono::milliseconds{std::clamp(message.timeout_ms, 0, 60'000)};
-  request.size = static_cast<std::uint16_t>(message.data.size());
-  std::ranges::transform(message.data, request.data.begin(),
-                         [](std::uint8_t byte) { return std::byte{byte}; });
-  return request;
+Time request_timeout(std::int32_t milliseconds) noexcept {
+  return std::chrono::milliseconds{std::clamp(milliseconds, 0, 60'000)};
 }
 
 std::optional<reply_t> Requests::finish(const Reply& reply, Time now, const std::string& axes) {
@@ -341,9 +312,8 @@ std::optional<reply_t> Requests::finish(const Reply& reply, Time now, const std:
   const RequestKind kind = found->second.kind;
   if (kind != RequestKind::sdo_download && kind != RequestKind::nmt) {
     message.size = reply.size;
-    message.data.resize(reply.size);
-    std::transform(reply.data.begin(), reply.data.begin() + reply.size, message.data.begin(),
-                   [](std::byte byte) { return std::to_integer<std::uint8_t>(byte); });
+    const auto bytes = octets(reply.data).first(reply.size);
+    message.data.assign(bytes.begin(), bytes.end());
   }
   pending_.erase(found);
   known.answered = now;

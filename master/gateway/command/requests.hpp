@@ -50,6 +50,9 @@ class Requests {
   /// one line for each axis that the newest stop did not confirm.
   std::optional<reply_t> finish(const Reply& reply, Time now, const std::string& axes = {});
 
+  /// Begins the answer to a message: it repeats the id and the sender.
+  reply_t reply_to(const request_t& message) const;
+  reply_t refusal(const request_t& message, const std::string& why) const;
   std::size_t pending() const noexcept { return pending_.size(); }
 
  private:
@@ -65,16 +68,12 @@ class Requests {
   };
 
   std::expected<Request, std::string> translate(const request_t& message) const;
-  std::expected<Request, std::string> translate_nmt(const request_t& message) const;
-  std::expected<Request, std::string> translate_sdo(const request_t& message) const;
-  std::expected<Request, std::string> translate_pdo(const request_t& message) const;
-  static std::expected<Request, std::string> translate_lss(const request_t& message);
+  std::string pdo_obstacle(const request_t& message) const;
+  std::string nmt_obstacle(const request_t& message) const;
   std::optional<std::string> foreign(const request_t& message) const;
   Known* find(const request_t& message);
   void forget(Time now);
   std::optional<reply_t> take_again(const Known& known, const request_t& message) const;
-  reply_t reply_to(const request_t& message) const;
-  reply_t refusal(const request_t& message, const std::string& why) const;
 
   const BusPlan& plan_;
   RequestsOptions options_;
@@ -88,6 +87,17 @@ class Requests {
   std::unordered_map<std::uint64_t, Pending> pending_;
   std::deque<Heard> heard_;
 };
+
+inline constexpr std::string_view observing_text =
+    "taktd only observes (--observe) and sends nothing";
+
+// Why a request can't be executed; empty if nothing is in its way.
+std::string node_obstacle(const BusPlan& plan, std::int32_t node);
+std::string object_obstacle(const BusPlan& plan, std::int32_t node, std::int32_t index,
+                            std::int32_t sub);
+
+/// Limits the time-out of a message, in ms, to one minute.
+Time request_timeout(std::int32_t milliseconds) noexcept;
 
 /// Returns why an LSS request failed, from the last of its results.
 std::string lss_fault_text(const Reply& reply);

@@ -1,12 +1,12 @@
 #include "master/gateway/command/transfers.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
+#include <fmt/format.h>
 #include <utility>
 
+#include "eds_parser/table/name_of.hpp"
 #include "eds_parser/table/waits.hpp"
-#include "master/gateway/notice/notice.hpp"
 #include "master/lcm/messages.hpp"
 
 namespace takt {
@@ -61,9 +61,9 @@ void Transfers::begin(const transfer_t& message, Time now) {
   if (!request) return refuse(message, request.error());
   const auto job = std::ranges::find(jobs_, Stage::free, &Job::stage);
   if (job == jobs_.end()) {
-    return refuse(message,
-                  std::to_string(jobs_.size()) +
-                      " file transfers run already, which is the maximum; try again later");
+    return refuse(
+        message, fmt::format("{} file transfers run already, which is the maximum; try again later",
+                             jobs_.size()));
   }
   *job = {.buffer = job->buffer,
           .stage = Stage::filling,
@@ -88,32 +88,22 @@ void Transfers::begin(const transfer_t& message, Time now) {
 
 std::expected<Request, std::string> Transfers::translate(const transfer_t& message) const {
   using Error = std::unexpected<std::string>;
-  if (message.schema != message_schema) {
-    return Error{schema_refusal(message.schema)};
-  }
+  if (message.schema != message_schema) return Error{schema_refusal(message.schema)};
   if (message.session != 0 && message.session != options_.session) {
     return Error{"the transfer is for another session of taktd"};
   }
-  if (options_.observe) return Error{"taktd only observes (--observe) and sends nothing"};
-  const auto node = static_cast<std::uint8_t>(message.node_id);
-  if (message.node_id < 1 || message.node_id > 127 || node_name(plan_, node).empty()) {
-    return Error{"node " + std::to_string(message.node_id) +
-                 " is not in the network file of bus '" + plan_.name + "'"};
-  }
-  if (message.index < 0 || message.index > 0xFFFF || message.sub < 0 || message.sub > 0xFF) {
-    return Error{"index or sub-index is out of range"};
-  }
+  if (options_.observe) return Error{observing_text};
+  std::string obstacle = object_obstacle(plan_, message.node_id, message.index, message.sub);
+  if (!obstacle.empty()) return Error{std::move(obstacle)};
   if (message.total < 0 || static_cast<std::uint64_t>(message.total) > most_bytes) {
-    return Error{"a file has at most " + std::to_string(most_bytes) + " bytes"};
+    return Error{fmt::format("a file has at most {} bytes", most_bytes)};
   }
   if (message.sender.size() > 64) return Error{"the sender's name is longer than 64 bytes"};
-  Request request;
-  request.kind = message.action == "upload" ? RequestKind::sdo_upload : RequestKind::sdo_download;
-  request.node = node;
-  request.object = {static_cast<std::uint16_t>(message.index),
-                    static_cast<std::uint8_t>(message.sub)};
-  request.timeout = std::chrono::milliseconds{std::clamp(message.timeout_ms, 0, 60'000)};
-  return request;
+  return Request{
+      .kind = message.action == "upload" ? RequestKind::sdo_upload : RequestKind::sdo_download,
+      .node = static_cast<std::uint8_t>(message.node_id),
+      .object = {static_cast<std::uint16_t>(message.index), static_cast<std::uint8_t>(message.sub)},
+      .timeout = request_timeout(message.timeout_ms)};
 }
 
 /// Takes parts only in order. The state sent after each part tells the sender where to continue.
@@ -122,7 +112,8 @@ void Transfers::fill(Job& job, const transfer_t& message) {
   if (job.stage != Stage::filling || job.submitted) return;
   if (message.offset != static_cast<std::int64_t>(job.received)) return;
   if (size > part_bytes || size > job.total - job.received) return;
-  for (const std::uint8_t byte : message.data) job.buffer->data.push_back(std::byte{byte});
+  const Bytes bytes = std::as_bytes(std::span{message.data});
+  job.buffer->data.insert(job.buffer->data.end(), bytes.begin(), bytes.end());
   job.received += size;
   if (job.received == job.total) submit(job);
 }
@@ -150,9 +141,8 @@ void Transfers::send_part(Job& job) {
   const std::size_t size = std::min(part_bytes, job.part_end - job.part_begin);
   part.offset = static_cast<std::int64_t>(job.part_begin);
   part.size = static_cast<std::int32_t>(size);
-  for (const std::byte byte : std::span{job.buffer->data}.subspan(job.part_begin, size)) {
-    part.data.push_back(std::to_integer<std::uint8_t>(byte));
-  }
+  const auto bytes = octets(job.buffer->data).subspan(job.part_begin, size);
+  part.data.assign(bytes.begin(), bytes.end());
   job.part_begin += size;
   sinks_.state(part);
 }
@@ -168,10 +158,9 @@ bool Transfers::finish(const Reply& reply) {
   job->stage = good ? Stage::done : Stage::failed;
   job->abort_code = reply.abort_code;
   if (job->text.empty() && !good) {
-    job->text =
-        reply.fault == SdoFault::too_long
-            ? "the object is longer than the " + std::to_string(job->total) + " requested bytes"
-            : fault_text(reply.fault, reply.abort_code, reply.silence);
+    job->text = reply.fault == SdoFault::too_long
+                    ? fmt::format("the object is longer than the {} requested bytes", job->total)
+                    : fault_text(reply.fault, reply.abort_code, reply.silence);
   }
   if (good && job->request.kind == RequestKind::sdo_upload) {
     job->buffer->data.resize(job->buffer->done.load());
@@ -232,13 +221,9 @@ bool Transfers::step(Job& job) {
 }
 
 transfer_state_t Transfers::state_of(const Job& job) const {
-  constexpr std::array<const char*, 5> stages{"free", "filling", "running", "done", "failed"};
-  transfer_state_t state{};
-  state.schema = message_schema;
-  state.session = options_.session;
-  state.id = job.id;
-  state.sender = job.sender;
-  state.stage = stages[static_cast<std::size_t>(job.stage)];
+  static constexpr std::string_view stages[] = {"free", "filling", "running", "done", "failed"};
+  transfer_state_t state = state_for(job.sender, job.id);
+  state.stage = name_of(job.stage, stages);
   const bool has_all = job.request.kind == RequestKind::sdo_download || job.stage == Stage::done;
   const std::size_t size = job.stage == Stage::done
                                ? job.buffer->data.size()
@@ -252,12 +237,17 @@ transfer_state_t Transfers::state_of(const Job& job) const {
   return state;
 }
 
-void Transfers::refuse(const transfer_t& message, std::string why) {
+transfer_state_t Transfers::state_for(const std::string& sender, std::int64_t id) const {
   transfer_state_t state{};
   state.schema = message_schema;
   state.session = options_.session;
-  state.id = message.id;
-  state.sender = message.sender.substr(0, 64);
+  state.id = id;
+  state.sender = sender.substr(0, 64);
+  return state;
+}
+
+void Transfers::refuse(const transfer_t& message, std::string why) {
+  transfer_state_t state = state_for(message.sender, message.id);
   state.stage = "failed";
   state.text = std::move(why);
   sinks_.state(state);

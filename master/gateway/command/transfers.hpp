@@ -74,6 +74,7 @@ class Transfers {
   void cancel(Job& job, const std::string& why);
   void refuse(const transfer_t& message, std::string why);
   transfer_state_t state_of(const Job& job) const;
+  transfer_state_t state_for(const std::string& sender, std::int64_t id) const;
 
   const BusPlan& plan_;
   RequestsOptions options_;

@@ -12,6 +12,24 @@ constexpr std::size_t most_events = 50;
 constexpr std::size_t most_buses = 64;
 constexpr std::int32_t most_signals = 65536;
 
+/// Appends the list of a message to the `parts` that came before it, and moves them to `whole` with
+/// the last part. If a part is missing, all parts are dropped.
+template <class T, class List, class Count>
+void join(const T& part, std::optional<T>& parts, std::optional<T>& whole, List T::* list,
+          Count T::* count) {
+  if (part.part == 0) {
+    parts = part;
+  } else if (!parts || parts->cycle != part.cycle || part.part != parts->part + 1) {
+    return parts.reset();
+  } else {
+    List& joined = (*parts).*list;
+    joined.insert(joined.end(), (part.*list).begin(), (part.*list).end());
+    parts->part = part.part;
+    (*parts).*count = static_cast<Count>(joined.size());
+  }
+  if (part.part + 1 == part.parts) whole = std::exchange(parts, std::nullopt);
+}
+
 }  // namespace
 
 void BusView::new_session(std::int64_t session) {
@@ -36,32 +54,13 @@ bool BusView::is_of_this_session(std::int64_t session) {
 
 void BusView::take(const status_t& status) {
   new_session(status.session);
-  if (status.part == 0) {
-    status_parts_ = status;
-  } else if (!status_parts_ || status_parts_->cycle != status.cycle ||
-             status.part != status_parts_->part + 1) {
-    return status_parts_.reset();
-  } else {
-    status_parts_->part = status.part;
-    status_parts_->nodes.insert(status_parts_->nodes.end(), status.nodes.begin(),
-                                status.nodes.end());
-    status_parts_->num_nodes = static_cast<std::int32_t>(status_parts_->nodes.size());
-  }
-  if (status.part + 1 == status.parts) status_ = std::exchange(status_parts_, std::nullopt);
+  join(status, status_parts_, status_, &status_t::nodes, &status_t::num_nodes);
 }
 
 void BusView::take(const pdo_status_t& pdos) {
-  if (!is_of_this_session(pdos.session)) return;
-  if (pdos.part == 0) {
-    pdo_parts_ = pdos;
-  } else if (!pdo_parts_ || pdo_parts_->cycle != pdos.cycle || pdos.part != pdo_parts_->part + 1) {
-    return pdo_parts_.reset();
-  } else {
-    pdo_parts_->part = pdos.part;
-    pdo_parts_->pdos.insert(pdo_parts_->pdos.end(), pdos.pdos.begin(), pdos.pdos.end());
-    pdo_parts_->num_pdos = static_cast<std::int32_t>(pdo_parts_->pdos.size());
+  if (is_of_this_session(pdos.session)) {
+    join(pdos, pdo_parts_, pdos_, &pdo_status_t::pdos, &pdo_status_t::num_pdos);
   }
-  if (pdos.part + 1 == pdos.parts) pdos_ = std::exchange(pdo_parts_, std::nullopt);
 }
 
 void BusView::take(const sync_status_t& sync) {

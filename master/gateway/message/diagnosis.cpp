@@ -1,7 +1,7 @@
-#include "master/gateway/message/diagnosis.hpp"
-
 #include <cerrno>
 #include <utility>
+
+#include "master/gateway/message/status_messages.hpp"
 
 namespace takt {
 namespace {

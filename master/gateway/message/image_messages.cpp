@@ -10,11 +10,6 @@
 namespace takt {
 namespace {
 
-bool is_stale(const ImageView& image, std::size_t signal) noexcept {
-  const std::size_t word = signal / 64;
-  return word < image.stale_bits.size() && (image.stale_bits[word] >> (signal % 64) & 1) != 0;
-}
-
 signal_t to_message(const BusPlan& plan, const Signal& signal) {
   signal_t message{};
   message.node = plan.nodes[signal.node_index].name;
@@ -45,6 +40,11 @@ layout_t empty_layout(const BusPlan& plan, std::int64_t session, std::size_t fir
 
 }  // namespace
 
+bool is_stale(const ImageView& image, std::size_t signal) noexcept {
+  const std::size_t word = signal / 64;
+  return word < image.stale_bits.size() && (image.stale_bits[word] >> (signal % 64) & 1) != 0;
+}
+
 ImageMessages::ImageMessages(const BusPlan& plan, std::int64_t session) {
   const std::size_t signals = plan.layout.signals.size();
   const std::size_t parts =
@@ -67,11 +67,9 @@ ImageMessages::ImageMessages(const BusPlan& plan, std::int64_t session) {
 }
 
 const std::vector<image_t>& ImageMessages::fill(const ImageView& image, Time wall_minus_monotonic) {
-  using Microseconds = std::chrono::microseconds;
   for (image_t& message : parts_) {
     const auto first = static_cast<std::size_t>(message.first_signal);
-    message.utime =
-        std::chrono::duration_cast<Microseconds>(image.sync_time + wall_minus_monotonic).count();
+    message.utime = (image.sync_time + wall_minus_monotonic) / std::chrono::microseconds{1};
     message.sync_mono_ns = image.sync_time.count();
     message.cycle = static_cast<std::int64_t>(image.cycle);
     message.stale.clear();
@@ -97,10 +95,7 @@ std::vector<layout_t> layout_messages(const BusPlan& plan, std::int64_t session)
     messages.back().signals.push_back(std::move(signal));
     ++messages.back().num_signals;
   }
-  for (std::size_t part = 0; part < messages.size(); ++part) {
-    messages[part].part = static_cast<std::int16_t>(part);
-    messages[part].parts = static_cast<std::int16_t>(messages.size());
-  }
+  number_parts(messages);
   return messages;
 }
 

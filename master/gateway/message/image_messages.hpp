@@ -25,6 +25,9 @@ class ImageMessages {
   std::vector<image_t> parts_;
 };
 
+/// Returns true if the value of this signal is older than the device should let it become.
+bool is_stale(const ImageView& image, std::size_t signal) noexcept;
+
 /// Describes the values, with a few signals per message.
 std::vector<layout_t> layout_messages(const BusPlan& plan, std::int64_t session);
 

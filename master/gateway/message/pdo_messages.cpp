@@ -1,5 +1,4 @@
-#include "master/gateway/message/pdo_messages.hpp"
-
+#include "master/gateway/message/status_messages.hpp"
 #include "master/lcm/messages.hpp"
 
 namespace takt {
@@ -59,11 +58,9 @@ std::vector<pdo_status_t> pdo_messages(const BusPlan& plan, const StatusSnapshot
   for (std::size_t i = 0; i < plan.pdos.rpdos.size() && i < snapshot.rpdos.size(); ++i) {
     add(rpdo_state(plan.pdos.rpdos[i], snapshot.rpdos[i]));
   }
-  for (std::size_t part = 0; part < messages.size(); ++part) {
-    pdo_status_t& message = messages[part];
+  number_parts(messages);
+  for (pdo_status_t& message : messages) {
     message.schema = message_schema;
-    message.part = static_cast<std::int16_t>(part);
-    message.parts = static_cast<std::int16_t>(messages.size());
     message.cycle = static_cast<std::int64_t>(cycle);
     message.num_pdos = static_cast<std::int32_t>(message.pdos.size());
   }

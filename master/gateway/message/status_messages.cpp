@@ -44,9 +44,10 @@ node_status_t node_message(const NodePlan& plan, const NodeStatus& status) {
   return message;
 }
 
-void add_emcys(const EmcyHistory& history, std::size_t index, node_status_t& message) {
-  message.emcys.assign(history.of(index).begin(), history.of(index).end());
-  message.num_emcys = static_cast<std::int32_t>(message.emcys.size());
+void add_emcys(const EmcyLog& log, node_status_t& message) {
+  const EmcyLog::Codes& codes = log.codes(static_cast<std::uint8_t>(message.node_id));
+  message.emcys.assign(codes.begin(), codes.end());
+  message.num_emcys = static_cast<std::int32_t>(codes.size());
 }
 
 std::int16_t bus_state(const PortNews& port) noexcept {
@@ -130,7 +131,7 @@ std::vector<status_t> StatusMessages::fill(const StatusSnapshot& snapshot,
     node.heartbeat_age_ms = heartbeat_age(snapshot.nodes[i], now);
     node.pdos_missing = missing_pdos(plan_, snapshot, i);
     if (i < gateway.holders.size()) node.holder = gateway.holders[i];
-    if (gateway.emcys != nullptr) add_emcys(*gateway.emcys, i, node);
+    if (gateway.emcys != nullptr) add_emcys(*gateway.emcys, node);
     const int size = messages.back().getEncodedSize() + node._getEncodedSizeNoHash();
     if (messages.back().num_nodes > 0 && static_cast<std::size_t>(size) > message_bytes) {
       messages.push_back(bus);
@@ -138,10 +139,7 @@ std::vector<status_t> StatusMessages::fill(const StatusSnapshot& snapshot,
     messages.back().nodes.push_back(std::move(node));
     ++messages.back().num_nodes;
   }
-  for (std::size_t part = 0; part < messages.size(); ++part) {
-    messages[part].part = static_cast<std::int16_t>(part);
-    messages[part].parts = static_cast<std::int16_t>(messages.size());
-  }
+  number_parts(messages);
   return messages;
 }
 

@@ -1,8 +1,8 @@
-#include "master/gateway/message/sync_message.hpp"
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <string>
 
+#include "master/gateway/message/status_messages.hpp"
 #include "master/lcm/messages.hpp"
 
 namespace takt {
@@ -10,9 +10,7 @@ namespace {
 
 std::string ms_text(std::int64_t ns) {
   const std::int64_t us = (ns + 500) / 1000;
-  std::string rest = std::to_string(us % 1000);
-  rest.insert(0, 3 - rest.size(), '0');
-  return std::to_string(us / 1000) + "." + rest + " ms";
+  return fmt::format("{}.{:03} ms", us / 1000, us % 1000);
 }
 
 std::string maker(const BusPlan& plan) {
@@ -25,7 +23,7 @@ std::string maker(const BusPlan& plan) {
 std::string words(const sync_status_t& message, SyncState state) {
   const std::string of = message.node_id == 0
                              ? "a device that is not in the network file"
-                             : message.source + " (node " + std::to_string(message.node_id) + ")";
+                             : fmt::format("{} (node {})", message.source, message.node_id);
   switch (state) {
     case SyncState::none:
       return "no SYNC";

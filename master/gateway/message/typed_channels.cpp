@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "master/gateway/message/image_messages.hpp"
+
 namespace takt {
 namespace {
 
@@ -19,13 +21,6 @@ std::vector<ValueFormat> formats_of(const BusPlan& plan) {
   return formats;
 }
 
-template <class T>
-void put(std::vector<std::byte>& out, T value) {
-  for (int shift = 8 * static_cast<int>(sizeof value) - 8; shift >= 0; shift -= 8) {
-    out.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(value) >> shift));
-  }
-}
-
 /// Takes values from the front of a message. After the end of the message, every further call
 /// fails.
 class Taker {
@@ -34,10 +29,7 @@ class Taker {
 
   template <class T>
   T take() {
-    std::uint64_t value = 0;
-    const Bytes part = next(sizeof(T));
-    for (const std::byte byte : part) value = value << 8U | std::to_integer<std::uint64_t>(byte);
-    return static_cast<T>(value);
+    return load_be<T>(next(sizeof(T)));
   }
   std::string text() {
     const auto length = take<std::int32_t>();
@@ -103,10 +95,7 @@ std::uint64_t fingerprint_of_schema_1_of(TypedMessage command) {
 
 bool is_stale(const ImageView& image, const TypedMessage& type) noexcept {
   return std::ranges::any_of(type.fields, [&](const TypedField& field) {
-    if (!field.signal) return false;
-    const std::size_t word = *field.signal / 64U;
-    return word < image.stale_bits.size() &&
-           (image.stale_bits[word] >> (*field.signal % 64U) & 1U) != 0;
+    return field.signal && is_stale(image, *field.signal);
   });
 }
 
@@ -142,33 +131,31 @@ void TypedChannels::encode(const TypedField& field, std::int64_t raw) {
   const auto si = [&] { return number_of(format.type, raw) * format.scale + format.offset; };
   switch (field.type) {
     case LcmPrimitive::boolean:
-      return put(buffer_, static_cast<std::int8_t>(raw != 0));
+      return append_be(buffer_, static_cast<std::int8_t>(raw != 0));
     case LcmPrimitive::int8:
-      return put(buffer_, static_cast<std::int8_t>(raw));
+      return append_be(buffer_, static_cast<std::int8_t>(raw));
     case LcmPrimitive::int16:
-      return put(buffer_, static_cast<std::int16_t>(raw));
+      return append_be(buffer_, static_cast<std::int16_t>(raw));
     case LcmPrimitive::int32:
-      return put(buffer_, static_cast<std::int32_t>(raw));
+      return append_be(buffer_, static_cast<std::int32_t>(raw));
     case LcmPrimitive::int64:
     case LcmPrimitive::string:
-      return put(buffer_, raw);
+      return append_be(buffer_, raw);
     case LcmPrimitive::float32:
-      return put(buffer_, std::bit_cast<std::uint32_t>(static_cast<float>(si())));
+      return append_be(buffer_, std::bit_cast<std::uint32_t>(static_cast<float>(si())));
     case LcmPrimitive::float64:
-      return put(buffer_, std::bit_cast<std::uint64_t>(si()));
+      return append_be(buffer_, std::bit_cast<std::uint64_t>(si()));
   }
 }
 
 void TypedChannels::encode(const Type& state, const ImageView& image, Time wall_minus_monotonic) {
-  using std::chrono::duration_cast;
-  using std::chrono::microseconds;
   buffer_.clear();
-  put(buffer_, state.fingerprint);
-  put(buffer_, duration_cast<microseconds>(image.sync_time + wall_minus_monotonic).count());
-  put(buffer_, image.sync_time.count());
-  put(buffer_, session_);
-  put(buffer_, image.cycle);
-  put(buffer_, static_cast<std::int8_t>(is_stale(image, state.message)));
+  append_be(buffer_, state.fingerprint);
+  append_be(buffer_, (image.sync_time + wall_minus_monotonic) / std::chrono::microseconds{1});
+  append_be(buffer_, image.sync_time.count());
+  append_be(buffer_, session_);
+  append_be(buffer_, image.cycle);
+  append_be(buffer_, static_cast<std::int8_t>(is_stale(image, state.message)));
   for (const TypedField& field : state.message.fields) {
     if (field.signal) encode(field, image.values[*field.signal]);
   }

@@ -1,6 +1,7 @@
 #include "master/gateway/message/value_text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cstdint>
@@ -8,45 +9,28 @@
 #include <system_error>
 #include <utility>
 
+#include "eds_parser/table/raw_number.hpp"
 #include "eds_parser/table/real_range.hpp"
-#include "master/units/units.hpp"
+#include "master/lcm/messages.hpp"
+#include "master/wire/bytes.hpp"
 
 namespace takt {
 namespace {
 
+using enum DataType;
 using Named = std::pair<std::string_view, DataType>;
-constexpr Named short_names[] = {{"b", DataType::boolean},
-                                 {"bool", DataType::boolean},
-                                 {"i8", DataType::integer8},
-                                 {"i16", DataType::integer16},
-                                 {"i24", DataType::integer24},
-                                 {"i32", DataType::integer32},
-                                 {"i40", DataType::integer40},
-                                 {"i48", DataType::integer48},
-                                 {"i56", DataType::integer56},
-                                 {"i64", DataType::integer64},
-                                 {"u8", DataType::unsigned8},
-                                 {"u16", DataType::unsigned16},
-                                 {"u24", DataType::unsigned24},
-                                 {"u32", DataType::unsigned32},
-                                 {"u40", DataType::unsigned40},
-                                 {"u48", DataType::unsigned48},
-                                 {"u56", DataType::unsigned56},
-                                 {"u64", DataType::unsigned64},
-                                 {"x8", DataType::unsigned8},
-                                 {"x16", DataType::unsigned16},
-                                 {"x32", DataType::unsigned32},
-                                 {"x64", DataType::unsigned64},
-                                 {"r32", DataType::real32},
-                                 {"r64", DataType::real64},
-                                 {"f32", DataType::real32},
-                                 {"f64", DataType::real64},
-                                 {"string", DataType::visible_string},
-                                 {"vs", DataType::visible_string},
-                                 {"hex", DataType::octet_string},
-                                 {"os", DataType::octet_string},
-                                 {"domain", DataType::domain},
-                                 {"d", DataType::domain}};
+constexpr Named short_names[] = {
+    {"b", boolean},         {"bool", boolean},     {"i8", integer8},
+    {"i16", integer16},     {"i24", integer24},    {"i32", integer32},
+    {"i40", integer40},     {"i48", integer48},    {"i56", integer56},
+    {"i64", integer64},     {"u8", unsigned8},     {"u16", unsigned16},
+    {"u24", unsigned24},    {"u32", unsigned32},   {"u40", unsigned40},
+    {"u48", unsigned48},    {"u56", unsigned56},   {"u64", unsigned64},
+    {"x8", unsigned8},      {"x16", unsigned16},   {"x32", unsigned32},
+    {"x64", unsigned64},    {"r32", real32},       {"r64", real64},
+    {"f32", real32},        {"f64", real64},       {"string", visible_string},
+    {"vs", visible_string}, {"hex", octet_string}, {"os", octet_string},
+    {"domain", domain},     {"d", domain}};
 
 std::string lower(std::string_view text) {
   std::string copy{text};
@@ -54,20 +38,6 @@ std::string lower(std::string_view text) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   });
   return copy;
-}
-
-std::uint64_t little_endian(std::span<const std::byte> bytes) noexcept {
-  std::uint64_t value = 0;
-  for (std::size_t i = std::min<std::size_t>(bytes.size(), 8); i-- > 0;) {
-    value = value << 8 | std::to_integer<std::uint64_t>(bytes[i]);
-  }
-  return value;
-}
-
-std::int64_t sign_extended(std::uint64_t value, unsigned bits) noexcept {
-  if (bits == 0 || bits >= 64) return static_cast<std::int64_t>(value);
-  const unsigned shift = 64 - bits;
-  return static_cast<std::int64_t>(value << shift) >> shift;
 }
 
 bool printable(std::span<const std::byte> bytes) noexcept {
@@ -82,9 +52,18 @@ std::string string_of(std::span<const std::byte> bytes) {
 }
 
 std::vector<std::byte> wire_bytes(std::uint64_t value, unsigned size) {
-  std::vector<std::byte> bytes;
-  for (unsigned i = 0; i < size; ++i) bytes.push_back(static_cast<std::byte>(value >> (8 * i)));
-  return bytes;
+  std::array<std::byte, 8> bytes;
+  store_le(std::span{bytes}, value);
+  return {bytes.begin(), bytes.begin() + size};
+}
+
+/// Reads all of `text` as a number.
+template <class T, class... Base>
+std::optional<T> parse(std::string_view text, Base... base) {
+  T value{};
+  const char* const last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value, base...);
+  return error == std::errc{} && end == last ? std::optional{value} : std::nullopt;
 }
 
 std::optional<std::uint64_t> parse_integer(std::string_view text, bool& negative) {
@@ -92,11 +71,7 @@ std::optional<std::uint64_t> parse_integer(std::string_view text, bool& negative
   if (negative || text.starts_with('+')) text.remove_prefix(1);
   const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
   if (hexadecimal) text.remove_prefix(2);
-  std::uint64_t value = 0;
-  const auto [end, error] =
-      std::from_chars(text.data(), text.data() + text.size(), value, hexadecimal ? 16 : 10);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
+  return parse<std::uint64_t>(text, hexadecimal ? 16 : 10);
 }
 
 std::expected<std::vector<std::byte>, std::string> integer_bytes(DataType type,
@@ -118,35 +93,24 @@ std::expected<std::vector<std::byte>, std::string> integer_bytes(DataType type,
 
 std::expected<std::vector<std::byte>, std::string> real_bytes(DataType type,
                                                               const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) {
-    return std::unexpected{"'" + text + "' is not a number"};
-  }
-  if (type == DataType::real32) {
-    if (exceeds_real32(value)) return std::unexpected{text + " does not fit REAL32"};
-    return wire_bytes(std::bit_cast<std::uint32_t>(static_cast<float>(value)), 4);
-  }
-  return wire_bytes(std::bit_cast<std::uint64_t>(value), 8);
+  const auto value = parse<double>(text);
+  if (!value) return std::unexpected{"'" + text + "' is not a number"};
+  if (type == DataType::real64) return wire_bytes(std::bit_cast<std::uint64_t>(*value), 8);
+  if (exceeds_real32(*value)) return std::unexpected{text + " does not fit REAL32"};
+  return wire_bytes(std::bit_cast<std::uint32_t>(static_cast<float>(*value)), 4);
 }
 
 std::expected<std::vector<std::byte>, std::string> hex_bytes(const std::string& text) {
   std::vector<std::byte> bytes;
-  std::string digits;
-  for (const char c : text) {
-    if (c == ' ' || c == ':') continue;
-    digits += c;
-  }
+  std::string digits = text;
+  std::erase_if(digits, [](char c) { return c == ' ' || c == ':'; });
   if (digits.starts_with("0x")) digits.erase(0, 2);
   for (std::size_t i = 0; i < digits.size(); i += 2) {
-    unsigned value = 0;
-    const char* const begin = digits.data() + i;
-    const auto [end, error] =
-        std::from_chars(begin, begin + std::min<std::size_t>(2, digits.size() - i), value, 16);
-    if (error != std::errc{} || end != begin + 2) {
+    const auto value = parse<std::uint8_t>(std::string_view{digits}.substr(i, 2), 16);
+    if (!value || digits.size() % 2 != 0) {
       return std::unexpected{"'" + text + "' is not an even number of hex digits"};
     }
-    bytes.push_back(static_cast<std::byte>(value));
+    bytes.push_back(std::byte{*value});
   }
   return bytes;
 }
@@ -155,9 +119,8 @@ std::expected<std::vector<std::byte>, std::string> hex_bytes(const std::string& 
 
 std::optional<DataType> parse_data_type(std::string_view text) {
   const std::string wanted = lower(text);
-  for (const auto& [short_name, type] : short_names) {
-    if (short_name == wanted) return type;
-  }
+  const auto found = std::ranges::find(short_names, wanted, &Named::first);
+  if (found != std::end(short_names)) return found->second;
   for (std::uint16_t code = 1; code <= 0x1B; ++code) {
     const auto type = static_cast<DataType>(code);
     if (lower(name(type)) == wanted && name(type) != name(DataType::unknown)) return type;
@@ -166,9 +129,7 @@ std::optional<DataType> parse_data_type(std::string_view text) {
 }
 
 std::string hex_text(std::span<const std::byte> bytes) {
-  std::string text;
-  for (const std::byte byte : bytes) text += fmt::format("{:02X}", std::to_integer<int>(byte));
-  return text;
+  return fmt::format("{:02X}", fmt::join(octets(bytes), ""));
 }
 
 bool fits(DataType type, std::span<const std::byte> bytes) noexcept {
@@ -187,7 +148,7 @@ std::string misfit_text(std::string_view name, DataType type, std::span<const st
 std::string value_text(DataType type, std::span<const std::byte> bytes) {
   if (type == DataType::visible_string) return string_of(bytes);
   if (is_bytes(type)) return hex_text(bytes);
-  const std::uint64_t value = little_endian(bytes);
+  const std::uint64_t value = load_le<std::uint64_t>(bytes);
   if (is_real(type)) return fmt::format("{}", number_of(type, static_cast<std::int64_t>(value)));
   if (is_signed(type)) return std::to_string(sign_extended(value, bit_width(type)));
   return std::to_string(value);
@@ -197,7 +158,7 @@ std::string untyped_text(std::span<const std::byte> bytes) {
   if (bytes.empty()) return "(empty)";
   if (printable(bytes) && bytes.size() > 4) return string_of(bytes);
   if (bytes.size() > 8) return hex_text(bytes);
-  const std::uint64_t value = little_endian(bytes);
+  const std::uint64_t value = load_le<std::uint64_t>(bytes);
   std::string text = fmt::format("{}  0x{:0{}X}", value, value, bytes.size() * 2);
   const std::int64_t as_signed = sign_extended(value, static_cast<unsigned>(bytes.size()) * 8);
   if (as_signed < 0) text += fmt::format("  signed {}", as_signed);

@@ -14,15 +14,18 @@ constexpr std::size_t record_bytes = 16;
 
 void EmcyLog::take(const Event& event, std::int64_t utime) {
   if (event.kind != EventKind::emcy || event.detail == 1) return;
-  std::vector<EmcyRecord>& records = records_[event.node];
+  auto& [records, codes] = nodes_[event.node];
   if (records.size() == depth) records.erase(records.begin());
   records.push_back({.utime = utime, .bytes = event.bytes});
+  if (records.back().code() == 0) return;
+  codes.push_front(records.back().code());
+  if (codes.size() > most_codes) codes.pop_back();
 }
 
-const std::vector<EmcyRecord>& EmcyLog::of(std::uint8_t node) const {
-  static const std::vector<EmcyRecord> none;
-  const auto found = records_.find(node);
-  return found == records_.end() ? none : found->second;
+const EmcyLog::NodeLog& EmcyLog::node_log(std::uint8_t node) const {
+  static const NodeLog none;
+  const auto found = nodes_.find(node);
+  return found == nodes_.end() ? none : found->second;
 }
 
 std::vector<std::uint8_t> pack(std::span<const EmcyRecord> records) {

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <span>
 #include <string>
@@ -28,15 +29,26 @@ struct EmcyRecord {
 /// Keeps the newest EMCYs of each node. Front thread.
 class EmcyLog {
  public:
-  static constexpr std::size_t depth = 32;  ///< records per node
+  static constexpr std::size_t depth = 32;       ///< records per node
+  static constexpr std::size_t most_codes = 10;  ///< error codes per node
+  using Codes = std::deque<std::uint16_t>;
 
   /// Ignores events of other kinds, and EMCYs of one byte, which have no error code.
   void take(const Event& event, std::int64_t utime);
   /// Returns the records of a node, oldest first.
-  const std::vector<EmcyRecord>& of(std::uint8_t node) const;
+  const std::vector<EmcyRecord>& of(std::uint8_t node) const { return node_log(node).records; }
+  /// Returns the error codes of a node, newest first, without code 0, which reports that all errors
+  /// are gone.
+  const Codes& codes(std::uint8_t node) const { return node_log(node).codes; }
 
  private:
-  std::map<std::uint8_t, std::vector<EmcyRecord>> records_;
+  struct NodeLog {
+    std::vector<EmcyRecord> records;
+    Codes codes;
+  };
+  const NodeLog& node_log(std::uint8_t node) const;
+
+  std::map<std::uint8_t, NodeLog> nodes_;
 };
 
 /// Encodes records for the reply to "emcy_history": per record 8 bytes of time and the 8 bytes of

@@ -1,69 +1,26 @@
 #include "master/gateway/notice/notice.hpp"
 
+#include <algorithm>
+
 #include "master/explain/boot_report.hpp"
 #include "master/lcm/messages.hpp"
 
 namespace takt {
 
+/// A kind in neither list is an error.
 Weight weight_of(EventKind kind) noexcept {
-  switch (kind) {
-    case EventKind::boot_started:
-    case EventKind::boot_done:
-    case EventKind::node_state:
-    case EventKind::heartbeat_back:
-    case EventKind::pdo_back:
-    case EventKind::sync_back:
-    case EventKind::fallback_ended:
-    case EventKind::bus_error_active:
-    case EventKind::bus_recovered:
-    case EventKind::program_progress:
-    case EventKind::no_sdo_block:
-    case EventKind::limit_read:
-    case EventKind::network_ready:
-    case EventKind::lss_assigned:
-    case EventKind::interface_up:
-    case EventKind::stopping:
-    case EventKind::stopped:
-      return Weight::note;
-    case EventKind::bootup_again:
-    case EventKind::guarding_toggle:
-    case EventKind::lss_not_assigned:
-    case EventKind::node_replaced:
-    case EventKind::firmware_differs:
-    case EventKind::unlisted_node:
-    case EventKind::pdo_missing:
-    case EventKind::pdo_late:
-    case EventKind::pdo_length:
-    case EventKind::cycles_missed:
-    case EventKind::sync_jump:
-    case EventKind::sync_early:
-    case EventKind::sync_period:
-    case EventKind::fallback_begun:
-    case EventKind::outputs_held:
-    case EventKind::limit_exceeded:
-    case EventKind::bus_error_passive:
-    case EventKind::send_buffer_full:
-    case EventKind::still_armed:
-    case EventKind::drive_coasts:
-      return Weight::warning;
-    case EventKind::boot_failed:
-    case EventKind::heartbeat_lost:
-    case EventKind::guarding_lost:
-    case EventKind::network_late:
-    case EventKind::duplicate_node:
-    case EventKind::loss_reaction:
-    case EventKind::mandatory_lost:
-    case EventKind::axis_not_stopped:
-    case EventKind::emcy:
-    case EventKind::receive_overrun:
-    case EventKind::sync_lost:
-    case EventKind::bus_off:
-    case EventKind::interface_down:
-    case EventKind::foreign_sync:
-    case EventKind::foreign_nmt:
-    case EventKind::duplicate_cob_id:
-      return Weight::error;
-  }
+  using enum EventKind;
+  static constexpr EventKind notes[] = {
+      boot_started,   boot_done,        node_state,    heartbeat_back,   pdo_back,     sync_back,
+      fallback_ended, bus_error_active, bus_recovered, program_progress, no_sdo_block, limit_read,
+      network_ready,  lss_assigned,     interface_up,  stopping,         stopped};
+  static constexpr EventKind warnings[] = {
+      bootup_again,   guarding_toggle,   lss_not_assigned, node_replaced,  firmware_differs,
+      unlisted_node,  pdo_missing,       pdo_late,         pdo_length,     cycles_missed,
+      sync_jump,      sync_early,        sync_period,      fallback_begun, outputs_held,
+      limit_exceeded, bus_error_passive, send_buffer_full, still_armed,    drive_coasts};
+  if (std::ranges::find(notes, kind) != std::end(notes)) return Weight::note;
+  if (std::ranges::find(warnings, kind) != std::end(warnings)) return Weight::warning;
   return Weight::error;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <fmt/format.h>
 #include <string>
 
 #include "master/explain/boot_report.hpp"
@@ -22,12 +23,12 @@ Time next_sum(Time now, Time reported) {
 
 std::string how_often(std::uint64_t count) {
   if (count == 1) return "once";
-  return count == 2 ? "twice" : std::to_string(count) + " times";
+  return count == 2 ? "twice" : fmt::format("{} times", count);
 }
 
 std::string still(std::size_t missing) {
   if (missing == 0) return "all are back";
-  return std::to_string(missing) + (missing == 1 ? " is" : " are") + " still missing";
+  return fmt::format("{} {} still missing", missing, missing == 1 ? "is" : "are");
 }
 
 std::string lately(Time span) {
@@ -110,9 +111,9 @@ Notice PdoOutages::one(const Row& row, Time now) const {
           .node = pdo.node,
           .kind = std::string{name(EventKind::pdo_missing)},
           .weight = Weight::warning,
-          .text = subject(plan_, pdo.node) + ": TPDO" + std::to_string(pdo.number) +
-                  " was missing " + how_often(outage.missed) + " " + lately(now - outage.since) +
-                  (outage.missing ? "; it is still missing" : "; it is back")};
+          .text = fmt::format("{}: TPDO{} was missing {} {}; it is {}", subject(plan_, pdo.node),
+                              pdo.number, how_often(outage.missed), lately(now - outage.since),
+                              outage.missing ? "still missing" : "back")};
 }
 
 Notice PdoOutages::many(const std::vector<Row*>& rows, Time now) const {
@@ -126,13 +127,11 @@ Notice PdoOutages::many(const std::vector<Row*>& rows, Time now) const {
     missing += row->second.missing;
     since = std::min(since, row->second.since);
   }
-  std::string text = std::to_string(rows.size()) + " TPDOs ";
-  if (total == 0) {
-    text += "are back";
-  } else {
-    text += "were missing " + how_often(total) + " " + lately(now - since) + ", most often TPDO" +
-            std::to_string(worst.number) + " of " + subject(plan_, worst.node) + " (" +
-            how_often(outage.missed) + "); " + still(missing);
+  std::string text = fmt::format("{} TPDOs are back", rows.size());
+  if (total != 0) {
+    text = fmt::format("{} TPDOs were missing {} {}, most often TPDO{} of {} ({}); {}", rows.size(),
+                       how_often(total), lately(now - since), worst.number,
+                       subject(plan_, worst.node), how_often(outage.missed), still(missing));
   }
   const EventKind kind = total == 0 ? EventKind::pdo_back : EventKind::pdo_missing;
   return {.when = now,

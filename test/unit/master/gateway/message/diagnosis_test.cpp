@@ -1,10 +1,7 @@
-#include "master/gateway/message/diagnosis.hpp"
-
 #include <cerrno>
 #include <gtest/gtest.h>
 
 #include "master/gateway/message/status_messages.hpp"
-#include "master/gateway/notice/emcy_history.hpp"
 
 namespace takt {
 namespace {
@@ -111,15 +108,21 @@ TEST(Diagnosis, SaysWhenSomethingIsNew) {
   EXPECT_FALSE(diagnosis.fill(snapshot).changed);
 }
 
-TEST(EmcyHistory, KeepsTheNewestTenOfANode) {
-  EmcyHistory history{2};
-  for (std::uint16_t i = 1; i <= 12; ++i) history.add(1, i);
-  history.add(9, 1);
+Event emcy(std::uint8_t node, std::uint8_t code) {
+  return {.kind = EventKind::emcy, .node = node, .bytes = {code, 0x81}};
+}
 
-  EXPECT_TRUE(history.of(0).empty());
-  ASSERT_EQ(history.of(1).size(), 10u);
-  EXPECT_EQ(history.of(1).front(), 12);
-  EXPECT_EQ(history.of(1).back(), 3);
+TEST(EmcyLog, KeepsTheNewestTenCodesOfANodeWithoutCode0) {
+  EmcyLog log;
+  for (std::uint8_t i = 1; i <= 12; ++i) {
+    log.take(emcy(2, i), 0);
+    log.take({.kind = EventKind::emcy, .node = 2}, 0);
+  }
+
+  EXPECT_TRUE(log.codes(1).empty());
+  ASSERT_EQ(log.codes(2).size(), 10u);
+  EXPECT_EQ(log.codes(2).front(), 0x810C);
+  EXPECT_EQ(log.codes(2).back(), 0x8103);
 }
 
 TEST(StatusMessages, OfANodeThatHasBeenSilentForAMonthReportTheLongestAge) {
@@ -136,10 +139,10 @@ TEST(StatusMessages, OfANodeThatHasBeenSilentForAMonthReportTheLongestAge) {
 TEST(StatusMessages, CarryTheDiagnosisAndTheEmcysOfEachNode) {
   const BusPlan plan = two_nodes();
   StatusMessages messages{plan, {}};
-  EmcyHistory history{2};
-  history.add(0, 0x8130);
+  EmcyLog log;
+  log.take(emcy(plan.nodes[0].id.value(), 0x30), 0);
   GatewayStatus gateway;
-  gateway.emcys = &history;
+  gateway.emcys = &log;
 
   const auto parts = messages.fill(good(), gateway, Time{1});
 

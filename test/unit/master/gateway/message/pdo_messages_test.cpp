@@ -1,8 +1,7 @@
-#include "master/gateway/message/pdo_messages.hpp"
-
 #include <gtest/gtest.h>
 
 #include "master/gateway/message/bus_view.hpp"
+#include "master/gateway/message/status_messages.hpp"
 #include "master/lcm/messages.hpp"
 #include "test/unit/master/core/pdo/small_plan.hpp"
 

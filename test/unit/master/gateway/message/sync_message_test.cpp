@@ -1,8 +1,7 @@
-#include "master/gateway/message/sync_message.hpp"
-
 #include <gtest/gtest.h>
 
 #include "master/gateway/message/bus_view.hpp"
+#include "master/gateway/message/status_messages.hpp"
 #include "master/lcm/messages.hpp"
 
 namespace takt {
