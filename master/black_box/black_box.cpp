@@ -132,36 +132,30 @@ void BlackBox::serve(Time now) {
 
 bool BlackBox::finish(const std::string& reason, Time limit) {
   const Time until = monotonic_now() + limit;
-  if (writer_.joinable()) {
-    if (!await_writer(until)) return false;
-    end_writing();
-  }
+  if (!end_writer(until)) return false;
   if (reason_.empty()) reason_ = reason;
   if (reason_.empty()) return true;
   const Tape* const tape = wanted_ ? journal_.wanted() : nullptr;
-  if (!write(tape != nullptr ? *tape : journal_.last())) return true;
-  if (!await_writer(until)) return false;
-  end_writing();
-  return true;
+  return !write(tape != nullptr ? *tape : journal_.last()) || end_writer(until);
 }
 
-/// Waits until the writer has ended; checks every millisecond. Returns false after the time
-/// `until`.
-bool BlackBox::await_writer(Time until) const {
+/// Waits until the writer, if there is one, has ended; checks every millisecond. Returns false
+/// after the time `until`.
+bool BlackBox::end_writer(Time until) {
+  if (!writer_.joinable()) return true;
   while (writing_.load(std::memory_order_acquire)) {
     if (monotonic_now() > until) return false;
     std::this_thread::sleep_for(1ms);
   }
+  end_writing();
   return true;
 }
 
 bool BlackBox::finish_running(const std::string& reason, Time limit) {
   const Time until = monotonic_now() + limit;
-  if (writer_.joinable()) {
-    if (!await_writer(until)) return false;
-    end_writing();
-    journal_.give_back();
-  }
+  const bool writes = writer_.joinable();
+  if (!end_writer(until)) return false;
+  if (writes) journal_.give_back();
   if (!wanted_) journal_.want();
   const Tape* tape = journal_.wanted();
   for (; tape == nullptr && monotonic_now() < until; tape = journal_.wanted()) {
@@ -169,9 +163,7 @@ bool BlackBox::finish_running(const std::string& reason, Time limit) {
   }
   if (tape == nullptr) return false;  // the bus thread no longer begins a cycle
   if (reason_.empty()) reason_ = reason;
-  if (!write(*tape) || !await_writer(until)) return false;
-  end_writing();
-  return !failed_;
+  return write(*tape) && end_writer(until) && !failed_;
 }
 
 /// Starts the writer. Returns false, after a report, if no thread can be created; the tape is then

@@ -68,7 +68,7 @@ class BlackBox {
   std::filesystem::path next_stem(const std::string& bus) const;
   void forget_oldest(const std::string& bus) const;
   void end_writing();
-  bool await_writer(Time until) const;
+  bool end_writer(Time until);
 
   BlackBoxOptions options_;
   const BusPlan& plan_;

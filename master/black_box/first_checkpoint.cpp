@@ -30,16 +30,9 @@ std::uint64_t length_of(std::uint64_t word) noexcept {
     case Mark::request:
     case Mark::checkpoint:
       return payload;
-    case Mark::cycle:
-    case Mark::now:
-    case Mark::wait:
-    case Mark::stop:
-    case Mark::replies_full:
-    case Mark::event:
-    case Mark::gap:
+    default:
       return 0;
   }
-  return 0;
 }
 
 /// Number of words and events before the first checkpoint.

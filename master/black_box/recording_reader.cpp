@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "master/black_box/first_checkpoint.hpp"
-#include "master/black_box/recording_file.hpp"
 #include "master/black_box/recording_format.hpp"
 #include "master/trace/candump_line.hpp"
 
@@ -73,15 +72,10 @@ Result<std::vector<Frame>> read_log(const std::string& path) {
   return frames;
 }
 
-Decision read_decision(const nlohmann::json& json) {
-  return {.time = json.at("time").get<std::int64_t>(),
-          .cycle = json.at("cycle").get<std::uint64_t>(),
-          .node = json.at("node").get<unsigned>(),
-          .kind = json.at("kind").get<std::string>(),
-          .value = json.at("value").get<std::int64_t>(),
-          .detail = json.at("detail").get<std::uint32_t>(),
-          .bytes = json.at("bytes").get<std::string>(),
-          .text = json.at("text").get<std::string>()};
+template <class T>
+void read(const nlohmann::json& json, T& out, const auto& fields) {
+  const auto read_one = [&](const auto& field) { json.at(field.first).get_to(out.*field.second); };
+  std::apply([&](const auto&... field) { (read_one(field), ...); }, fields);
 }
 
 void read_events(std::istream& in, LoadedRecording& loaded, std::size_t& frames) {
@@ -91,17 +85,10 @@ void read_events(std::istream& in, LoadedRecording& loaded, std::size_t& frames)
     throw std::runtime_error{fmt::format("the format is {}; this takt reads 1 to {}", version,
                                          recording_format::version)};
   }
-  loaded.head = {.bus = json.at("bus").get<std::string>(),
-                 .interface = json.at("interface").get<std::string>(),
-                 .network = json.at("network").get<std::string>(),
-                 .fingerprint = json.at("fingerprint").get<std::string>(),
-                 .reason = json.at("reason").get<std::string>(),
-                 .observe = json.at("observe").get<bool>(),
-                 .from_start = json.at("from_start").get<bool>(),
-                 .follows = json.at("follows").get<std::string>()};
+  read(json, loaded.head, recording_format::head_fields);
   frames = json.at("frames").get<std::size_t>();
   for (const nlohmann::json& event : json.at("events")) {
-    loaded.decisions.push_back(read_decision(event));
+    read(event, loaded.decisions.emplace_back(), recording_format::decision_fields);
   }
 }
 

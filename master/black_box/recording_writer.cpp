@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -6,28 +7,26 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "master/black_box/recording_file.hpp"
 #include "master/black_box/recording_format.hpp"
 #include "master/black_box/unravel.hpp"
+#include "master/explain/boot_report.hpp"
 #include "master/linux/file_descriptor.hpp"
 
 namespace takt {
 namespace {
 
-std::string frame_text(const Frame& frame) {
-  std::string text = frame.id.is_extended() ? fmt::format("{:08X}#", frame.id.id())
-                                            : fmt::format("{:03X}#", frame.id.id());
-  if (frame.rtr) return text + (frame.length == 0 ? "R" : fmt::format("R{}", frame.length));
-  for (const std::uint8_t byte : frame.payload())
-    fmt::format_to(std::back_inserter(text), "{:02X}", byte);
-  return text;
+std::string log_text(const Frame& frame) {
+  const int digits = frame.id.is_extended() ? 8 : 3;
+  const std::string id = fmt::format("{:0{}X}#", frame.id.id(), digits);
+  if (frame.rtr) return id + (frame.length == 0 ? "R" : fmt::format("R{}", frame.length));
+  return fmt::format("{}{:02X}", id, fmt::join(frame.payload(), ""));
 }
 
 void write_log(std::ostream& out, const UnravelledTape& tape, const std::string& interface) {
   for (const LoggedFrame& logged : tape.frames) {
     const std::int64_t us = (logged.when + tape.since_1970).count() / 1000;
     out << fmt::format("({:010}.{:06}) {} {}\n", us / 1'000'000, us % 1'000'000, interface,
-                       frame_text(logged.frame));
+                       log_text(logged.frame));
   }
 }
 
@@ -37,30 +36,22 @@ void write_journal(std::ostream& out, const std::vector<std::uint64_t>& words) {
             static_cast<std::streamsize>(words.size() * sizeof(std::uint64_t)));
 }
 
+template <class T>
+void write(nlohmann::ordered_json& json, const T& in, const auto& fields) {
+  const auto write_one = [&](const auto& field) { json[field.first] = in.*field.second; };
+  std::apply([&](const auto&... field) { (write_one(field), ...); }, fields);
+}
+
 void write_events(std::ostream& out, const BusPlan& plan, const RecordingHead& head,
                   const UnravelledTape& tape) {
-  nlohmann::ordered_json json{{"format", recording_format::version},
-                              {"bus", head.bus},
-                              {"interface", head.interface},
-                              {"network", head.network},
-                              {"fingerprint", head.fingerprint},
-                              {"reason", head.reason},
-                              {"observe", head.observe},
-                              {"from_start", head.from_start},
-                              {"follows", head.follows},
-                              {"frames", tape.frames.size()},
-                              {"events", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json{{"format", recording_format::version}};
+  write(json, head, recording_format::head_fields);
+  json["frames"] = tape.frames.size();
+  json["events"] = nlohmann::ordered_json::array();
   for (const Event& event : tape.events) {
-    const Decision decision = to_decision(plan, event);
-    json["events"].push_back({{"time", decision.time},
-                              {"utime", (event.when + tape.since_1970).count() / 1000},
-                              {"cycle", decision.cycle},
-                              {"node", decision.node},
-                              {"kind", decision.kind},
-                              {"value", decision.value},
-                              {"detail", decision.detail},
-                              {"bytes", decision.bytes},
-                              {"text", decision.text}});
+    auto& object = json["events"].emplace_back();
+    object["utime"] = (event.when + tape.since_1970).count() / 1000;
+    write(object, to_decision(plan, event), recording_format::decision_fields);
   }
   out << json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
 }
@@ -68,9 +59,7 @@ void write_events(std::ostream& out, const BusPlan& plan, const RecordingHead& h
 /// Returns the name of the interface without blanks, because candump separates columns by blanks.
 std::string interface_of(const BusPlan& plan) {
   std::string text = plan.interface.empty() ? plan.name : plan.interface;
-  for (char& letter : text) {
-    if (letter <= ' ' || letter == '#') letter = '_';
-  }
+  std::ranges::replace_if(text, [](char letter) { return letter <= ' ' || letter == '#'; }, '_');
   return text.empty() ? "bus" : text;
 }
 
@@ -134,6 +123,17 @@ class UnfinishedFiles {
 };
 
 }  // namespace
+
+Decision to_decision(const BusPlan& plan, const Event& event) {
+  return {.time = event.when.count(),
+          .cycle = event.cycle,
+          .node = event.node,
+          .kind = std::string{name(event.kind)},
+          .value = event.value,
+          .detail = event.detail,
+          .bytes = fmt::format("{:02X}", fmt::join(event.bytes, "")),
+          .text = describe(plan, event)};
+}
 
 std::expected<void, std::string> write_recording(const std::filesystem::path& stem,
                                                  const BusPlan& plan, const RecordingHead& head,

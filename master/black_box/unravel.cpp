@@ -63,11 +63,7 @@ class Unraveller {
       case Mark::event:
         tape_.events.push_back(read_as<Event>(take(journal::event_words)));
         break;
-      case Mark::cycle:
-      case Mark::wait:
-      case Mark::stop:
-      case Mark::replies_full:
-      case Mark::gap:
+      default:
         break;
     }
   }
