@@ -1,5 +1,7 @@
 #include "master/lcm/messages.hpp"
 
+#include <fmt/format.h>
+
 #include "eds_parser/table/name_of.hpp"
 
 namespace takt {
@@ -13,25 +15,19 @@ std::string_view text(DecodeFault fault) noexcept {
   return name_of(fault, names);
 }
 
-namespace {
-
-std::string schema_text(std::int16_t schema) { return "schema " + std::to_string(schema); }
-
-}  // namespace
-
 std::string schema_refusal(std::int16_t schema) {
-  const bool newer = schema > message_schema;
-  return "message of " + schema_text(schema) + ": " +
-         (newer ? "this taktd is older than the application and uses "
-                : "rebuild the application against this takt, which uses ") +
-         schema_text(message_schema);
+  return fmt::format("message of schema {}: {} schema {}", schema,
+                     schema > message_schema
+                         ? "this taktd is older than the application and uses"
+                         : "rebuild the application against this takt, which uses",
+                     message_schema);
 }
 
 std::string daemon_schema_text(std::int16_t schema) {
-  const bool newer = schema > message_schema;
-  return "the daemon sends messages of " + schema_text(schema) + " and this program uses " +
-         schema_text(message_schema) + ": " +
-         (newer ? "rebuild the program against the daemon's takt" : "update the daemon");
+  return fmt::format("the daemon sends messages of schema {} and this program uses schema {}: {}",
+                     schema, message_schema,
+                     schema > message_schema ? "rebuild the program against the daemon's takt"
+                                             : "update the daemon");
 }
 
 }  // namespace takt
