@@ -1,9 +1,8 @@
-#include "master/black_box/first_checkpoint.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <span>
 
+#include "master/black_box/recording_file.hpp"
 #include "master/rt/journal/recorded_port.hpp"
 
 namespace takt {

@@ -52,6 +52,10 @@ struct LoadedRecording {
   std::optional<std::string> fault;  ///< reason why the recording can't be replayed, a sentence
 };
 
+/// Removes everything before the first checkpoint, except the frames. Returns false if the
+/// recording has no checkpoint.
+bool begin_with_checkpoint(LoadedRecording& recording);
+
 /// Writes `stem.log` (in the format of `candump -L`), `stem.events.json` and `stem.journal`.
 /// `records` are the records of a tape. The three files have other names until all of them are
 /// complete; if one can't be written, none is left behind. On failure, returns a sentence.

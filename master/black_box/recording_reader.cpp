@@ -5,7 +5,6 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "master/black_box/first_checkpoint.hpp"
 #include "master/black_box/recording_format.hpp"
 #include "master/trace/candump_line.hpp"
 

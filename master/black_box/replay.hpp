@@ -15,8 +15,8 @@ struct ReplayOutcome {
   std::optional<std::string> difference{};  ///< first difference, in words; empty if none
 };
 
-/// Runs the recording through the bus loop of the master. `announce` receives each decision. The plan
-/// is that of the recording, or another one; the first difference then shows the effect of the
+/// Runs the recording through the bus loop of the master. `announce` receives each decision. The
+/// plan is that of the recording, or another one; the first difference then shows the effect of the
 /// change.
 ReplayOutcome replay(const BusPlan& plan, const LoadedRecording& recording,
                      const std::function<void(const Decision&)>& announce);

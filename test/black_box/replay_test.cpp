@@ -6,7 +6,6 @@
 #include <random>
 #include <sstream>
 
-#include "master/black_box/first_checkpoint.hpp"
 #include "test/black_box/recorded_run.hpp"
 #include "test/support/folder.hpp"
 
