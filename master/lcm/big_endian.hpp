@@ -8,7 +8,7 @@
 namespace takt {
 
 /// Reads an integer from the first sizeof(T) bytes, most significant byte first, as LCM sends it.
-/// Missing bytes are not counted.
+/// From fewer bytes, reads a shorter integer.
 template <class T>
 T load_be(std::span<const std::byte> bytes) noexcept {
   std::uint64_t value = 0;

@@ -110,7 +110,7 @@ class Commands {
                          std::uint32_t configured) const noexcept;
   std::uint32_t shortest_limit(std::size_t node) const noexcept;
   std::uint32_t lease_cycles(std::size_t node_index) const noexcept;
-  /// The reason and the node concerned; 0 stands for none.
+  /// Why a command is refused, and the node that it concerns; 0 if it concerns no single node.
   struct Refused {
     CommandRefusal reason;
     std::uint8_t node = 0;

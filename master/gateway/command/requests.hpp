@@ -91,7 +91,7 @@ class Requests {
 inline constexpr std::string_view observing_text =
     "taktd only observes (--observe) and sends nothing";
 
-// Why a request can't be executed; empty if nothing is in its way.
+// These functions return why a request can't be executed, or an empty text.
 std::string node_obstacle(const BusPlan& plan, std::int32_t node);
 std::string object_obstacle(const BusPlan& plan, std::int32_t node, std::int32_t index,
                             std::int32_t sub);

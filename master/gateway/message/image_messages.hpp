@@ -25,7 +25,7 @@ class ImageMessages {
   std::vector<image_t> parts_;
 };
 
-/// Returns true if the value of this signal is older than the device should let it become.
+/// Returns true if the image marks the value of this signal as stale.
 bool is_stale(const ImageView& image, std::size_t signal) noexcept;
 
 /// Describes the values, with a few signals per message.
