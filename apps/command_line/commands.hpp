@@ -36,4 +36,9 @@ void add_status(CLI::App& app, int& exit_code);
 void add_timing(CLI::App& app, int& exit_code);
 void add_top(CLI::App& app, int& exit_code);
 
+/// The verbs of `takt eds` that have separate source files.
+void add_eds_dcf(CLI::App& eds, int& exit_code);
+void add_eds_cdcf(CLI::App& eds, int& exit_code);
+void add_eds_fix(CLI::App& eds, int& exit_code);
+
 }  // namespace takt

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "eds_parser/table/time.hpp"
@@ -10,5 +11,8 @@ namespace takt {
 /// `1.5m` or `2h`. A number without a unit means seconds. Returns std::nullopt if the text is no
 /// duration or more than 1e18 ns (about 31 years).
 std::optional<Time> parse_duration(std::string_view text) noexcept;
+
+/// Returns the reason why an option refuses a text as a duration, or an empty string.
+std::string duration_trouble(const std::string& text);
 
 }  // namespace takt

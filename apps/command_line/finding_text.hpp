@@ -1,4 +1,5 @@
 #pragma once
+#include <iostream>
 #include <string>
 
 #include "eds_parser/report/report.hpp"
@@ -10,6 +11,15 @@ namespace takt {
 /// so unprintable characters become '?'.
 inline std::string finding_text(const Finding& finding) {
   return printable_text(to_string(finding));
+}
+
+/// Prints the findings of at least this severity on stderr. Returns true if one of all findings is
+/// an error.
+inline bool print_findings(const Findings& findings, Severity least = Severity::note) {
+  for (const Finding& finding : findings) {
+    if (finding.severity >= least) std::cerr << finding_text(finding) << '\n';
+  }
+  return has_error(findings);
 }
 
 }  // namespace takt

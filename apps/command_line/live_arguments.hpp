@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,7 +22,16 @@ struct LiveOptions {
   bool check_images = false;  ///< accept only messages that the daemon has signed
 };
 
+/// Adds the options that choose the daemon and the bus.
+void add_bus_choice(CLI::App& verb, LiveOptions& options);
+/// Adds the options of programs that may need a key.
+void add_key_options(CLI::App& app, std::string& keys, bool& check_images);
+/// Adds both, and `--json`.
 void add_live_options(CLI::App& verb, LiveOptions& options);
+
+/// Parses a number of 32 bits without a sign. A number with 0x is hex, whatever the base is.
+/// Returns std::nullopt if the text is no such number.
+std::optional<std::uint32_t> parse_unsigned(std::string_view text, int base = 10);
 
 /// Parses index and sub-index in hex, for example `6041`, `6041:00` or `0x1018:1`. Returns
 /// std::nullopt if the text is no object.

@@ -15,4 +15,9 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, T& number,
   return app.add_option(name, number, what)->check(octal_trouble);
 }
 
+/// Adds the option `--node` of the commands that read an EDS.
+inline void add_node_id(CLI::App& app, unsigned& node, const std::string& what) {
+  add_number(app, "--node", node, what)->check(CLI::Range(1U, 127U));
+}
+
 }  // namespace takt

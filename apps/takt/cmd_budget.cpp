@@ -123,13 +123,10 @@ int run(const Options& options) {
     how.errors = {.burst = 1, .interval = *interval};
   }
   const auto network = load_changed_network(options.file, changes);
-  bool readable = true;
-  for (const Finding& finding : network.findings) {
-    if (finding.severity == Severity::note || is_too_full(finding)) continue;
-    std::cerr << finding_text(finding) << '\n';
-    readable = readable && finding.severity != Severity::error;
-  }
-  return readable ? report(options, network, changes, how) : wrong_use;
+  Findings findings = network.findings;
+  std::erase_if(findings, is_too_full);
+  const bool bad = print_findings(findings, Severity::warning);
+  return bad ? wrong_use : report(options, network, changes, how);
 }
 
 }  // namespace

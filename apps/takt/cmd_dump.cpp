@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
@@ -16,7 +15,9 @@
 
 #include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/command_line/finding_text.hpp"
+#include "apps/command_line/interrupt.hpp"
 #include "apps/command_line/json_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/whole_number.hpp"
@@ -33,9 +34,7 @@
 namespace takt {
 namespace {
 
-constexpr int good = 0;
 constexpr int usage = 2;
-constexpr int bus_trouble = 3;
 
 constexpr const char* example = R"(Examples:
   takt dump --bus can0                 prints the frames that are on the bus now
@@ -81,8 +80,6 @@ std::optional<unsigned> node_of(const std::string& text, const LoadedNetwork* ne
   }
   return std::nullopt;
 }
-
-volatile std::sig_atomic_t interrupted = 0;
 
 bool is_network(const std::string& file) {
   return file.ends_with(".yaml") || file.ends_with(".yml");
@@ -147,7 +144,7 @@ class Printer {
   std::uint64_t printed_ = 0;
 };
 
-int dump_log(std::istream& in, const std::string& name, Printer& printer) {
+void dump_log(std::istream& in, const std::string& name, Printer& printer) {
   std::string text;
   std::uint64_t line_number = 0;
   std::uint64_t frames = 0;
@@ -166,22 +163,19 @@ int dump_log(std::istream& in, const std::string& name, Printer& printer) {
   }
   if (strange > 3) fmt::print(stderr, "{}: {} lines were left out\n", name, strange);
   if (frames == 0 && strange != 0) {
-    fmt::print(stderr,
-               "{}: holds no frame; `candump -L can0 > FILE` makes a recording that takt reads\n",
-               name);
-    return usage;
+    throw Failure{
+        name + ": holds no frame; `candump -L can0 > FILE` makes a recording that takt reads",
+        usage};
   }
-  return good;
 }
 
-int dump_file(const std::string& name, Printer& printer) {
+void dump_file(const std::string& name, Printer& printer) {
   if (name == "-") return dump_log(std::cin, "stdin", printer);
   std::ifstream file{name};
   if (!file || std::filesystem::is_directory(name)) {
-    fmt::print(stderr, "{}: cannot be read: {}\n", name, std::strerror(file ? EISDIR : errno));
-    return usage;
+    throw Failure{name + ": cannot be read: " + std::strerror(file ? EISDIR : errno), usage};
   }
-  return dump_log(file, name, printer);
+  dump_log(file, name, printer);
 }
 
 std::string stamp_text(Time monotonic) {
@@ -217,20 +211,14 @@ class InterfaceNews {
   PortNews last_;
 };
 
-int dump_bus(const std::string& bus, Printer& printer) {
-  auto channel = FrameChannel::open(bus, BusMember::guest);
-  if (!channel) {
-    fmt::print(stderr, "takt dump: {}\n", channel.error().message);
-    return bus_trouble;
-  }
-  const auto stop = [](int) { interrupted = 1; };
-  std::signal(SIGINT, stop);
-  std::signal(SIGTERM, stop);
+void dump_bus(const std::string& bus, Printer& printer) {
+  FrameChannel channel = value_or_fail(FrameChannel::open(bus, BusMember::guest), 3);
+  const Interrupt interrupt;
   StampedFrame got;
   InterfaceNews news{bus};
-  while (interrupted == 0) {
-    const bool received = channel->receive(got, std::chrono::milliseconds{100});
-    news.announce(channel->news());
+  while (!Interrupt::asked()) {
+    const bool received = channel.receive(got, std::chrono::milliseconds{100});
+    news.announce(channel.news());
     if (!received) {
       std::fflush(stdout);
       continue;
@@ -239,7 +227,6 @@ int dump_bus(const std::string& bus, Printer& printer) {
     if (!printer.print(line)) break;
     if (isatty(STDOUT_FILENO) != 0) std::fflush(stdout);
   }
-  return good;
 }
 
 int run(const Options& options) {
@@ -248,39 +235,37 @@ int run(const Options& options) {
   for (const std::string& file : options.files) {
     if (is_network(file) && !network) {
       network = load_network(file);
-      for (const Finding& finding : network->findings) {
-        if (finding.severity == Severity::error) fmt::print(stderr, "{}\n", finding_text(finding));
-      }
-      if (has_error(network->findings)) return usage;
+      if (print_findings(network->findings, Severity::error)) return usage;
     } else if (!log) {
       log = file;
     } else {
-      fmt::print(stderr, "takt dump: give at most one network file and one recording\n");
-      return usage;
+      throw Failure{"give at most one network file and one recording", usage};
     }
   }
   if (log && !options.bus.empty()) {
-    fmt::print(stderr, "takt dump: give either --bus or a recording, not both\n");
-    return usage;
+    throw Failure{"give either --bus or a recording, not both", usage};
   }
   const LoadedNetwork* const names = network ? &*network : nullptr;
   const auto node = options.node.empty() ? std::optional{0U} : node_of(options.node, names);
   if (!node) {
-    fmt::print(
-        stderr, "takt dump: '{}' is not a node id 1..127{}\n", options.node,
-        names == nullptr ? "; a name needs a network file" : " and not a node of the network file");
-    return usage;
+    throw Failure{"'" + options.node + "' is not a node id 1..127" +
+                      (names == nullptr ? "; a name needs a network file"
+                                        : " and not a node of the network file"),
+                  usage};
   }
   Printer printer{options, *node, names};
-  if (log) return dump_file(*log, printer);
-  if (!options.bus.empty()) return dump_bus(options.bus, printer);
-  if (isatty(STDIN_FILENO) == 0) return dump_file("-", printer);
-  if (network && !network->plan.interface.empty()) {
-    return dump_bus(network->plan.interface, printer);
+  if (log) {
+    dump_file(*log, printer);
+  } else if (!options.bus.empty()) {
+    dump_bus(options.bus, printer);
+  } else if (isatty(STDIN_FILENO) == 0) {
+    dump_file("-", printer);
+  } else if (network && !network->plan.interface.empty()) {
+    dump_bus(network->plan.interface, printer);
+  } else {
+    throw Failure{"no bus is given; use --bus can0, --bus unix:PATH, or a recording", usage};
   }
-  fmt::print(stderr,
-             "takt dump: no bus is given; use --bus can0, --bus unix:PATH, or a recording\n");
-  return usage;
+  return 0;
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/whole_number.hpp"
-#include "apps/takt/eds_commands.hpp"
 #include "eds_parser/check/check.hpp"
 #include "eds_parser/check/rule_list.hpp"
 #include "eds_parser/print/findings_json.hpp"
@@ -44,7 +43,7 @@ EdsFile read_and_check(const std::string& path, unsigned node) {
 int show(const ShowOptions& options) {
   const auto file = read_and_check(options.file, options.node);
   if (!file.readable) {
-    for (const auto& finding : file.findings) std::cerr << finding_text(finding) << '\n';
+    print_findings(file.findings);
     return 1;
   }
   if (options.json) {
@@ -89,8 +88,7 @@ void add_show(CLI::App& eds, int& exit_code) {
   auto options = std::make_shared<ShowOptions>();
   auto* command = eds.add_subcommand("show", "prints the object dictionary and the PDOs of a file");
   command->add_option("FILE", options->file, "EDS or DCF")->required();
-  add_number(*command, "--node", options->node, "node id that replaces $NODEID")
-      ->check(CLI::Range(1U, 127U));
+  add_node_id(*command, options->node, "node id that replaces $NODEID");
   command->add_flag("--json", options->json, "print one JSON document");
   command->footer("Example:\n  takt eds show --node 5 share/eds/takt_drive402.eds");
   command->callback([options, &exit_code] { exit_code = show(*options); });
@@ -102,8 +100,7 @@ void add_check(CLI::App& eds, int& exit_code) {
   auto* rules = command->add_flag("--rules", options->rules, "list the rules, with examples");
   auto* files = command->add_option("FILE", options->files, "EDS or DCF");
   files->excludes(rules);
-  add_number(*command, "--node", options->node, "node id that replaces $NODEID")
-      ->check(CLI::Range(1U, 127U));
+  add_node_id(*command, options->node, "node id that replaces $NODEID");
   command->add_flag("--quiet", options->quiet, "leave out notes");
   command->add_flag("--json", options->json, "print one JSON document")->excludes(rules);
   command->footer(

@@ -2,11 +2,12 @@
 #include <iostream>
 #include <memory>
 
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/text_file.hpp"
 #include "apps/command_line/whole_number.hpp"
-#include "apps/takt/eds_commands.hpp"
 #include "eds_parser/read/eds.hpp"
 #include "eds_parser/write/configured_values.hpp"
 
@@ -37,14 +38,13 @@ std::size_t size_of(const std::vector<ConciseEntry>& entries) {
 }
 
 int decode(const Options& options) {
-  const auto content = read_whole_file(options.file);
-  if (!content) return complain(content.error(), 1);
-  const auto entries = decode_concise_dcf(std::as_bytes(std::span{*content}));
+  const std::string content = value_or_fail(read_whole_file(options.file), 1);
+  const auto entries = decode_concise_dcf(std::as_bytes(std::span{content}));
   if (!entries) return complain(options.file + ": the concise DCF " + entries.error(), 1);
   for (const auto& entry : *entries) std::cout << line_of(entry) << '\n';
   const auto used = size_of(*entries);
-  if (content->size() > used) {
-    complain(options.file + ": " + std::to_string(content->size() - used) +
+  if (content.size() > used) {
+    complain(options.file + ": " + std::to_string(content.size() - used) +
                  " bytes follow the last of " + std::to_string(entries->size()) +
                  " entries; devices ignore these bytes",
              0);
@@ -55,17 +55,15 @@ int decode(const Options& options) {
 int encode(const Options& options) {
   const auto [entries, findings] =
       configured_values(read_eds_file(options.file, NodeId::from(options.node)));
-  for (const auto& finding : findings) {
-    if (finding.severity != Severity::note) std::cerr << finding_text(finding) << '\n';
-  }
-  if (has_error(findings)) return 1;
+  if (print_findings(findings, Severity::warning)) return 1;
   if (entries.empty()) {
     return complain(options.file + ": no object has a ParameterValue that can be written", 1);
   }
   const auto bytes = encode_concise_dcf(entries);
-  const auto written =
-      write_whole_file(options.out, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  return written ? 0 : complain(written.error(), 1);
+  value_or_fail(
+      write_whole_file(options.out, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}),
+      1);
+  return 0;
 }
 
 }  // namespace
@@ -75,8 +73,7 @@ void add_eds_cdcf(CLI::App& eds, int& exit_code) {
   auto* command = eds.add_subcommand(
       "cdcf", "converts a DCF to a concise DCF (0x1F22), or prints a concise DCF");
   command->add_option("FILE", options->file, "DCF, or with --decode a concise DCF")->required();
-  add_number(*command, "--node", options->node, "node id that replaces $NODEID")
-      ->check(CLI::Range(1U, 127U));
+  add_node_id(*command, options->node, "node id that replaces $NODEID");
   auto* out = command->add_option("-o,--output", options->out,
                                   "output file for the concise DCF; - for stdout");
   auto* decoding = command->add_flag("--decode", options->decode, "print a concise DCF as text");

@@ -2,11 +2,12 @@
 #include <iostream>
 #include <memory>
 
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/text_file.hpp"
 #include "apps/command_line/whole_number.hpp"
-#include "apps/takt/eds_commands.hpp"
 #include "eds_parser/write/dcf_writer.hpp"
 
 namespace takt {
@@ -39,13 +40,10 @@ int run(const Options& options) {
       return complain("--set " + argument + ": expected OBJECT=VALUE, such as 6081:00=1000", 2);
     wanted.values.push_back(*value);
   }
-  const auto source = read_whole_file(options.file);
-  if (!source) return complain(source.error(), 1);
-  const auto dcf = write_dcf(*source, options.file, wanted);
-  for (const auto& finding : dcf.findings) std::cerr << finding_text(finding) << '\n';
-  if (has_error(dcf.findings)) return 1;
-  const auto written = write_whole_file(options.out, dcf.text);
-  return written ? 0 : complain(written.error(), 1);
+  const auto dcf = write_dcf(value_or_fail(read_whole_file(options.file), 1), options.file, wanted);
+  if (print_findings(dcf.findings)) return 1;
+  value_or_fail(write_whole_file(options.out, dcf.text), 1);
+  return 0;
 }
 
 }  // namespace
@@ -54,8 +52,7 @@ void add_eds_dcf(CLI::App& eds, int& exit_code) {
   auto options = std::make_shared<Options>();
   auto* command = eds.add_subcommand("dcf", "writes the DCF of one device");
   command->add_option("FILE", options->file, "EDS or DCF to start from")->required();
-  add_number(*command, "--node", options->node, "node id of the device")
-      ->check(CLI::Range(1U, 127U));
+  add_node_id(*command, options->node, "node id of the device");
   add_number(*command, "--bitrate", options->bitrate, "bit rate of the network, kbit/s")
       ->check(CLI::Range(1U, 1000U));
   command->add_option("--name", options->name, "name of the device in the network");

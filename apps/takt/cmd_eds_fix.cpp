@@ -3,10 +3,11 @@
 #include <memory>
 #include <optional>
 
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/text_file.hpp"
-#include "apps/takt/eds_commands.hpp"
 #include "eds_parser/ini/ini.hpp"
 #include "eds_parser/report/text_diff.hpp"
 #include "eds_parser/write/eds_fix.hpp"
@@ -37,27 +38,20 @@ void report_unpatchable(const Options& options) {
 }
 
 int run(const Options& options) {
-  const auto source = read_whole_file(options.file);
-  if (!source) return complain(source.error(), 1);
-  const FixedEds fixed = fix_eds(*source, options.file);
-  for (const Finding& finding : fixed.left) {
-    if (options.quiet && finding.severity == Severity::note) continue;
-    std::cerr << finding_text(finding) << '\n';
-  }
+  const std::string source = value_or_fail(read_whole_file(options.file), 1);
+  const FixedEds fixed = fix_eds(source, options.file);
+  print_findings(fixed.left, options.quiet ? Severity::warning : Severity::note);
   if (!fixed.readable) return 1;
   const std::string name = options.out.empty() || options.out == "-" ? options.file : options.out;
   std::ostream& diff = options.out == "-" ? std::cerr : std::cout;
-  const auto text = recoded(*source);
-  diff << unified_diff(text.value_or(*source), fixed.text, options.file, name,
+  const auto text = recoded(source);
+  diff << unified_diff(text.value_or(source), fixed.text, options.file, name,
                        [](std::string_view line) { return line.starts_with('['); });
   if (text) report_unpatchable(options);
   std::cerr << options.file << ": " << fixed.fixed.size()
             << (fixed.fixed.size() == 1 ? " finding mended, " : " findings mended, ")
             << fixed.left.size() << " left\n";
-  if (!options.out.empty()) {
-    const auto written = write_whole_file(options.out, fixed.text);
-    if (!written) return complain(written.error(), 1);
-  }
+  if (!options.out.empty()) value_or_fail(write_whole_file(options.out, fixed.text), 1);
   return has_error(fixed.left) ? 1 : 0;
 }
 

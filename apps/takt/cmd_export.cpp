@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/text_file.hpp"
@@ -54,17 +55,13 @@ Exported as_json(const LoadedNetwork& network, const Options&) {
 
 int run(const Options& options, Export make) {
   const LoadedNetwork network = load_network(options.file);
-  for (const Finding& finding : network.findings) {
-    if (finding.severity != Severity::note) std::cerr << finding_text(finding) << '\n';
-  }
-  if (has_error(network.findings)) return 2;
+  if (print_findings(network.findings, Severity::warning)) return 2;
   std::error_code error;
   fs::create_directories(options.folder, error);
   if (error) return complain(options.folder + ": " + error.message(), 1);
   for (const auto& [name, content] : make(network, options)) {
     const auto path = fs::path{options.folder} / name;
-    const auto written = write_whole_file(path, content);
-    if (!written) return complain(written.error(), 1);
+    value_or_fail(write_whole_file(path, content), 1);
     std::cout << path.string() << '\n';
   }
   return 0;

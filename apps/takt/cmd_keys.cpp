@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/command_line/commands.hpp"
-#include "apps/command_line/live_arguments.hpp"
+#include "apps/command_line/failure.hpp"
 #include "master/lcm/envelope/key_file.hpp"
 
 namespace takt {
@@ -16,16 +16,15 @@ struct KeysOptions {
 };
 
 int make(const KeysOptions& options) {
-  const auto made = make_key_file(options.file, options.name);
-  if (!made) return complain(made.error(), 2);
+  value_or_fail(make_key_file(options.file, options.name), 2);
   std::printf("%s: key '%s'\n", options.file.c_str(), options.name.c_str());
   return 0;
 }
 
 int check(const KeysOptions& options) {
-  const auto keys = load_keys(options.file);
-  if (!keys) return complain(keys.error(), 2);
-  for (const EnvelopeKey& key : *keys) std::printf("%s\n", key.name.c_str());
+  for (const EnvelopeKey& key : value_or_fail(load_keys(options.file), 2)) {
+    std::printf("%s\n", key.name.c_str());
+  }
   return 0;
 }
 

@@ -37,12 +37,8 @@ std::optional<NodeId> find_node(const BusPlan& plan, const std::string& text) {
 
 /// Prints the findings on stderr. Returns false if the file is invalid.
 bool reported_good(const LoadedNetwork& network, bool quiet) {
-  const bool bad = has_error(network.findings);
-  for (const Finding& finding : network.findings) {
-    if (finding.severity == Severity::note && (quiet || bad)) continue;
-    std::cerr << finding_text(finding) << '\n';
-  }
-  return !bad;
+  const bool notes = !quiet && !has_error(network.findings);
+  return !print_findings(network.findings, notes ? Severity::note : Severity::warning);
 }
 
 /// Sets `node` if the options name one. Prints an error and returns false if there is no such node.

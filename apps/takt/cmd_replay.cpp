@@ -4,7 +4,9 @@
 #include <memory>
 
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/command_line/finding_text.hpp"
+#include "apps/command_line/live_arguments.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/print/plan/plan_fingerprint.hpp"
 #include "master/black_box/replay.hpp"
@@ -13,8 +15,6 @@
 namespace takt {
 namespace {
 
-constexpr int good = 0;
-constexpr int differs = 1;
 constexpr int usage = 2;
 
 constexpr const char* help =
@@ -35,11 +35,6 @@ struct Options {
   bool quiet = false;
 };
 
-int fail(const std::string& sentence) {
-  fmt::print(stderr, "takt replay: {}\n", printable_lines(sentence));
-  return usage;
-}
-
 void print(const Decision& decision) {
   fmt::print("{:>14.6f}  {}\n", 1e-9 * static_cast<double>(decision.time),
              printable_text(decision.text));
@@ -57,35 +52,30 @@ std::string find_network(const Options& options, const RecordingHead& head) {
 }
 
 int run(const Options& options) {
-  const auto recording = read_recording(options.file);
-  if (!recording) return fail(recording.error());
-  if (recording->fault) return fail(options.file + ": " + *recording->fault);
-  const std::string file = find_network(options, recording->head);
+  const auto recording = value_or_fail(read_recording(options.file), usage);
+  if (recording.fault) throw Failure{options.file + ": " + *recording.fault, usage};
+  const std::string file = find_network(options, recording.head);
   LoadedNetwork network = load_network(file);
-  for (const Finding& finding : network.findings) {
-    if (finding.severity == Severity::error) fmt::print(stderr, "{}\n", finding_text(finding));
-  }
-  if (has_error(network.findings)) {
+  if (print_findings(network.findings, Severity::error)) {
     if (!options.network.empty()) return usage;
-    return fail("the recording needs the network file " + recording->head.network +
-                "; give it with --network");
+    throw Failure{"the recording needs the network file " + recording.head.network +
+                      "; give it with --network",
+                  usage};
   }
-  if (plan_fingerprint(network.plan) != recording->head.fingerprint) {
-    fmt::print(stderr,
-               "takt replay: {} or its EDS files have changed since the recording was made\n",
-               printable_text(file));
+  if (plan_fingerprint(network.plan) != recording.head.fingerprint) {
+    complain(file + " or its EDS files have changed since the recording was made", 0);
   }
-  network.plan.name = recording->head.bus;
-  network.plan.interface = recording->head.interface;
-  const ReplayOutcome outcome = replay(network.plan, *recording, [&](const Decision& decision) {
+  network.plan.name = recording.head.bus;
+  network.plan.interface = recording.head.interface;
+  const ReplayOutcome outcome = replay(network.plan, recording, [&](const Decision& decision) {
     if (!options.quiet) print(decision);
   });
   fmt::print("{}: {} cycles replayed, {} of {} decisions as recorded\n",
-             printable_text(recording->head.reason), outcome.cycles, outcome.decisions,
-             recording->decisions.size());
-  if (!outcome.difference) return good;
+             printable_text(recording.head.reason), outcome.cycles, outcome.decisions,
+             recording.decisions.size());
+  if (!outcome.difference) return 0;
   fmt::print("first difference: {}\n", printable_lines(*outcome.difference));
-  return differs;
+  return 1;
 }
 
 }  // namespace

@@ -9,10 +9,20 @@
 #include <unistd.h>
 
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/command_line/known_words.hpp"
 #include "apps/command_line/live_arguments.hpp"
 
 namespace {
+
+using namespace takt;
+
+/// The commands in the order of the help text.
+constexpr AddCommand commands[]{add_audit,    add_dump,   add_eds,    add_plan,      add_sim,
+                                add_simulate, add_keys,   add_record, add_reference, add_replay,
+                                add_soak,     add_status, add_top,    add_timing,    add_emcy,
+                                add_budget,   add_export, add_import, add_learn,     add_scan,
+                                add_doctor,   add_sdo,    add_nmt,    add_lss,       add_param};
 
 /// Returns the reason why stdout could not be written completely, or an empty string. If a write
 /// failed earlier, its errno is lost, so one more write finds the reason.
@@ -40,32 +50,8 @@ int run(int argc, char** argv) {
       "invalid network file, 3 bus trouble, 4 a mandatory node is missing, 5 a real-time limit\n"
       "was broken, 6 the ordered stop was not confirmed.");
   int exit_code = 0;
-  takt::add_audit(app, exit_code);
-  takt::add_dump(app, exit_code);
-  takt::add_eds(app, exit_code);
-  takt::add_plan(app, exit_code);
-  takt::add_sim(app, exit_code);
-  takt::add_simulate(app, exit_code);
-  takt::add_keys(app, exit_code);
-  takt::add_record(app, exit_code);
-  takt::add_reference(app, exit_code);
-  takt::add_replay(app, exit_code);
-  takt::add_soak(app, exit_code);
-  takt::add_status(app, exit_code);
-  takt::add_top(app, exit_code);
-  takt::add_timing(app, exit_code);
-  takt::add_emcy(app, exit_code);
-  takt::add_budget(app, exit_code);
-  takt::add_export(app, exit_code);
-  takt::add_import(app, exit_code);
-  takt::add_learn(app, exit_code);
-  takt::add_scan(app, exit_code);
-  takt::add_doctor(app, exit_code);
-  takt::add_sdo(app, exit_code);
-  takt::add_nmt(app, exit_code);
-  takt::add_lss(app, exit_code);
-  takt::add_param(app, exit_code);
-  if (const std::string wrong = takt::unknown_word(app, argc, argv); !wrong.empty()) {
+  for (const AddCommand add : commands) add(app, exit_code);
+  if (const std::string wrong = unknown_word(app, argc, argv); !wrong.empty()) {
     std::fprintf(stderr, "%s\n", wrong.c_str());
     return 2;
   }
@@ -73,6 +59,8 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  } catch (const Failure& failure) {
+    return complain(failure.what(), failure.code);
   }
   return exit_code;
 }
@@ -87,6 +75,6 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     trouble = error.what();
   }
-  if (const std::string lost = output_trouble(); !lost.empty()) return takt::complain(lost, 1);
-  return trouble.empty() ? exit_code : takt::complain(trouble, exit_code);
+  if (const std::string lost = output_trouble(); !lost.empty()) return complain(lost, 1);
+  return trouble.empty() ? exit_code : complain(trouble, exit_code);
 }

@@ -1,5 +1,7 @@
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <iostream>
+#include <memory>
 #include <unistd.h>
 
 #include "apps/command_line/bus_option.hpp"
@@ -25,81 +27,65 @@ struct Arguments {
   int timeout_ms = 500;
 };
 
-ReadObject on_the_bus(const Arguments& arguments, std::optional<LiveError>& trouble) {
-  return [&arguments, &trouble](
-             NodeId node, ObjectKey key) -> std::expected<std::vector<std::byte>, UnreadObject> {
-    SdoDirect direct{arguments.bus, node, milliseconds{arguments.timeout_ms}};
-    auto value = direct.upload(key);
-    if (value) return std::move(*value);
-    if (value.error().code == 3) trouble = value.error();
-    return std::unexpected{UnreadObject{value.error().abort_code, value.error().sentence}};
-  };
-}
-
-ReadObject by_daemon(DaemonClient& daemon, int timeout_ms, std::optional<LiveError>& trouble) {
-  return [&daemon, timeout_ms, &trouble](
-             NodeId node, ObjectKey key) -> std::expected<std::vector<std::byte>, UnreadObject> {
-    request_t request{};
-    request.service = "sdo_upload";
-    request.node_id = node.value();
-    request.index = key.index;
-    request.sub = key.sub;
-    request.timeout_ms = timeout_ms;
-    const auto reply =
-        daemon.ask(std::move(request), milliseconds{timeout_ms} * 10 + std::chrono::seconds{2});
-    if (!reply) {
-      trouble = reply.error();
-      return std::unexpected{UnreadObject{0, reply.error().sentence}};
-    }
-    if (reply->good == 0) {
-      return std::unexpected{
-          UnreadObject{static_cast<std::uint32_t>(reply->abort_code), reply->text}};
-    }
-    const auto bytes = std::as_bytes(std::span{reply->data});
-    return std::vector<std::byte>{bytes.begin(), bytes.end()};
-  };
-}
-
-/// Asks every device. Returns an error if no device answered. `trouble` is set by `read` if the bus
-/// cannot be used; this ends the questions.
-std::optional<LiveError> ask(const LoadedNetwork& network, std::vector<DeviceValues>& values,
-                             const ReadObject& read, const std::optional<LiveError>& trouble) {
-  bool any = false;
-  for (std::size_t i = 0; i < values.size() && !trouble; ++i) {
-    any |= ask_device(network.plan.nodes[i].id, values[i], read);
+/// Calls `read` for an object of a device. A refusal by the device becomes an UnreadObject; all
+/// other failures end the audit.
+std::expected<std::vector<std::byte>, UnreadObject> try_to_read(
+    const std::function<std::vector<std::byte>()>& read) {
+  try {
+    return read();
+  } catch (const Failure& failure) {
+    if (failure.code != 1) throw;
+    return std::unexpected{UnreadObject{failure.abort_code, failure.what()}};
   }
-  if (trouble || any || values.empty()) return trouble;
-  return LiveError{"no device of '" + network.plan.name + "' answers", 3};
 }
 
-std::optional<LiveError> ask(const Arguments& arguments, const LoadedNetwork& network,
-                             std::vector<DeviceValues>& values) {
-  std::optional<LiveError> trouble;
+std::vector<std::byte> read_by_daemon(DaemonClient& daemon, NodeId node, ObjectKey key,
+                                      int timeout_ms) {
+  request_t request = make_request("sdo_upload", node.value());
+  request.index = key.index;
+  request.sub = key.sub;
+  request.timeout_ms = timeout_ms;
+  const reply_t reply =
+      daemon.demand(std::move(request), milliseconds{timeout_ms} * 10 + std::chrono::seconds{2});
+  const auto bytes = std::as_bytes(std::span{reply.data});
+  return {bytes.begin(), bytes.end()};
+}
+
+/// Returns how to read an object: directly on the bus, or through the daemon of the bus.
+ReadObject reader(const Arguments& arguments, const std::string& bus_name) {
+  const int timeout_ms = arguments.timeout_ms;
   if (!arguments.bus.empty()) {
-    return ask(network, values, on_the_bus(arguments, trouble), trouble);
+    return [bus = arguments.bus, timeout_ms](NodeId node, ObjectKey key) {
+      return try_to_read(
+          [&] { return SdoDirect{bus, node, milliseconds{timeout_ms}}.upload(key); });
+    };
   }
   LiveOptions live = arguments.live;
-  if (live.bus_name.empty()) live.bus_name = network.plan.name;
-  auto daemon = DaemonClient::find(live);
-  if (!daemon) return daemon.error();
-  return ask(network, values, by_daemon(*daemon, arguments.timeout_ms, trouble), trouble);
+  if (live.bus_name.empty()) live.bus_name = bus_name;
+  const auto daemon = std::make_shared<DaemonClient>(DaemonClient::find(live));
+  return [daemon, timeout_ms](NodeId node, ObjectKey key) {
+    return try_to_read([&] { return read_by_daemon(*daemon, node, key, timeout_ms); });
+  };
+}
+
+/// Asks every device. Throws a Failure if no device answers.
+void ask(const BusPlan& plan, std::vector<DeviceValues>& values, const ReadObject& read) {
+  bool any = values.empty();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    any |= ask_device(plan.nodes[i].id, values[i], read);
+  }
+  if (!any) throw Failure{"no device of '" + plan.name + "' answers"};
 }
 
 int run(const Arguments& arguments) {
   const LoadedNetwork network = load_network(arguments.network);
-  for (const Finding& finding : network.findings) {
-    if (finding.severity != Severity::note) std::cerr << finding_text(finding) << '\n';
-  }
-  if (has_error(network.findings)) return 2;
+  if (print_findings(network.findings, Severity::warning)) return 2;
   std::vector<DeviceValues> values;
   for (std::size_t i = 0; i < network.plan.nodes.size(); ++i) {
     values.emplace_back(network.plan.nodes[i], network.devices[i]);
   }
   const bool asks = !arguments.bus.empty() || arguments.through_daemon;
-  if (asks) {
-    const auto trouble = ask(arguments, network, values);
-    if (trouble) return complain(trouble->sentence, trouble->code);
-  }
+  if (asks) ask(network.plan, values, reader(arguments, network.plan.name));
   Audit result = audit(network.plan, values);
   result.asked = asks;
   if (arguments.live.json) {

@@ -6,6 +6,7 @@
 
 #include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/text_file.hpp"
@@ -51,18 +52,11 @@ std::optional<LearnedBus> listen(const Options& options) {
   return read_recording(file, options.log, options.interface);
 }
 
-void print(const Findings& findings, bool quiet) {
-  for (const Finding& finding : findings) {
-    if (quiet && finding.severity == Severity::note) continue;
-    std::cerr << finding_text(finding) << '\n';
-  }
-}
-
 /// Loads the written file as taktd would and prints its errors.
 int judge(const std::string& file) {
   const LoadedNetwork network = load_network(file);
   if (!has_error(network.findings)) return 0;
-  print(network.findings, true);
+  print_findings(network.findings, Severity::warning);
   std::cerr << file
             << ": this file was written, but taktd does not accept it; correct the errors above\n";
   return 1;
@@ -74,12 +68,12 @@ int run(const Options& options) {
   bool good = true;
   for (const std::string& folder : options.folders) files.add_folder(folder, findings);
   for (const std::string& file : options.files) good = add_file(file, files, findings) && good;
-  print(findings, options.quiet);
-  if (!good || has_error(findings)) return 2;
+  const Severity least = options.quiet ? Severity::warning : Severity::note;
+  if (print_findings(findings, least) || !good) return 2;
   const auto bus = listen(options);
   if (!bus) return complain(options.log + ": can't be read", 2);
   if (bus->frames == 0 && !options.interface.empty()) {
-    print(bus->findings, false);
+    print_findings(bus->findings);
     return complain(options.log + ": holds no frame of interface " + options.interface, 2);
   }
   if (bus->frames == 0) {
@@ -98,15 +92,13 @@ int run(const Options& options) {
     how.stem = out.stem().string();
   }
   const LearnedNetwork network = learned_network(*bus, files, how);
-  print(network.findings, options.quiet);
+  print_findings(network.findings, least);
   if (!to_stdout) {
     for (const auto& [name, content] : network.made_files) {
-      const auto written = write_whole_file(how.folder / name, content);
-      if (!written) return complain(written.error(), 1);
+      value_or_fail(write_whole_file(how.folder / name, content), 1);
     }
   }
-  const auto written = write_whole_file(options.out, network.text);
-  if (!written) return complain(written.error(), 1);
+  value_or_fail(write_whole_file(options.out, network.text), 1);
   const int judged = to_stdout ? 0 : judge(options.out);
   return has_error(network.findings) ? 1 : judged;
 }

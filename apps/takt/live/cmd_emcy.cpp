@@ -1,8 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/interrupt.hpp"
 #include "apps/command_line/json_text.hpp"
 #include "apps/takt/live/daemon_client.hpp"
 #include "master/explain/emcy_text.hpp"
@@ -36,8 +35,6 @@ struct Reported {
   EmcyRecord record;
   std::string words;
 };
-
-std::atomic<bool> interrupted = false;
 
 /// Returns the local time, for example "14:03:07.123".
 std::string clock_text(std::int64_t utime) {
@@ -76,20 +73,14 @@ void print(const Reported& reported) {
 }
 
 /// Returns the EMCY history of all nodes, or of node `only` if it is not 0, in the order of time.
-std::expected<std::vector<Reported>, LiveError> history(DaemonClient& daemon, std::int16_t only) {
+std::vector<Reported> history(DaemonClient& daemon, std::int16_t only) {
   std::vector<Reported> all;
   for (const node_status_t& node : daemon.status().nodes) {
-    if (only != 0 && node.node_id != only) continue;
-    if (node.emcy_count == 0) continue;
-    request_t request{};
-    request.service = "emcy_history";
-    request.node_id = node.node_id;
-    const auto reply = daemon.ask(std::move(request), std::chrono::seconds{3});
-    if (!reply) return std::unexpected{reply.error()};
-    if (reply->good == 0) return std::unexpected{LiveError{reply->text, 1}};
-    const std::vector<std::uint8_t> bytes{reply->data.begin(), reply->data.end()};
-    const auto own = unpack_texts(reply->text);
-    for (const EmcyRecord& record : unpack_emcys(bytes)) {
+    if ((only != 0 && node.node_id != only) || node.emcy_count == 0) continue;
+    const reply_t reply =
+        daemon.demand(make_request("emcy_history", node.node_id), std::chrono::seconds{3});
+    const auto own = unpack_texts(reply.text);
+    for (const EmcyRecord& record : unpack_emcys(reply.data)) {
       const auto found = own.find(record.code());
       all.push_back({node.node_id, node.name, record,
                      found == own.end() ? std::string{emcy_text(record.code())} : found->second});
@@ -101,13 +92,11 @@ std::expected<std::vector<Reported>, LiveError> history(DaemonClient& daemon, st
 
 /// Prints the EMCYs that the daemon reports from now on.
 int follow(const EmcyOptions& options, const std::string& bus, std::int16_t only) {
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
+  const Interrupt interrupt;
   const std::string events = channel_name(bus, "EVENT");
-  auto lcm = open_live(options.live, {any_bus("EVENT")});
-  if (!lcm) return complain(lcm.error().sentence, lcm.error().code);
-  while (!interrupted) {
-    lcm->serve(
+  LcmClient lcm = open_live(options.live, {"EVENT"});
+  while (!Interrupt::asked()) {
+    lcm.serve(
         [&](std::string_view channel, std::span<const std::byte> data) {
           if (channel != events) return;
           const auto event = decode<event_t>(data);
@@ -130,26 +119,19 @@ int follow(const EmcyOptions& options, const std::string& bus, std::int16_t only
 }
 
 int run(const EmcyOptions& options) {
-  auto daemon = DaemonClient::find(options.live);
-  if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
-  std::int16_t only = 0;
-  if (!options.node.empty()) {
-    const auto node = daemon->node(options.node);
-    if (!node) return complain(node.error().sentence, node.error().code);
-    only = *node;
-  }
-  const auto reported = history(*daemon, only);
-  if (!reported) return complain(reported.error().sentence, reported.error().code);
+  DaemonClient daemon = DaemonClient::find(options.live);
+  const std::int16_t only = options.node.empty() ? std::int16_t{0} : daemon.node(options.node);
+  const std::vector<Reported> reported = history(daemon, only);
   if (options.live.json && !options.follow) {
     nlohmann::json all = nlohmann::json::array();
-    for (const Reported& one : *reported) all.push_back(to_json(one));
-    const nlohmann::json document{{"bus", daemon->status().bus}, {"emcys", std::move(all)}};
+    for (const Reported& one : reported) all.push_back(to_json(one));
+    const nlohmann::json document{{"bus", daemon.status().bus}, {"emcys", std::move(all)}};
     std::puts(json_text(document, 1).c_str());
   } else if (!options.live.json) {
-    for (const Reported& one : *reported) print(one);
+    for (const Reported& one : reported) print(one);
   }
   std::fflush(stdout);
-  return options.follow ? follow(options, daemon->status().bus, only) : 0;
+  return options.follow ? follow(options, daemon.status().bus, only) : 0;
 }
 
 }  // namespace

@@ -14,14 +14,8 @@ namespace {
 constexpr std::chrono::seconds patience{30};
 
 int run(const LiveOptions& options) {
-  auto daemon = DaemonClient::find(options);
-  if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
-  request_t request{};
-  request.service = "record";
-  const auto reply = daemon->ask(std::move(request), patience);
-  if (!reply) return complain(reply.error().sentence, reply.error().code);
-  if (reply->good == 0) return complain(reply->text, 1);
-  std::puts(printable_text(reply->text).c_str());
+  const reply_t reply = DaemonClient::find(options).demand(make_request("record"), patience);
+  std::puts(printable_text(reply.text).c_str());
   return 0;
 }
 

@@ -1,12 +1,11 @@
 #include <CLI/CLI.hpp>
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/interrupt.hpp"
 #include "apps/command_line/json_text.hpp"
 #include "apps/takt/live/daemon_client.hpp"
 #include "apps/takt/live/image_delay.hpp"
@@ -24,8 +23,6 @@ struct TimingOptions {
   LiveOptions live;
   bool follow = false;
 };
-
-std::atomic<bool> interrupted = false;
 
 void print(const std::string& bus, const timing_t& timing, const TimingOptions& options) {
   if (options.live.json) {
@@ -54,7 +51,7 @@ class TimingListener {
   std::optional<timing_t> next() {
     newest_.reset();
     const Time until = monotonic_now() + silence_limit;
-    while (!newest_ && !interrupted && monotonic_now() < until) {
+    while (!newest_ && !Interrupt::asked() && monotonic_now() < until) {
       lcm_.serve([this](std::string_view from, Bytes data) { take(from, data); },
                  monotonic_now() + std::chrono::milliseconds{100});
     }
@@ -83,20 +80,14 @@ class TimingListener {
 };
 
 int run(const TimingOptions& options) {
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
-  const auto daemon = DaemonClient::find(options.live);
-  if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
-  const std::string& bus = daemon->status().bus;
-  auto lcm = open_live(options.live, {any_bus("TIMING"), any_bus("IMAGE")});
-  if (!lcm) return complain(lcm.error().sentence, lcm.error().code);
-  TimingListener listener{std::move(*lcm), bus};
+  const Interrupt interrupt;
+  const std::string bus = DaemonClient::find(options.live).status().bus;
+  TimingListener listener{open_live(options.live, {"TIMING", "IMAGE"}), bus};
   listener.next();  // discards the first message, so that all later rows cover the same second
   do {
     const auto timing = listener.next();
-    if (interrupted) break;
-    if (!timing)
-      return complain("the daemon of bus '" + bus + "' sends no timing messages any more", 3);
+    if (Interrupt::asked()) break;
+    if (!timing) throw Failure{"the daemon of bus '" + bus + "' sends no timing messages any more"};
     print(bus, *timing, options);
   } while (options.follow);
   return 0;

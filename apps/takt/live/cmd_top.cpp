@@ -10,7 +10,6 @@
 #include "apps/takt/live/daemon_client.hpp"
 #include "apps/takt/live/screen.hpp"
 #include "apps/takt/live/top_frame.hpp"
-#include "master/lcm/channel_names.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {
@@ -32,27 +31,17 @@ const BusView* shown(const BusViews& views, const std::string& bus_name) {
   return buses.empty() ? nullptr : buses.front();
 }
 
-void print(const std::vector<Line>& lines) {
-  const bool terminal = ::isatty(STDOUT_FILENO) != 0;
-  const std::size_t width = terminal ? Screen::size().columns : 160;
-  for (const Line& line : lines) std::printf("%s\n", line.render(width, terminal).c_str());
-}
-
-int show_once(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
+void show_once(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
   const Time limit = monotonic_now() + first_limit;
   listen(lcm, views, limit, [&] {
     const BusView* const bus = shown(views, bus_name);
     return bus != nullptr && !bus->values().empty() && bus->timing();
   });
   const BusView* const bus = shown(views, bus_name);
-  if (bus == nullptr) {
-    const LiveError error = no_bus(views, lcm, bus_name);
-    return complain(error.sentence, error.code);
-  }
-  print(top_frame(*bus, {.rows = 0}).lines);
+  if (bus == nullptr) throw no_bus(views, lcm, bus_name);
+  print_lines(top_frame(*bus, {.rows = 0}).lines);
   std::fflush(stdout);
-  const auto two = two_daemons({bus});
-  return two ? complain(two->sentence, two->code) : 0;
+  refuse_two_daemons({bus});
 }
 
 /// Returns false if the key ends the program.
@@ -84,20 +73,18 @@ void show_live(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
       screen.show(frame.lines);
     } else {
       const std::string why = views.buses().empty() ? "no daemon answers on " + lcm.where()
-                                                    : no_bus(views, lcm, bus_name).sentence;
+                                                    : no_bus(views, lcm, bus_name).what();
       screen.show({Line{}.add(why + " (q quits)", Paint::dim)});
     }
   }
 }
 
 int run(const TopArguments& arguments) {
-  auto lcm = open_live(arguments.live, {any_bus("STATUS"), any_bus("LAYOUT"), any_bus("IMAGE"),
-                                        any_bus("TIMING"), any_bus("EVENT"), any_bus("SYNC")});
-  if (!lcm) return complain(lcm.error().sentence, lcm.error().code);
+  LcmClient lcm =
+      open_live(arguments.live, {"STATUS", "LAYOUT", "IMAGE", "TIMING", "EVENT", "SYNC"});
   BusViews views;
   const bool live = !arguments.once && ::isatty(STDOUT_FILENO) != 0 && ::isatty(STDIN_FILENO) != 0;
-  if (!live) return show_once(*lcm, views, arguments.live.bus_name);
-  show_live(*lcm, views, arguments.live.bus_name);
+  (live ? show_live : show_once)(lcm, views, arguments.live.bus_name);
   return 0;
 }
 
@@ -110,11 +97,7 @@ void add_top(CLI::App& app, int& exit_code) {
       "  takt top --once            prints the view once, for scripts\n"
       "  takt top --bus-name lift");
   auto arguments = std::make_shared<TopArguments>();
-  verb->add_option("--lcm-url", arguments->live.lcm_url,
-                   "LCM URL of the daemon; default: LCM_DEFAULT_URL")
-      ->type_name("URL");
-  verb->add_option("--bus-name", arguments->live.bus_name, "name of the bus, if there are several")
-      ->type_name("NAME");
+  add_bus_choice(*verb, arguments->live);
   verb->add_flag("--once", arguments->once, "print the view once and end");
   verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <fmt/format.h>
 #include <optional>
 #include <unistd.h>
 
@@ -38,22 +39,29 @@ std::string names_of(const BusViews& views) {
   return names;
 }
 
-std::expected<status_t, LiveError> choose(const BusViews& views, const LcmClient& lcm,
-                                          const std::string& bus_name) {
-  const auto buses = chosen(views, bus_name);
-  if (buses.empty()) return std::unexpected{no_bus(views, lcm, bus_name)};
-  if (auto two = two_daemons(buses)) return std::unexpected{std::move(*two)};
+/// Returns the only bus of the list.
+const status_t& only(const std::vector<const BusView*>& buses, const BusViews& views) {
+  refuse_two_daemons(buses);
   if (buses.size() > 1) {
-    return std::unexpected{
-        LiveError{"LCM carries several buses: " + names_of(views) + "; choose with --bus-name", 2}};
+    throw Failure{"LCM carries several buses: " + names_of(views) + "; choose with --bus-name", 2};
   }
   return *buses.front()->status();
 }
 
-/// Returns an id that is unique among all programs that send requests at the same time.
-std::int64_t new_request_id() { return realtime_now().count(); }
-
 }  // namespace
+
+request_t make_request(const char* service, std::int16_t node) {
+  request_t request{};
+  request.service = service;
+  request.node_id = node;
+  return request;
+}
+
+std::string own_sender() { return fmt::format("takt-{}", ::getpid()); }
+
+std::int64_t utime_now() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(realtime_now()).count();
+}
 
 std::vector<const BusView*> chosen(const BusViews& views, const std::string& bus_name) {
   std::vector<const BusView*> buses;
@@ -66,24 +74,33 @@ std::vector<const BusView*> chosen(const BusViews& views, const std::string& bus
   return buses;
 }
 
-std::optional<LiveError> two_daemons(const std::vector<const BusView*>& buses) {
-  const auto found = std::ranges::find_if(buses, &BusView::two_daemons);
-  if (found == buses.end()) return std::nullopt;
-  return LiveError{
-      "two daemons run a bus named '" + (*found)->status()->bus +
-          "' on this LCM, and --bus-name can't choose between them; stop one daemon, or give each "
-          "its own LCM URL (`lcm: {url: ...}`) and choose with --lcm-url. If the right daemon has "
-          "`authenticate: images`, --check-images accepts only its messages",
-      3};
+std::vector<const BusView*> find_buses(LcmClient& lcm, BusViews& views,
+                                       const std::string& bus_name) {
+  const auto found = [&] { return !chosen(views, bus_name).empty(); };
+  listen(lcm, views, monotonic_now() + find_limit, found);
+  if (!found()) throw no_bus(views, lcm, bus_name);
+  listen(lcm, views, monotonic_now() + settle, [] { return false; });
+  return chosen(views, bus_name);
 }
 
-LiveError no_bus(const BusViews& views, const LcmClient& lcm, const std::string& bus_name) {
+void refuse_two_daemons(const std::vector<const BusView*>& buses) {
+  const auto found = std::ranges::find_if(buses, &BusView::two_daemons);
+  if (found == buses.end()) return;
+  throw Failure{
+      "two daemons run a bus named '" + (*found)->status()->bus +
+      "' on this LCM, and --bus-name can't choose between them; stop one daemon, or give each "
+      "its own LCM URL (`lcm: {url: ...}`) and choose with --lcm-url. If the right daemon has "
+      "`authenticate: images`, --check-images accepts only its messages"};
+}
+
+Failure no_bus(const BusViews& views, const LcmClient& lcm, const std::string& bus_name) {
   const std::string others = names_of(views);
-  if (!others.empty()) return {"there is no bus '" + bus_name + "'; the buses are: " + others, 2};
+  if (!others.empty()) {
+    return Failure{"there is no bus '" + bus_name + "'; the buses are: " + others, 2};
+  }
   const std::string which = bus_name.empty() ? std::string{} : " for bus '" + bus_name + "'";
-  return {"no daemon" + which + " answers on " + lcm.where() +
-              ". Is taktd running? At its start taktd prints the LCM_DEFAULT_URL to set",
-          3};
+  return Failure{"no daemon" + which + " answers on " + lcm.where() +
+                 ". Is taktd running? At its start taktd prints the LCM_DEFAULT_URL to set"};
 }
 
 void listen(LcmClient& lcm, BusViews& views, Time until, const std::function<bool()>& enough) {
@@ -100,39 +117,26 @@ void listen(LcmClient& lcm, BusViews& views, Time until, const std::function<boo
   }
 }
 
-std::expected<LcmClient, LiveError> open_live(const LiveOptions& options,
-                                              const std::vector<std::string>& patterns) {
+LcmClient open_live(const LiveOptions& options, const std::vector<std::string_view>& whats) {
   std::optional<WatchedKeyFile> signers;
   if (options.check_images) {
-    if (options.keys.empty()) {
-      return std::unexpected{LiveError{"--check-images needs a key file: --keys FILE", 2}};
-    }
-    auto keys = WatchedKeyFile::open(options.keys);
-    if (!keys) return std::unexpected{LiveError{keys.error(), 2}};
-    signers = std::move(*keys);
+    if (options.keys.empty()) throw Failure{"--check-images needs a key file: --keys FILE", 2};
+    signers = value_or_fail(WatchedKeyFile::open(options.keys), 2);
   }
-  auto lcm = LcmClient::open(options.lcm_url, patterns, signers);
-  if (!lcm) return std::unexpected{LiveError{lcm.error(), 3}};
-  return std::move(*lcm);
+  std::vector<std::string> patterns(whats.size());
+  std::ranges::transform(whats, patterns.begin(), any_bus);
+  return value_or_fail(LcmClient::open(options.lcm_url, patterns, signers), 3);
 }
 
-std::expected<DaemonClient, LiveError> DaemonClient::find(const LiveOptions& options) {
+DaemonClient DaemonClient::find(const LiveOptions& options) {
   std::optional<EnvelopeSeal> seal;
   if (!options.keys.empty()) {
-    const auto keys = load_keys(options.keys);
-    if (!keys) return std::unexpected{LiveError{keys.error(), 2}};
-    seal.emplace(keys->front(), random_number());
+    seal.emplace(value_or_fail(load_keys(options.keys), 2).front(), random_number());
   }
-  auto lcm = open_live(
-      options, {any_bus("STATUS"), any_bus("REPLY"), any_bus("TRANSFER_STATE"), any_bus("EVENT")});
-  if (!lcm) return std::unexpected{lcm.error()};
+  LcmClient lcm = open_live(options, {"STATUS", "REPLY", "TRANSFER_STATE", "EVENT"});
   BusViews views;
-  const auto found = [&] { return !chosen(views, options.bus_name).empty(); };
-  listen(*lcm, views, monotonic_now() + find_limit, found);
-  if (found()) listen(*lcm, views, monotonic_now() + settle, [] { return false; });
-  auto status = choose(views, *lcm, options.bus_name);
-  if (!status) return std::unexpected{status.error()};
-  return DaemonClient{std::move(*lcm), std::move(*status), std::move(seal)};
+  const status_t status = only(find_buses(lcm, views, options.bus_name), views);
+  return {std::move(lcm), status, std::move(seal)};
 }
 
 void DaemonClient::send(std::string_view what, Bytes message) {
@@ -142,25 +146,32 @@ void DaemonClient::send(std::string_view what, Bytes message) {
                seal_->seal(channel, message, status_.session, realtime_now()));
 }
 
-std::expected<std::int16_t, LiveError> DaemonClient::node(const std::string& text) const {
+std::optional<std::int16_t> DaemonClient::find_node(const std::string& text) const {
   if (text == "all") return std::int16_t{0};
   const auto id = parse_node_id(text);
-  std::string known;
-  for (const node_status_t& node : status_.nodes) {
-    if (node.name == text || (id && node.node_id == id->value())) return node.node_id;
-    known += (known.empty() ? "" : ", ") + std::to_string(node.node_id) + " " + node.name;
-  }
-  return std::unexpected{LiveError{
-      "bus '" + status_.bus + "' has no node '" + text + "'; the nodes are: " + known, 2}};
+  const auto found = std::ranges::find_if(status_.nodes, [&](const node_status_t& node) {
+    return node.name == text || (id && node.node_id == id->value());
+  });
+  return found == status_.nodes.end() ? std::nullopt : std::optional{found->node_id};
 }
 
-std::expected<reply_t, LiveError> DaemonClient::ask(request_t request, Time limit) {
+std::int16_t DaemonClient::node(const std::string& text) const {
+  if (const auto found = find_node(text)) return *found;
+  std::string known;
+  for (const node_status_t& node : status_.nodes) {
+    known += fmt::format("{}{} {}", known.empty() ? "" : ", ", node.node_id, node.name);
+  }
+  throw Failure{
+      fmt::format("bus '{}' has no node '{}'; the nodes are: {}", status_.bus, text, known), 2};
+}
+
+reply_t DaemonClient::ask(request_t request, Time limit) {
   std::vector<std::byte> buffer;
   request.schema = message_schema;
-  request.utime = std::chrono::duration_cast<std::chrono::microseconds>(realtime_now()).count();
+  request.utime = utime_now();
   request.session = status_.session;
-  request.id = new_request_id();
-  request.sender = "takt-" + std::to_string(::getpid());
+  request.id = realtime_now().count();  // unique among programs that ask at the same time
+  request.sender = own_sender();
   const Bytes message = encode(request, buffer);
   const std::string answers = channel_name(status_.bus, "REPLY");
   const Time until = monotonic_now() + limit;
@@ -180,8 +191,14 @@ std::expected<reply_t, LiveError> DaemonClient::ask(request_t request, Time limi
     repeat_at = until;
     if (!answer) send("REQUEST", message);
   }
-  if (answer) return std::move(*answer);
-  return std::unexpected{silence()};
+  if (!answer) throw silence();
+  return std::move(*answer);
+}
+
+reply_t DaemonClient::demand(request_t request, Time limit) {
+  reply_t reply = ask(std::move(request), limit);
+  if (reply.good != 0) return reply;
+  throw Failure{reply.text, 1, static_cast<std::uint32_t>(reply.abort_code)};
 }
 
 void DaemonClient::serve(const MessageHandler& handler, Time until) {
@@ -203,18 +220,16 @@ void DaemonClient::note_event(Bytes data) {
   }
 }
 
-LiveError DaemonClient::silence() const {
+Failure DaemonClient::silence() const {
   const std::string daemon = "the daemon of bus '" + status_.bus + "'";
   if (lacks_key_) {
-    return {daemon +
-                " accepts requests only from programs with a key: name its key file with --keys "
-                "FILE, or TAKT_KEYS=FILE in the environment",
-            3};
+    return Failure{daemon +
+                   " accepts requests only from programs with a key: name its key file with --keys "
+                   "FILE, or TAKT_KEYS=FILE in the environment"};
   }
-  return {daemon + " did not answer" +
-              (seal_ ? "; does it have this key in `lcm: {keys: ...}`?"
-                     : "; does it require a key (--keys)?"),
-          3};
+  return Failure{daemon + " did not answer" +
+                 (seal_ ? "; does it have this key in `lcm: {keys: ...}`?"
+                        : "; does it require a key (--keys)?")};
 }
 
 }  // namespace takt

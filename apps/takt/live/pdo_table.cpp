@@ -1,8 +1,9 @@
 #include "apps/takt/live/pdo_table.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "apps/takt/live/screen.hpp"
 #include "eds_parser/table/ids.hpp"
@@ -22,26 +23,25 @@ std::string name_of(const status_t& status, std::int16_t node) {
 }
 
 std::string label(const pdo_state_t& pdo) {
-  std::string text = (pdo.output != 0 ? "RPDO" : "TPDO") + std::to_string(pdo.number);
-  if (pdo.header != 0) {
-    const auto header = static_cast<std::uint32_t>(pdo.header);
-    text += " " + to_string(ObjectKey{static_cast<std::uint16_t>(header >> 8),
-                                      static_cast<std::uint8_t>(header >> 24)});
-  }
-  return text;
+  const std::string text = fmt::format("{}PDO{}", pdo.output != 0 ? 'R' : 'T', pdo.number);
+  if (pdo.header == 0) return text;
+  const auto header = static_cast<std::uint32_t>(pdo.header);
+  return text + " " +
+         to_string(ObjectKey{static_cast<std::uint16_t>(header >> 8),
+                             static_cast<std::uint8_t>(header >> 24)});
 }
 
 std::string state(const pdo_state_t& pdo) {
   if (pdo.output != 0) return pdo.stale != 0 ? "held back" : "";
+  static constexpr std::pair<int, const char*> words[]{{arrived, "arrived"},
+                                                       {missing, "missing"},
+                                                       {late, "late"},
+                                                       {too_short, "too short, ignored"},
+                                                       {too_long, "too long"}};
   std::string text;
-  const auto add = [&](bool on, const char* word) {
-    if (on) text += (text.empty() ? "" : ", ") + std::string{word};
-  };
-  add((pdo.flags & arrived) != 0, "arrived");
-  add((pdo.flags & missing) != 0, "missing");
-  add((pdo.flags & late) != 0, "late");
-  add((pdo.flags & too_short) != 0, "too short, ignored");
-  add((pdo.flags & too_long) != 0, "too long");
+  for (const auto& [flag, word] : words) {
+    if ((pdo.flags & flag) != 0) text += (text.empty() ? "" : ", ") + std::string{word};
+  }
   if (text.empty()) text = pdo.count == 0 ? "never seen" : pdo.stale != 0 ? "stale" : "";
   return text;
 }
@@ -49,14 +49,11 @@ std::string state(const pdo_state_t& pdo) {
 std::string row(const pdo_state_t& pdo, const status_t& status) {
   const CobId id = pdo.extended != 0 ? CobId::extended(static_cast<std::uint32_t>(pdo.cob_id))
                                      : CobId::base(static_cast<std::uint32_t>(pdo.cob_id));
-  const auto count = [](std::int64_t value) { return right(std::to_string(value), 8); };
-  std::string text = right(std::to_string(pdo.node_id), 4) + "  " +
-                     left(name_of(status, pdo.node_id), 16) + "  " + left(label(pdo), 16) +
-                     left(to_string(id), 11) + right(std::to_string(pdo.transmission), 4) +
-                     count(pdo.count) + right(pdo.toggle != 0 ? "1" : "0", 7) +
-                     right(pdo.age < 0 ? "-" : std::to_string(pdo.age), 8);
-  text += count(pdo.missing) + count(pdo.late) + count(pdo.too_short) + count(pdo.too_long) + "  " +
-          state(pdo);
+  std::string text = fmt::format(
+      "{:>4}  {}  {:<16}{:<11}{:>4}{:>8}{:>7}{:>8}{:>8}{:>8}{:>8}{:>8}  {}", pdo.node_id,
+      left(name_of(status, pdo.node_id), 16), label(pdo), to_string(id), pdo.transmission,
+      pdo.count, pdo.toggle != 0 ? 1 : 0, pdo.age < 0 ? "-" : std::to_string(pdo.age), pdo.missing,
+      pdo.late, pdo.too_short, pdo.too_long, state(pdo));
   while (text.back() == ' ') text.pop_back();
   return text;
 }

@@ -9,6 +9,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "eds_parser/table/name_of.hpp"
 #include "master/lcm/printable_text.hpp"
 
 namespace takt {
@@ -17,21 +18,9 @@ namespace {
 bool begins_character(char c) noexcept { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
 
 std::string_view escape(Paint paint) noexcept {
-  switch (paint) {
-    case Paint::plain:
-      return "";
-    case Paint::title:
-      return "\033[1m";
-    case Paint::dim:
-      return "\033[2m";
-    case Paint::good:
-      return "\033[32m";
-    case Paint::warning:
-      return "\033[33m";
-    case Paint::bad:
-      return "\033[1;31m";
-  }
-  return "";
+  static constexpr std::string_view sequences[]{"",         "\033[1m",  "\033[2m",
+                                                "\033[32m", "\033[33m", "\033[1;31m"};
+  return name_of(paint, sequences);
 }
 
 /// Returns the first `width` characters of `text` and subtracts their number from `width`.
@@ -76,6 +65,12 @@ std::string Line::render(std::size_t width, bool colour) const {
     if (painted) text += "\033[0m";
   }
   return text;
+}
+
+void print_lines(const std::vector<Line>& lines, std::size_t width) {
+  const bool terminal = ::isatty(STDOUT_FILENO) != 0;
+  if (terminal) width = Screen::size().columns;
+  for (const Line& line : lines) std::puts(line.render(width, terminal).c_str());
 }
 
 std::string left(std::string_view text, std::size_t width) {

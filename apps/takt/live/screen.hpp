@@ -25,6 +25,10 @@ class Line {
   std::vector<Piece> pieces_;
 };
 
+/// Prints lines on stdout: in colours and cut to the width of a terminal, otherwise to `width`
+/// columns.
+void print_lines(const std::vector<Line>& lines, std::size_t width = 160);
+
 /// Returns `text` padded with spaces to `width` columns, or cut if longer. UTF-8 counts by
 /// character. left() aligns to the left, right() to the right.
 std::string left(std::string_view text, std::size_t width);

@@ -1,6 +1,7 @@
 #include "apps/takt/live/top_frame.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <ctime>
 #include <fmt/chrono.h>
@@ -9,6 +10,7 @@
 
 #include "apps/takt/live/timing_table.hpp"
 #include "master/core/node_status.hpp"
+#include "master/explain/boot_report.hpp"
 #include "master/rt/exchange/status_board.hpp"
 
 namespace takt {
@@ -25,18 +27,11 @@ Paint nmt_paint(int state) {
 }
 
 Paint boot_paint(int state) {
-  switch (static_cast<BootState>(state)) {
-    case BootState::ready:
-      return Paint::good;
-    case BootState::failed:
-    case BootState::lost:
-      return Paint::bad;
-    case BootState::booting:
-      return Paint::warning;
-    case BootState::idle:
-      return Paint::dim;
-  }
-  return Paint::dim;
+  using enum BootState;
+  const auto boot = static_cast<BootState>(state);
+  if (boot == failed || boot == lost) return Paint::bad;
+  if (boot == ready) return Paint::good;
+  return boot == booting ? Paint::warning : Paint::dim;
 }
 
 Paint load_paint(double load) {
@@ -218,19 +213,10 @@ Line event_line(const event_t& event) {
 }  // namespace
 
 std::string nmt_name(int state) {
-  switch (static_cast<NmtState>(state)) {
-    case NmtState::bootup:
-      return "boot-up";
-    case NmtState::stopped:
-      return "stopped";
-    case NmtState::operational:
-      return "operational";
-    case NmtState::preoperational:
-      return "pre-operational";
-    case NmtState::unknown:
-      return "unknown";
-  }
-  return "state " + std::to_string(state);
+  std::string text{name(static_cast<NmtState>(state))};
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
 }
 
 std::string bus_condition(int state) {
@@ -244,19 +230,11 @@ std::string stop_name(int stop) {
 }
 
 std::string boot_name(const node_status_t& node) {
-  switch (static_cast<BootState>(node.boot_state)) {
-    case BootState::idle:
-      return "idle";
-    case BootState::booting:
-      return fmt::format("step {} of {}", node.boot_step + 1, node.boot_steps);
-    case BootState::ready:
-      return "ready";
-    case BootState::failed:
-      return "boot failed";
-    case BootState::lost:
-      return "lost";
+  const auto state = static_cast<BootState>(node.boot_state);
+  if (state == BootState::booting) {
+    return fmt::format("step {} of {}", node.boot_step + 1, node.boot_steps);
   }
-  return "?";
+  return state == BootState::failed ? "boot failed" : std::string{name(state)};
 }
 
 namespace {

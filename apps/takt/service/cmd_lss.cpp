@@ -13,7 +13,8 @@ namespace takt {
 namespace {
 
 std::string check_number(const std::string& text) {
-  return lss_number(text) ? "" : "'" + text + "' is not a number of 32 bits (decimal, or 0x hex)";
+  return parse_unsigned(text) ? ""
+                              : "'" + text + "' is not a number of 32 bits (decimal, or 0x hex)";
 }
 
 std::string check_range(const std::string& text) {
@@ -41,59 +42,62 @@ void add_identity(CLI::App& verb, LssOptions& options, Takes takes) {
   verb.add_flag("--alone", options.alone, "the only device on the bus, whatever its address");
 }
 
-CLI::App* add_verb(CLI::App& lss, const char* name, const char* text, Takes takes,
-                   const std::shared_ptr<LssOptions>& options) {
-  auto* verb = lss.add_subcommand(name, text);
-  if (takes != Takes::nothing) add_identity(*verb, *options, takes);
-  add_bus(*verb, options->access.bus, "use can0 or unix:PATH directly, not a daemon")
-      ->type_name("IFACE");
-  add_number(*verb, "--timeout", options->access.timeout_ms,
-             "wait per answer, ms; default 100 in scans, 5000 to store, else 1000")
-      ->check(CLI::Range(1, 60000))
-      ->type_name("MS");
-  add_live_options(*verb, options->access.live);
-  return verb;
+/// A verb and its options.
+struct Verb {
+  CLI::App* app;
+  std::shared_ptr<LssOptions> options;
+};
+
+/// Adds the verbs of `takt lss`.
+class Verbs {
+ public:
+  Verbs(CLI::App& lss, int& exit_code) : lss_{lss}, exit_code_{exit_code} {}
+
+  Verb add(const char* name, const char* text, Takes takes, Run run) {
+    const auto options = std::make_shared<LssOptions>();
+    auto* verb = lss_.add_subcommand(name, text);
+    if (takes != Takes::nothing) add_identity(*verb, *options, takes);
+    add_bus(*verb, options->access.bus, "use can0 or unix:PATH directly, not a daemon")
+        ->type_name("IFACE");
+    add_number(*verb, "--timeout", options->access.timeout_ms,
+               "wait per answer, ms; default 100 in scans, 5000 to store, else 1000")
+        ->check(CLI::Range(1, 60000))
+        ->type_name("MS");
+    add_live_options(*verb, options->access.live);
+    verb->callback([options, run, &exit_code = exit_code_] { exit_code = run(*options); });
+    return {verb, options};
+  }
+
+ private:
+  CLI::App& lss_;
+  int& exit_code_;
+};
+
+void add_searches(Verbs& verbs) {
+  const auto [find, options] =
+      verbs.add("find", "lists the devices without node id (fastscan)", Takes::numbers, lss_find);
+  find->add_flag("--first", options->first, "end after the first device");
+  verbs.add("scan", "lists all devices of a product, also those with a node id", Takes::ranges,
+            lss_scan);
+  verbs.add("unconfigured", "tests for a missing node id", Takes::nothing, lss_unconfigured);
+  verbs.add("inquire", "prints the LSS address and the node id of one device", Takes::one_device,
+            lss_inquire);
 }
 
-void run_as(CLI::App* verb, const std::shared_ptr<LssOptions>& options, Run run, int& exit_code) {
-  verb->callback([options, run, &exit_code] { exit_code = run(*options); });
-}
-
-void add_searches(CLI::App& lss, int& exit_code) {
-  const auto options = std::make_shared<LssOptions>();
-  auto* find_verb = add_verb(lss, "find", "lists the devices without node id (fastscan)",
-                             Takes::numbers, options);
-  find_verb->add_flag("--first", options->first, "end after the first device");
-  run_as(find_verb, options, lss_find, exit_code);
-  const auto scanned = std::make_shared<LssOptions>();
-  run_as(add_verb(lss, "scan", "lists all devices of a product, also those with a node id",
-                  Takes::ranges, scanned),
-         scanned, lss_scan, exit_code);
-  const auto asked = std::make_shared<LssOptions>();
-  run_as(add_verb(lss, "unconfigured", "tests for a missing node id", Takes::nothing, asked), asked,
-         lss_unconfigured, exit_code);
-  const auto inquired = std::make_shared<LssOptions>();
-  run_as(add_verb(lss, "inquire", "prints the LSS address and the node id of one device",
-                  Takes::one_device, inquired),
-         inquired, lss_inquire, exit_code);
-}
-
-void add_settings(CLI::App& lss, int& exit_code) {
-  const auto id = std::make_shared<LssOptions>();
-  auto* id_verb = add_verb(lss, "set-id", "gives one device a node id", Takes::one_device, id);
+void add_settings(Verbs& verbs) {
+  const auto [id_verb, id] =
+      verbs.add("set-id", "gives one device a node id", Takes::one_device, lss_set_id);
   add_number(*id_verb, "ID", id->node_id, "1..127; 255 removes the node id")
       ->required()
       ->check([](const std::string& text) {
-        const auto value = lss_number(text);
+        const auto value = parse_unsigned(text);
         const bool good = value && ((*value >= 1 && *value <= 127) || *value == 255);
         return good ? "" : "'" + text + "' is not a node id 1..127, or 255 for none";
       });
   id_verb->add_flag("--store", id->store, "let the device store the node id");
-  run_as(id_verb, id, lss_set_id, exit_code);
 
-  const auto rate = std::make_shared<LssOptions>();
-  auto* rate_verb =
-      add_verb(lss, "set-bitrate", "configures another bit rate", Takes::one_device, rate);
+  const auto [rate_verb, rate] =
+      verbs.add("set-bitrate", "configures another bit rate", Takes::one_device, lss_set_bitrate);
   add_number(*rate_verb, "KBIT", rate->kbit, "1000, 800, 500, 250, 125, 50, 20, 10")->required();
   rate_verb->add_flag("--all", rate->all, "configure every device of the bus");
   rate_verb->add_flag("--store", rate->store, "let the devices store the bit rate");
@@ -101,17 +105,13 @@ void add_settings(CLI::App& lss, int& exit_code) {
              "switch bus and interface now; the bus is silent for twice this, ms")
       ->check(CLI::Range(100, 60000))
       ->type_name("MS");
-  run_as(rate_verb, rate, lss_set_bitrate, exit_code);
 
-  const auto stored = std::make_shared<LssOptions>();
-  run_as(add_verb(lss, "store", "lets one device store its settings", Takes::one_device, stored),
-         stored, lss_store, exit_code);
-  const auto state = std::make_shared<LssOptions>();
-  auto* state_verb = add_verb(lss, "switch", "switches all devices", Takes::nothing, state);
-  state_verb->add_option("STATE", state->state, "config or waiting")
+  verbs.add("store", "lets one device store its settings", Takes::one_device, lss_store);
+  const auto [switch_verb, options] =
+      verbs.add("switch", "switches all devices", Takes::nothing, lss_switch);
+  switch_verb->add_option("STATE", options->state, "config or waiting")
       ->required()
       ->check(one_of({"config", "waiting"}));
-  run_as(state_verb, state, lss_switch, exit_code);
 }
 
 }  // namespace
@@ -126,8 +126,9 @@ void add_lss(CLI::App& app, int& exit_code) {
       "Examples:\n  takt lss find --bus can0\n  takt lss set-id 5 --store\n"
       "  takt lss set-id 6 --vendor 0x15A --product 2 --revision 3 --serial 17 --store\n"
       "  takt lss set-bitrate 500 --all --store --activate 1000 --bus can0");
-  add_searches(*lss, exit_code);
-  add_settings(*lss, exit_code);
+  Verbs verbs{*lss, exit_code};
+  add_searches(verbs);
+  add_settings(verbs);
 }
 
 }  // namespace takt

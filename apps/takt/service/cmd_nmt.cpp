@@ -32,12 +32,11 @@ int run_on_bus(const NmtOptions& options) {
   if (!id && options.node != "all") {
     return complain("'" + options.node + "' is not a node id 1..127 or all", 2);
   }
-  auto channel = FrameChannel::open(options.bus, BusMember::guest);
-  if (!channel) return complain(channel.error().message, 3);
+  FrameChannel channel = value_or_fail(FrameChannel::open(options.bus, BusMember::guest), 3);
   const std::uint8_t node = id ? id->value() : std::uint8_t{0};
   const Frame frame =
       make_frame(CobId::base(0), {static_cast<std::uint8_t>(commands.at(options.command)), node});
-  if (!channel->send(frame)) return complain("the frame could not be sent on " + options.bus, 3);
+  if (!channel.send(frame)) throw Failure{"the frame could not be sent on " + options.bus};
   return 0;
 }
 
@@ -50,18 +49,14 @@ std::chrono::seconds patience(const std::string& command) {
 
 int run(const NmtOptions& options) {
   if (!options.bus.empty()) return run_on_bus(options);
-  auto daemon = DaemonClient::find(options.live);
-  if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
+  DaemonClient daemon = DaemonClient::find(options.live);
+  const auto listed = daemon.find_node(options.node);
   const auto id = parse_node_id(options.node);  // may be the node-ID of the master itself
-  const auto node = daemon->node(options.node);
-  if (!node && !id) return complain(node.error().sentence, node.error().code);
-  request_t request{};
-  request.service = "nmt";
-  request.node_id = node ? *node : std::int16_t{id->value()};
+  request_t request =
+      make_request("nmt", !listed && id ? std::int16_t{id->value()} : daemon.node(options.node));
   request.nmt_command = static_cast<std::int16_t>(commands.at(options.command));
-  const auto reply = daemon->ask(std::move(request), patience(options.command));
-  if (!reply) return complain(reply.error().sentence, reply.error().code);
-  return reply->good != 0 ? 0 : complain(reply->text, 1);
+  daemon.demand(std::move(request), patience(options.command));
+  return 0;
 }
 
 }  // namespace

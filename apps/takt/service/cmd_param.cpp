@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -28,15 +27,8 @@ struct ParamOptions {
 };
 
 std::optional<std::uint32_t> number(std::string_view text, std::uint32_t most) {
-  int base = 10;
-  if (text.starts_with("0x") || text.starts_with("0X")) {
-    base = 16;
-    text.remove_prefix(2);
-  }
-  std::uint32_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
-  if (error != std::errc{} || end != text.data() + text.size() || value > most) return {};
-  return value;
+  const auto value = parse_unsigned(text);
+  return value && *value <= most ? value : std::nullopt;
 }
 
 /// Parses a parameter as `P15.13` (group and number, decimal) or as an address, `0x0F0D`.
@@ -71,13 +63,10 @@ int print(const ParamOptions& options, std::uint16_t address, const channel::Ans
 }
 
 request_t request_of(const ParamOptions& options, std::int16_t node, const channel::Bytes8& bytes) {
-  request_t request{};
-  request.service = "pdo_exchange";
-  request.node_id = node;
+  request_t request = make_request("pdo_exchange", node);
   request.index = options.pdo;
   request.timeout_ms = options.timeout_ms;
-  request.size = static_cast<std::int32_t>(bytes.size());
-  request.data.assign(bytes.begin(), bytes.end());
+  set_data(request, std::as_bytes(std::span{bytes}));
   return request;
 }
 
@@ -90,16 +79,11 @@ int run(const ParamOptions& options, channel::Command command) {
   const auto value =
       options.value.empty() ? std::optional<std::uint32_t>{0} : number(options.value, 0xFFFF'FFFF);
   if (!value) return complain("'" + options.value + "' is not a 32-bit number", 2);
-  auto daemon = DaemonClient::find(options.live);
-  if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
-  const auto node = daemon->node(options.node);
-  if (!node) return complain(node.error().sentence, node.error().code);
+  DaemonClient daemon = DaemonClient::find(options.live);
+  const auto bytes = channel::request(command, *address, *value);
   const auto limit = std::chrono::milliseconds{options.timeout_ms} * 17 + std::chrono::seconds{2};
-  const auto reply =
-      daemon->ask(request_of(options, *node, channel::request(command, *address, *value)), limit);
-  if (!reply) return complain(reply.error().sentence, reply.error().code);
-  if (reply->good == 0) return complain(reply->text, 1);
-  const auto answer = channel::answer(reply->data);
+  const reply_t reply = daemon.demand(request_of(options, daemon.node(options.node), bytes), limit);
+  const auto answer = channel::answer(reply.data);
   if (!answer) return complain("the answer of the device does not fit a parameter channel", 1);
   return print(options, *address, *answer);
 }

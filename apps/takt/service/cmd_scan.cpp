@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/command_line/interrupt.hpp"
 #include "apps/command_line/json_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
@@ -16,6 +16,7 @@
 #include "apps/takt/live/screen.hpp"
 #include "apps/takt/live/top_frame.hpp"
 #include "apps/takt/service/bus_scan.hpp"
+#include "apps/takt/service/send_all.hpp"
 #include "master/linux/bus/frame_channel.hpp"
 #include "master/linux/clock.hpp"
 
@@ -37,42 +38,21 @@ struct Found {
   learn::DeviceFiles::Match file;
 };
 
-// After this time with a full transmit queue, no node acknowledges the frames.
-constexpr Time longest_jam = std::chrono::seconds{2};
-
-void hear(BusScan& scan, FrameChannel& channel) {
-  StampedFrame frame;
-  if (channel.receive(frame, std::chrono::milliseconds{1})) {
-    scan.on_frame(frame.frame, monotonic_now());
-  }
-}
-
-/// Sends all frames. Waits if the transmit queue is full, because most interfaces hold only ten
-/// frames. Returns false if no frame can be sent for longest_jam.
-bool send(std::span<const Frame> frames, BusScan& scan, FrameChannel& channel) {
-  const Time limit = monotonic_now() + longest_jam;
-  for (;;) {
-    frames = frames.subspan(channel.send(frames).sent);
-    if (frames.empty()) return true;
-    if (monotonic_now() > limit) return false;
-    hear(scan, channel);
-  }
-}
-
-std::expected<BusScan, std::string> scan_bus(const ScanOptions& options) {
-  auto channel = FrameChannel::open(options.bus, BusMember::guest);
-  if (!channel) return std::unexpected{channel.error().message};
+BusScan scan_bus(const ScanOptions& options) {
+  FrameChannel channel = value_or_fail(FrameChannel::open(options.bus, BusMember::guest), 3);
   BusScan scan{std::chrono::milliseconds{options.timeout_ms}};
   const Time listens_until = monotonic_now() + std::chrono::milliseconds{options.listen_ms};
+  const auto hear = [&](const Frame& frame) { scan.on_frame(frame, monotonic_now()); };
   const Interrupt interrupt;
   while ((!scan.done() || monotonic_now() < listens_until) && !Interrupt::asked()) {
     Outbox out;
     scan.on_time(monotonic_now(), out);
-    if (!send(out.frames(), scan, *channel)) {
-      return std::unexpected{"a frame could not be sent on " + options.bus +
-                             ": the interface is down, or no node acknowledges frames"};
+    if (!send_all(channel, out.frames(), hear)) {
+      throw Failure{"a frame could not be sent on " + options.bus +
+                    ": the interface is down, or no node acknowledges frames"};
     }
-    hear(scan, *channel);
+    StampedFrame frame;
+    if (channel.receive(frame, std::chrono::milliseconds{1})) hear(frame.frame);
   }
   return scan;
 }
@@ -101,23 +81,19 @@ std::string file_text(const Found& found, bool wanted) {
 }
 
 void print(const std::vector<Found>& nodes, bool with_files) {
-  const bool terminal = ::isatty(STDOUT_FILENO) != 0;
-  const std::size_t width = terminal ? Screen::size().columns : 250;
-  Line head;
-  head.add(
+  std::vector<Line> lines{Line{}.add(
       " NODE  STATE            PROFILE     VENDOR      PRODUCT     REVISION    SERIAL      NAME",
-      Paint::dim);
-  std::puts(head.render(width, terminal).c_str());
+      Paint::dim)};
   for (const Found& found : nodes) {
-    Line line;
+    Line& line = lines.emplace_back();
     line.add(right(std::to_string(found.id), 5))
         .add("  " + left(state(found.node), 17))
         .add(left(profile(found.node), 12));
     for (const auto& number : found.node.identity) line.add(left(hex(number), 12));
     line.add(with_files ? left(found.node.name, 24) : found.node.name, Paint::title)
         .add(file_text(found, with_files), Paint::dim);
-    std::puts(line.render(width, terminal).c_str());
   }
+  print_lines(lines, 250);
 }
 
 nlohmann::json to_json(const Found& found) {
@@ -158,14 +134,13 @@ int run(const ScanOptions& options) {
   Findings findings;
   for (const std::string& folder : options.folders) files.add_folder(folder, findings);
   if (!findings.empty()) return complain(to_string(findings.front()), 2);
-  const auto scan = scan_bus(options);
-  if (!scan) return complain(scan.error(), 3);
-  if (scan->met_another_client()) {
+  const BusScan scan = scan_bus(options);
+  if (scan.met_another_client()) {
     complain("another program sends SDO requests on " + options.bus +
                  " (a running taktd?), so answers may be mixed up; `takt status` asks the daemon",
              0);
   }
-  const std::vector<Found> nodes = with_files(*scan, files);
+  const std::vector<Found> nodes = with_files(scan, files);
   if (options.json) {
     nlohmann::json all = nlohmann::json::array();
     for (const Found& found : nodes) all.push_back(to_json(found));

@@ -1,7 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
+#include <fmt/format.h>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -44,133 +46,126 @@ struct SdoOptions {
   std::size_t limit = most_file_bytes;
 };
 
-/// Makes SDO transfers through the daemon or directly on the bus.
+/// Makes SDO transfers through the daemon or directly on the bus. A transfer that fails throws a
+/// Failure.
 class SdoRoute {
  public:
-  static std::expected<SdoRoute, LiveError> open(const SdoOptions& options);
+  explicit SdoRoute(const SdoOptions& options);
 
-  std::expected<Value, LiveError> upload(ObjectKey object);
-  std::expected<void, LiveError> download(ObjectKey object, const Value& value);
+  Value upload(ObjectKey object);
+  void download(ObjectKey object, const Value& value);
   /// The same for files, which may be long: in parts, by block transfer and with progress.
-  std::expected<Value, LiveError> upload_file(ObjectKey object, std::size_t limit,
-                                              const Progress& progress);
-  std::expected<void, LiveError> download_file(ObjectKey object, const Value& value,
-                                               const Progress& progress);
+  Value upload_file(ObjectKey object, std::size_t limit, const Progress& progress);
+  void download_file(ObjectKey object, const Value& value, const Progress& progress);
   int node() const noexcept { return node_; }
 
  private:
-  std::expected<reply_t, LiveError> ask(const char* service, ObjectKey object, const Value& value);
+  reply_t ask(const char* service, ObjectKey object, const Value& value);
 
   std::optional<SdoDirect> direct_;
   std::optional<DaemonClient> daemon_;
   std::int16_t node_ = 0;
-  int timeout_ms_ = 0;
+  int timeout_ms_;
 };
 
-std::expected<SdoRoute, LiveError> SdoRoute::open(const SdoOptions& options) {
-  SdoRoute route;
-  route.timeout_ms_ = options.timeout_ms;
-  if (!options.bus.empty()) {
-    const auto id = parse_node_id(options.node);
-    if (!id) {
-      return std::unexpected{LiveError{"'" + options.node +
-                                           "' is not a node id 1..127; only a daemon "
-                                           "knows names, and --bus does not use the daemon",
-                                       2}};
-    }
-    route.node_ = id->value();
-    const std::chrono::milliseconds given{options.timeout_ms};
-    route.direct_.emplace(options.bus, *id, given.count() == 0 ? direct_timeout : given);
-    return route;
+SdoRoute::SdoRoute(const SdoOptions& options) : timeout_ms_{options.timeout_ms} {
+  if (options.bus.empty()) {
+    daemon_.emplace(DaemonClient::find(options.live));
+    node_ = daemon_->node(options.node);
+    if (node_ == 0) throw Failure{"an SDO transfer needs one node, not `all`", 2};
+    return;
   }
-  auto daemon = DaemonClient::find(options.live);
-  if (!daemon) return std::unexpected{daemon.error()};
-  const auto node = daemon->node(options.node);
-  if (!node) return std::unexpected{node.error()};
-  if (*node == 0) return std::unexpected{LiveError{"an SDO transfer needs one node, not `all`", 2}};
-  route.node_ = *node;
-  route.daemon_.emplace(std::move(*daemon));
-  return route;
+  const auto id = parse_node_id(options.node);
+  if (!id) {
+    throw Failure{"'" + options.node +
+                      "' is not a node id 1..127; only a daemon knows names, and --bus does not "
+                      "use the daemon",
+                  2};
+  }
+  node_ = id->value();
+  const std::chrono::milliseconds given{options.timeout_ms};
+  direct_.emplace(options.bus, *id, given.count() == 0 ? direct_timeout : given);
 }
 
-std::expected<reply_t, LiveError> SdoRoute::ask(const char* service, ObjectKey object,
-                                                const Value& value) {
-  request_t request{};
-  request.service = service;
-  request.node_id = node_;
+reply_t SdoRoute::ask(const char* service, ObjectKey object, const Value& value) {
+  request_t request = make_request(service, node_);
   request.index = object.index;
   request.sub = object.sub;
   request.timeout_ms = timeout_ms_;
-  request.size = static_cast<std::int32_t>(value.size());
-  for (const std::byte byte : value) request.data.push_back(std::to_integer<std::uint8_t>(byte));
+  set_data(request, value);
   // The daemon may serve other requests first, and each segment may take up to the time-out.
   const std::chrono::milliseconds given{timeout_ms_};
-  auto reply =
-      daemon_->ask(std::move(request), given.count() == 0 ? longest_wait_for_daemon
-                                                          : given * 10 + std::chrono::seconds{2});
-  if (reply && reply->good == 0) return std::unexpected{LiveError{reply->text, 1}};
-  return reply;
+  return daemon_->demand(std::move(request), given.count() == 0
+                                                 ? longest_wait_for_daemon
+                                                 : given * 10 + std::chrono::seconds{2});
 }
 
-std::expected<Value, LiveError> SdoRoute::upload(ObjectKey object) {
+Value SdoRoute::upload(ObjectKey object) {
   if (direct_) return direct_->upload(object);
-  const auto reply = ask("sdo_upload", object, {});
-  if (!reply) return std::unexpected{reply.error()};
-  Value value;
-  for (const std::uint8_t byte : reply->data) value.push_back(std::byte{byte});
-  return value;
+  const reply_t reply = ask("sdo_upload", object, {});
+  const auto bytes = std::as_bytes(std::span{reply.data});
+  return {bytes.begin(), bytes.end()};
 }
 
-std::expected<void, LiveError> SdoRoute::download(ObjectKey object, const Value& value) {
+void SdoRoute::download(ObjectKey object, const Value& value) {
   if (direct_) return direct_->download(object, value);
   if (value.size() > request_bytes) {
-    return std::unexpected{LiveError{"the daemon takes at most " + std::to_string(request_bytes) +
-                                         " bytes as one value; write a longer one from a file "
-                                         "with `takt sdo download`",
-                                     1}};
+    throw Failure{fmt::format("the daemon takes at most {} bytes as one value; write a longer one "
+                              "from a file with `takt sdo download`",
+                              request_bytes),
+                  1};
   }
-  const auto reply = ask("sdo_download", object, value);
-  if (!reply) return std::unexpected{reply.error()};
-  return {};
+  ask("sdo_download", object, value);
 }
 
-std::expected<Value, LiveError> SdoRoute::upload_file(ObjectKey object, std::size_t limit,
-                                                      const Progress& progress) {
+Value SdoRoute::upload_file(ObjectKey object, std::size_t limit, const Progress& progress) {
   if (direct_) return direct_->upload(object, limit, progress);
   return FileTransfer{*daemon_, {node_, object, timeout_ms_}, progress}.upload(limit);
 }
 
-std::expected<void, LiveError> SdoRoute::download_file(ObjectKey object, const Value& value,
-                                                       const Progress& progress) {
+void SdoRoute::download_file(ObjectKey object, const Value& value, const Progress& progress) {
   if (direct_) return direct_->download(object, value, progress);
-  return FileTransfer{*daemon_, {node_, object, timeout_ms_}, progress}.download(value);
+  FileTransfer{*daemon_, {node_, object, timeout_ms_}, progress}.download(value);
 }
 
-int transfer_failed(const SdoOptions& options, ObjectKey object, const LiveError& error) {
-  return complain("node " + options.node + " " + to_string(object) + ": " + error.sentence,
-                  error.code);
+/// Returns the object that the user names. `examples` continues the sentence if it is none.
+ObjectKey object_of(const SdoOptions& options, const char* examples = "6041 or 1018:1") {
+  const auto object = parse_object(options.object);
+  if (object) return *object;
+  throw Failure{"'" + options.object + "' is not an object like " + examples, 2};
+}
+
+DataType type_of(const SdoOptions& options) {
+  const auto type = parse_data_type(options.type);
+  if (type) return *type;
+  throw Failure{"'" + options.type + "' is not a type like u16, i32, f32, string, hex", 2};
+}
+
+/// Runs a transfer of this object. The sentence of a failure begins with node and object.
+template <class Transfer>
+auto transfer(const SdoOptions& options, ObjectKey object, const Transfer& run) {
+  try {
+    return run();
+  } catch (const Failure& failure) {
+    throw Failure{fmt::format("node {} {}: {}", options.node, to_string(object), failure.what()),
+                  failure.code};
+  }
 }
 
 int read(const SdoOptions& options) {
-  const auto object = parse_object(options.object);
-  if (!object) return complain("'" + options.object + "' is not an object like 6041 or 1018:1", 2);
-  const auto type =
-      options.type.empty() ? std::optional<DataType>{} : parse_data_type(options.type);
-  if (!type && !options.type.empty()) {
-    return complain("'" + options.type + "' is not a type like u16, i32, f32, string, hex", 2);
-  }
-  auto route = SdoRoute::open(options);
-  if (!route) return complain(route.error().sentence, route.error().code);
-  const auto value = route->upload(*object);
-  if (!value) return transfer_failed(options, *object, value.error());
-  if (type && !fits(*type, *value)) {
-    return transfer_failed(options, *object, {misfit_text(options.type, *type, *value), 1});
-  }
-  const std::string text = type ? value_text(*type, *value) : untyped_text(*value);
+  const ObjectKey object = object_of(options);
+  const auto type = options.type.empty() ? std::nullopt : std::optional{type_of(options)};
+  SdoRoute route{options};
+  const Value value = transfer(options, object, [&] {
+    Value bytes = route.upload(object);
+    if (type && !fits(*type, bytes)) throw Failure{misfit_text(options.type, *type, bytes), 1};
+    return bytes;
+  });
+  const std::string text = type ? value_text(*type, value) : untyped_text(value);
   if (options.live.json) {
-    const nlohmann::json json{{"node", route->node()},    {"index", object->index},
-                              {"sub", object->sub},       {"size", value->size()},
-                              {"data", hex_text(*value)}, {"text", text}};
+    const nlohmann::json json{{"node", route.node()},    {"index", object.index},
+                              {"sub", object.sub},       {"size", value.size()},
+                              {"data", hex_text(value)}, {"text", text}};
     std::puts(json_text(json).c_str());
   } else {
     std::puts(printable_lines(text).c_str());
@@ -178,58 +173,42 @@ int read(const SdoOptions& options) {
   return 0;
 }
 
-int download_value(const SdoOptions& options, ObjectKey object, const Value& value) {
-  auto route = SdoRoute::open(options);
-  if (!route) return complain(route.error().sentence, route.error().code);
-  const auto done = route->download(object, value);
-  return done ? 0 : transfer_failed(options, object, done.error());
-}
-
 int write(const SdoOptions& options) {
-  const auto object = parse_object(options.object);
-  if (!object) return complain("'" + options.object + "' is not an object like 6041 or 1018:1", 2);
-  const auto type = parse_data_type(options.type);
-  if (!type) {
-    return complain("'" + options.type + "' is not a type like u16, i32, f32, string, hex", 2);
-  }
-  const auto value = value_bytes(*type, options.value);
-  if (!value) return complain(value.error(), 2);
-  return download_value(options, *object, *value);
+  const ObjectKey object = object_of(options);
+  const Value value = value_or_fail(value_bytes(type_of(options), options.value), 2);
+  SdoRoute route{options};
+  transfer(options, object, [&] { route.download(object, value); });
+  return 0;
 }
 
 int upload_file(const SdoOptions& options) {
-  const auto object = parse_object(options.object);
-  if (!object) return complain("'" + options.object + "' is not an object like 1F50:1", 2);
-  auto route = SdoRoute::open(options);
-  if (!route) return complain(route.error().sentence, route.error().code);
+  const ObjectKey object = object_of(options, "1F50:1");
+  SdoRoute route{options};
   const Interrupt interrupt;
   TransferProgress progress;
-  const auto value =
-      route->upload_file(*object, options.limit,
-                         [&](std::size_t done, std::size_t total) { progress.show(done, total); });
-  if (!value) return transfer_failed(options, *object, value.error());
-  progress.finish(value->size());
+  const Value value = transfer(options, object, [&] {
+    return route.upload_file(object, options.limit,
+                             std::bind_front(&TransferProgress::show, &progress));
+  });
+  progress.finish(value.size());
   std::ofstream file{options.file, std::ios::binary};
-  file.write(reinterpret_cast<const char*>(value->data()),
-             static_cast<std::streamsize>(value->size()));
+  file.write(reinterpret_cast<const char*>(value.data()),
+             static_cast<std::streamsize>(value.size()));
   file.close();
   return file ? 0 : complain(options.file + ": can't be written", 2);
 }
 
 int download_file(const SdoOptions& options) {
-  const auto object = parse_object(options.object);
-  if (!object) return complain("'" + options.object + "' is not an object like 1F50:1", 2);
-  const auto content = read_whole_file(options.file);
-  if (!content) return complain(content.error(), 2);
-  const auto bytes = std::as_bytes(std::span{*content});
-  auto route = SdoRoute::open(options);
-  if (!route) return complain(route.error().sentence, route.error().code);
+  const ObjectKey object = object_of(options, "1F50:1");
+  const std::string content = value_or_fail(read_whole_file(options.file), 2);
+  const auto bytes = std::as_bytes(std::span{content});
+  SdoRoute route{options};
   const Interrupt interrupt;
   TransferProgress progress;
-  const auto done = route->download_file(
-      *object, {bytes.begin(), bytes.end()},
-      [&](std::size_t through, std::size_t total) { progress.show(through, total); });
-  if (!done) return transfer_failed(options, *object, done.error());
+  transfer(options, object, [&] {
+    route.download_file(object, {bytes.begin(), bytes.end()},
+                        std::bind_front(&TransferProgress::show, &progress));
+  });
   progress.finish(bytes.size());
   return 0;
 }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <unistd.h>
+#include <fmt/format.h>
+#include <iterator>
 #include <utility>
 
 #include "apps/command_line/interrupt.hpp"
@@ -18,6 +19,13 @@ using namespace std::chrono_literals;
 constexpr Time repeat_after = 300ms;  // without a state, a message was probably lost
 constexpr Time ask_every = 1s;        // interval of status messages while the transfer runs
 constexpr Time most_silence = 5s;     // longest time without a message from the daemon
+constexpr std::size_t window = Transfers::parts_at_once * Transfers::part_bytes;
+
+/// Calls a function at the end of its scope, also after a failure.
+struct AtEnd {
+  std::function<void()> call;
+  ~AtEnd() { call(); }
+};
 
 }  // namespace
 
@@ -26,7 +34,7 @@ FileTransfer::FileTransfer(DaemonClient& daemon, Target target, Progress progres
       target_{target},
       progress_{std::move(progress)},
       id_{realtime_now().count()},
-      sender_{"takt-" + std::to_string(::getpid())} {}
+      sender_{own_sender()} {}
 
 transfer_t FileTransfer::message(const char* action) const {
   transfer_t out{};
@@ -43,7 +51,7 @@ transfer_t FileTransfer::message(const char* action) const {
 }
 
 void FileTransfer::send(transfer_t out) {
-  out.utime = std::chrono::duration_cast<std::chrono::microseconds>(realtime_now()).count();
+  out.utime = utime_now();
   daemon_.send("TRANSFER", encode(out, buffer_));
 }
 
@@ -57,7 +65,7 @@ bool FileTransfer::hear(Time until) {
           auto state = decode<transfer_state_t>(data);
           if (!state || state->id != id_ || state->sender != sender_) return;
           if (!state->data.empty() && state->offset == static_cast<std::int64_t>(value_.size())) {
-            for (const std::uint8_t byte : state->data) value_.push_back(std::byte{byte});
+            std::ranges::copy(std::as_bytes(std::span{state->data}), std::back_inserter(value_));
           }
           state_ = std::move(*state);
           heard = true;
@@ -68,44 +76,36 @@ bool FileTransfer::hear(Time until) {
   return heard;
 }
 
-std::unexpected<LiveError> FileTransfer::silent() const {
-  return std::unexpected{daemon_.silence()};
+/// Throws the reason if the transfer has failed.
+void FileTransfer::check() const {
+  if (state_.stage != "failed") return;
+  throw Failure{aborted_ ? "interrupted; the transfer was aborted" : state_.text, 1};
 }
 
-std::expected<void, LiveError> FileTransfer::failure() const {
-  if (state_.stage != "failed") return {};
-  if (aborted_) return std::unexpected{LiveError{"interrupted; the transfer was aborted", 1}};
-  return std::unexpected{LiveError{state_.text, 1}};
-}
-
-std::expected<void, LiveError> FileTransfer::begin(const char* action, std::size_t total) {
+void FileTransfer::begin(const char* action, std::size_t total) {
   transfer_t first = message(action);
   first.total = static_cast<std::int64_t>(total);
   for (const Time until = monotonic_now() + most_silence; monotonic_now() < until;) {
     send(first);
-    if (hear(monotonic_now() + repeat_after)) return failure();
+    if (hear(monotonic_now() + repeat_after)) return check();
     if (daemon_.lacks_key()) break;
   }
-  return silent();
+  throw daemon_.silence();
 }
 
 /// Sends the value in parts. The parts of one window follow each other without waiting; the daemon
 /// reports how much it has received.
-std::expected<void, LiveError> FileTransfer::fill(std::span<const std::byte> value) {
+void FileTransfer::fill(std::span<const std::byte> value) {
   Time limit = monotonic_now() + most_silence;
   std::size_t sent = 0;
   while (state_.stage == "filling") {
     const auto received = static_cast<std::size_t>(state_.received);
     sent = std::max(sent, received);
-    const std::size_t window = received + Transfers::parts_at_once * Transfers::part_bytes;
-    for (; sent < std::min(window, value.size());) {
+    while (sent < std::min(received + window, value.size())) {
       transfer_t part = message("data");
       part.offset = static_cast<std::int64_t>(sent);
       const std::size_t size = std::min(Transfers::part_bytes, value.size() - sent);
-      part.size = static_cast<std::int32_t>(size);
-      for (const std::byte byte : value.subspan(sent, size)) {
-        part.data.push_back(std::to_integer<std::uint8_t>(byte));
-      }
+      set_data(part, value.subspan(sent, size));
       send(std::move(part));
       sent += size;
     }
@@ -114,69 +114,59 @@ std::expected<void, LiveError> FileTransfer::fill(std::span<const std::byte> val
     } else {
       sent = static_cast<std::size_t>(state_.received);  // a part was lost; repeat from there
     }
-    if (monotonic_now() > limit) return silent();
+    if (monotonic_now() > limit) throw daemon_.silence();
   }
-  return failure();
+  check();
 }
 
 /// Waits for the end of the transfer on the bus. The status messages also tell the daemon that this
 /// program still waits.
-std::expected<void, LiveError> FileTransfer::await_end() {
+void FileTransfer::await_end() {
   Time limit = monotonic_now() + most_silence;
   Time ask_at = monotonic_now() + ask_every;
   while (state_.stage == "running") {
     progress_(static_cast<std::size_t>(state_.done), static_cast<std::size_t>(state_.total));
     if (hear(ask_at)) limit = monotonic_now() + most_silence;
-    if (monotonic_now() > limit) return silent();
+    if (monotonic_now() > limit) throw daemon_.silence();
     if (monotonic_now() < ask_at) continue;
     ask_at = monotonic_now() + ask_every;
     send(message("status"));
   }
-  return failure();
+  check();
 }
 
-std::expected<void, LiveError> FileTransfer::download(std::span<const std::byte> value) {
+void FileTransfer::download(std::span<const std::byte> value) {
   if (value.size() > Transfers::most_bytes) {
-    return std::unexpected{
-        LiveError{"a file has at most " + std::to_string(Transfers::most_bytes) + " bytes", 1}};
+    throw Failure{fmt::format("a file has at most {} bytes", Transfers::most_bytes), 1};
   }
-  auto result = begin("download", value.size());
-  if (result) result = fill(value);
-  if (result) result = await_end();
-  send(message("end"));
-  return result;
+  const AtEnd end{[this] { send(message("end")); }};
+  begin("download", value.size());
+  fill(value);
+  await_end();
 }
 
-std::expected<std::vector<std::byte>, LiveError> FileTransfer::upload(std::size_t limit) {
-  auto result = begin("upload", std::min(limit, Transfers::most_bytes));
-  if (result) result = await_end();
-  if (!result) {
-    send(message("end"));
-    return std::unexpected{result.error()};
-  }
-  auto value = fetch();
-  send(message("end"));
-  return value;
+std::vector<std::byte> FileTransfer::upload(std::size_t limit) {
+  const AtEnd end{[this] { send(message("end")); }};
+  begin("upload", std::min(limit, Transfers::most_bytes));
+  await_end();
+  fetch();
+  return std::move(value_);
 }
 
-std::expected<std::vector<std::byte>, LiveError> FileTransfer::fetch() {
+void FileTransfer::fetch() {
   const auto total = static_cast<std::size_t>(state_.total);
   Time limit = monotonic_now() + most_silence;
   while (value_.size() < total) {
     const std::size_t before = value_.size();
     transfer_t more = message("more");
     more.offset = static_cast<std::int64_t>(before);
-    more.total = static_cast<std::int64_t>(Transfers::parts_at_once * Transfers::part_bytes);
+    more.total = static_cast<std::int64_t>(window);
     send(std::move(more));
-    const std::size_t wanted =
-        std::min(total, before + Transfers::parts_at_once * Transfers::part_bytes);
-    while (value_.size() < wanted && hear(monotonic_now() + repeat_after)) {
-      if (state_.stage == "failed") return std::unexpected{LiveError{state_.text, 1}};
-    }
+    const std::size_t wanted = std::min(total, before + window);
+    while (value_.size() < wanted && hear(monotonic_now() + repeat_after)) check();
     if (value_.size() != before) limit = monotonic_now() + most_silence;
-    if (monotonic_now() > limit) return silent();
+    if (monotonic_now() > limit) throw daemon_.silence();
   }
-  return std::move(value_);
 }
 
 }  // namespace takt

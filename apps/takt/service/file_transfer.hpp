@@ -1,6 +1,5 @@
 #pragma once
 #include <cstddef>
-#include <expected>
 #include <functional>
 #include <span>
 #include <vector>
@@ -14,7 +13,7 @@ namespace takt {
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// Transfers a file to or from a DOMAIN object through the running daemon, in parts. Ctrl-C
-/// (Interrupt) aborts the transfer on the bus.
+/// (Interrupt) aborts the transfer on the bus. A transfer that fails throws a Failure.
 class FileTransfer {
  public:
   struct Target {
@@ -24,21 +23,20 @@ class FileTransfer {
   };
   FileTransfer(DaemonClient& daemon, Target target, Progress progress);
 
-  std::expected<void, LiveError> download(std::span<const std::byte> value);
+  void download(std::span<const std::byte> value);
   /// Reads at most `limit` bytes. If the device sends more, the transfer is aborted.
-  std::expected<std::vector<std::byte>, LiveError> upload(std::size_t limit);
+  std::vector<std::byte> upload(std::size_t limit);
 
  private:
   transfer_t message(const char* action) const;
   void send(transfer_t message);
   // Waits for the daemon's next transfer state. Returns false if none comes before `until`.
   bool hear(Time until);
-  std::expected<void, LiveError> begin(const char* action, std::size_t total);
-  std::expected<void, LiveError> fill(std::span<const std::byte> value);
-  std::expected<void, LiveError> await_end();
-  std::expected<std::vector<std::byte>, LiveError> fetch();
-  std::expected<void, LiveError> failure() const;
-  std::unexpected<LiveError> silent() const;
+  void begin(const char* action, std::size_t total);
+  void fill(std::span<const std::byte> value);
+  void await_end();
+  void fetch();
+  void check() const;
 
   DaemonClient& daemon_;
   Target target_;

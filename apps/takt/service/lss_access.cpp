@@ -26,57 +26,43 @@ Time longest(std::span<const LssCommand> commands, Time timeout) {
 
 }  // namespace
 
-std::expected<LssAccess, LiveError> LssAccess::open(const LssAccessOptions& options) {
-  LssAccess access;
-  access.options_ = options;
+LssAccess::LssAccess(const LssAccessOptions& options) : options_{options} {
   if (options.bus.empty()) {
-    auto daemon = DaemonClient::find(options.live);
-    if (!daemon) return std::unexpected{daemon.error()};
-    access.daemon_.emplace(std::move(*daemon));
-    return access;
+    daemon_.emplace(DaemonClient::find(options.live));
+  } else {
+    channel_.emplace(value_or_fail(FrameChannel::open(options.bus, BusMember::guest), 3));
   }
-  auto channel = FrameChannel::open(options.bus, BusMember::guest);
-  if (!channel) return std::unexpected{LiveError{channel.error().message, 3}};
-  access.channel_.emplace(std::move(*channel));
-  return access;
 }
 
-std::expected<std::vector<LssResult>, LiveError> LssAccess::run(
-    std::span<const LssCommand> commands) {
+std::vector<LssResult> LssAccess::run(std::span<const LssCommand> commands) {
   return daemon_ ? ask(commands) : talk(commands);
 }
 
-std::expected<std::vector<LssResult>, LiveError> LssAccess::ask(
-    std::span<const LssCommand> commands) {
-  request_t request{};
-  request.service = "lss";
+std::vector<LssResult> LssAccess::ask(std::span<const LssCommand> commands) {
+  request_t request = make_request("lss");
   request.timeout_ms = options_.timeout_ms;
-  for (const LssCommand& command : commands) {
-    std::array<std::byte, lss_command_bytes> bytes{};
-    pack(command, bytes);
-    for (const std::byte byte : bytes) request.data.push_back(std::to_integer<std::uint8_t>(byte));
+  std::vector<std::byte> packed(commands.size() * lss_command_bytes);
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    pack(commands[i], std::span{packed}.subspan(i * lss_command_bytes).first<lss_command_bytes>());
   }
-  request.size = static_cast<std::int32_t>(request.data.size());
-  const auto reply = daemon_->ask(
+  set_data(request, packed);
+  const reply_t reply = daemon_->ask(
       std::move(request), longest(commands, std::chrono::milliseconds{options_.timeout_ms}));
-  if (!reply) return std::unexpected{reply.error()};
-  if (reply->good == 0 && reply->data.empty()) return std::unexpected{LiveError{reply->text, 1}};
-  auto results = lss_results(std::as_bytes(std::span{reply->data}), commands);
+  if (reply.good == 0 && reply.data.empty()) throw Failure{reply.text, 1};
+  auto results = lss_results(std::as_bytes(std::span{reply.data}), commands);
   if (results) return std::move(*results);
-  if (reply->good == 0) return std::unexpected{LiveError{reply->text, 1}};
-  return std::unexpected{
-      LiveError{"the daemon of bus '" + daemon_->status().bus + "' " + results.error(), 3}};
+  if (reply.good == 0) throw Failure{reply.text, 1};
+  throw Failure{"the daemon of bus '" + daemon_->status().bus + "' " + results.error()};
 }
 
-std::expected<std::vector<LssResult>, LiveError> LssAccess::talk(
-    std::span<const LssCommand> commands) {
+std::vector<LssResult> LssAccess::talk(std::span<const LssCommand> commands) {
   LssRunner runner;
   runner.begin(commands, std::chrono::milliseconds{options_.timeout_ms});
   Outbox out;
   while (runner.running()) {
     runner.on_time(monotonic_now(), out);
     if (channel_->send(out.frames()).sent != out.frames().size()) {
-      return std::unexpected{LiveError{"a frame could not be sent on " + options_.bus, 3}};
+      throw Failure{"a frame could not be sent on " + options_.bus};
     }
     out.clear();
     StampedFrame frame;
@@ -85,7 +71,7 @@ std::expected<std::vector<LssResult>, LiveError> LssAccess::talk(
     if (!channel_->receive(frame, pause)) continue;
     if (frame.frame.id == lss::answer_cob_id) runner.on_frame(frame.frame, monotonic_now(), out);
   }
-  return std::vector<LssResult>(runner.results().begin(), runner.results().end());
+  return {runner.results().begin(), runner.results().end()};
 }
 
 }  // namespace takt

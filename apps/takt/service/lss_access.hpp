@@ -1,5 +1,4 @@
 #pragma once
-#include <expected>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,18 +16,21 @@ struct LssAccessOptions {
   int timeout_ms = 0;  ///< time-out of each answer; 0 means the defaults
 };
 
-/// Runs LSS services through the daemon, or directly on a bus of this machine. CiA 305.
+/// Runs LSS services through the daemon, or directly on a bus of this machine. CiA 305. All
+/// functions throw a Failure if the daemon does not answer, or if the bus can't be used.
 class LssAccess {
  public:
-  static std::expected<LssAccess, LiveError> open(const LssAccessOptions& options);
+  explicit LssAccess(const LssAccessOptions& options);
 
   /// Runs the services one after the other and stops at the first that fails. Returns the results
   /// of the services that ran; the last result gives the reason of a failure.
-  std::expected<std::vector<LssResult>, LiveError> run(std::span<const LssCommand> commands);
+  std::vector<LssResult> run(std::span<const LssCommand> commands);
+  /// Runs one service and returns its result.
+  LssResult run(const LssCommand& command) { return run(std::span{&command, 1}).back(); }
 
  private:
-  std::expected<std::vector<LssResult>, LiveError> ask(std::span<const LssCommand> commands);
-  std::expected<std::vector<LssResult>, LiveError> talk(std::span<const LssCommand> commands);
+  std::vector<LssResult> ask(std::span<const LssCommand> commands);
+  std::vector<LssResult> talk(std::span<const LssCommand> commands);
 
   LssAccessOptions options_;
   std::optional<DaemonClient> daemon_;

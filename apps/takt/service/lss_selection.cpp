@@ -1,7 +1,6 @@
 #include "apps/takt/service/lss_selection.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -15,7 +14,7 @@ constexpr std::array<const char*, 4> part_names{"vendor_id", "product_code", "re
 std::optional<LssAddress> whole_address(const LssOptions& options) {
   LssAddress address{};
   for (std::size_t i = 0; i < 4; ++i) {
-    const auto value = lss_number(options.parts[i]);
+    const auto value = parse_unsigned(options.parts[i]);
     if (!value) return {};
     address[i] = *value;
   }
@@ -24,21 +23,11 @@ std::optional<LssAddress> whole_address(const LssOptions& options) {
 
 }  // namespace
 
-std::optional<std::uint32_t> lss_number(std::string_view text) {
-  const bool hex = text.starts_with("0x") || text.starts_with("0X");
-  if (hex) text.remove_prefix(2);
-  std::uint32_t value = 0;
-  const auto [end, error] =
-      std::from_chars(text.data(), text.data() + text.size(), value, hex ? 16 : 10);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return {};
-  return value;
-}
-
 std::optional<LssRange> lss_range(const std::string& text) {
   if (text.empty()) return LssRange{0, 0xFFFF'FFFF};
   const std::size_t dash = text.find('-');
-  const auto from = lss_number(text.substr(0, dash));
-  const auto to = dash == std::string::npos ? from : lss_number(text.substr(dash + 1));
+  const auto from = parse_unsigned(text.substr(0, dash));
+  const auto to = dash == std::string::npos ? from : parse_unsigned(text.substr(dash + 1));
   if (!from || !to || *from > *to) return {};
   return LssRange{*from, *to};
 }
@@ -57,7 +46,7 @@ nlohmann::json device_json(const LssAddress& address) {
 LssCommand fast_scan(const LssOptions& options) {
   LssCommand scan{.op = LssOp::fast_scan};
   for (std::size_t i = 0; i < 4; ++i) {
-    const auto value = lss_number(options.parts[i]);
+    const auto value = parse_unsigned(options.parts[i]);
     scan.numbers[i] = value.value_or(0);
     scan.numbers[4 + i] = value ? ~std::uint32_t{0} : 0;
   }

@@ -30,8 +30,6 @@ struct LssRange {
   std::uint32_t to = 0;
 };
 
-/// Parses a number, decimal or hex with 0x. Returns std::nullopt if the text is none.
-std::optional<std::uint32_t> lss_number(std::string_view text);
 /// Parses a number or a range `A-B`. An empty text means all numbers. Returns std::nullopt if the
 /// text is no range.
 std::optional<LssRange> lss_range(const std::string& text);

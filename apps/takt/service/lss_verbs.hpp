@@ -5,7 +5,7 @@
 
 namespace takt {
 
-// The verbs of `takt lss`. Each returns the exit code.
+// The verbs of `takt lss`. Each returns the exit code, or throws a Failure.
 
 /// Finds devices without node-ID with Fastscan, one after the other. A found device stays in
 /// configuration state until the end, so that it does not answer the next scan. Devices that were
@@ -25,8 +25,8 @@ int lss_store(const LssOptions& options);
 /// Switches all devices to configuration state or to waiting state.
 int lss_switch(const LssOptions& options);
 
-/// Prints the sentence of an error and returns its exit code.
-int lss_failed(const LiveError& error);
+/// Throws a Failure if the service did not succeed.
+void require_done(const LssResult& result);
 void lss_print(const nlohmann::json& json);
 
 }  // namespace takt

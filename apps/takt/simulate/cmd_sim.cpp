@@ -1,13 +1,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <csignal>
 #include <iostream>
 #include <thread>
 
 #include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/duration.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/command_line/finding_text.hpp"
+#include "apps/command_line/interrupt.hpp"
 #include "apps/command_line/whole_number.hpp"
 #include "apps/takt/simulate/device_channel.hpp"
 #include "apps/takt/simulate/fault_file.hpp"
@@ -26,12 +27,7 @@ struct Arguments {
   std::uint64_t seed = 1;
 };
 
-volatile std::sig_atomic_t interrupted = 0;
-
-extern "C" void interrupt(int) { interrupted = 1; }
-
-/// Returns all devices, or those that `--only` names. If a name is unknown, prints an error and
-/// returns an empty list.
+/// Returns all devices, or those that `--only` names. Throws a Failure if a name is unknown.
 std::vector<DeviceTable> chosen(const LoadedNetwork& network, const Arguments& arguments) {
   if (arguments.only.empty()) return network.devices;
   std::vector<DeviceTable> devices;
@@ -40,10 +36,9 @@ std::vector<DeviceTable> chosen(const LoadedNetwork& network, const Arguments& a
       return device.name == wanted || std::to_string(device.node.value()) == wanted;
     });
     if (found == network.devices.end()) {
-      std::cerr << "takt sim: no node `" << wanted << "` in " << arguments.network << "; there are";
-      for (const DeviceTable& device : network.devices) std::cerr << ' ' << device.name;
-      std::cerr << '\n';
-      return {};
+      std::string sentence = "no node `" + wanted + "` in " + arguments.network + "; there are";
+      for (const DeviceTable& device : network.devices) sentence += ' ' + device.name;
+      throw Failure{sentence, 2};
     }
     devices.push_back(*found);
   }
@@ -52,11 +47,10 @@ std::vector<DeviceTable> chosen(const LoadedNetwork& network, const Arguments& a
 
 /// Runs the devices until SIGINT, SIGTERM, the time limit or a failure of the bus.
 int run_world(sim::RealtimeWorld& world, std::optional<Time> limit) {
-  std::signal(SIGINT, interrupt);
-  std::signal(SIGTERM, interrupt);
+  const Interrupt interrupt;
   world.start();
   const auto start = std::chrono::steady_clock::now();
-  while (interrupted == 0 && !world.failed()) {
+  while (!Interrupt::asked() && !world.failed()) {
     if (limit && std::chrono::steady_clock::now() - start >= *limit) break;
     std::this_thread::sleep_for(std::chrono::milliseconds{20});
   }
@@ -67,30 +61,22 @@ int run_world(sim::RealtimeWorld& world, std::optional<Time> limit) {
 
 int run(const Arguments& arguments) {
   const LoadedNetwork network = load_network(arguments.network);
-  for (const Finding& finding : network.findings) std::cerr << finding_text(finding) << '\n';
-  if (has_error(network.findings)) return 2;
+  if (print_findings(network.findings)) return 2;
   const std::vector<DeviceTable> devices = chosen(network, arguments);
-  if (devices.empty()) return 2;
+  if (devices.empty()) throw Failure{arguments.network + " has no nodes", 2};
   // Whether the interface follows a change of the bit rate is not known here.
   sim::WorldOptions options{
       .seed = arguments.seed, .bitrate = network.plan.bitrate, .one_bit_rate = false};
   if (!arguments.faults.empty()) {
     FaultFile file = read_fault_file(arguments.faults, network.plan);
-    for (const Finding& finding : file.findings) std::cerr << finding_text(finding) << '\n';
-    if (has_error(file.findings)) return 2;
+    if (print_findings(file.findings)) return 2;
     options.faults = std::move(file.faults);
   }
   const std::string bus = arguments.bus.empty() ? network.plan.interface : arguments.bus;
   if (bus.empty()) {
-    std::cerr << "takt sim: the network file names no interface; give one: --bus vcan0\n";
-    return 2;
+    throw Failure{"the network file names no interface; give one: --bus vcan0", 2};
   }
-  auto opened = FrameChannel::open(bus);
-  if (!opened) {
-    std::cerr << "takt sim: " << opened.error().message << '\n';
-    return 3;
-  }
-  DeviceChannel channel{std::move(*opened)};
+  DeviceChannel channel{value_or_fail(takt::FrameChannel::open(bus), 3)};
   sim::RealtimeWorld world{devices, std::move(options), channel};
   std::cerr << "takt sim: " << devices.size() << " devices on " << bus << '\n';
   return run_world(world, parse_duration(arguments.run_for));
@@ -106,9 +92,7 @@ void add_sim(CLI::App& app, int& exit_code) {
   command->add_option("--only", arguments->only, "simulate only these nodes, by name or number")
       ->delimiter(',');
   command->add_option("--for", arguments->run_for, "end after this time; default: run until SIGINT")
-      ->check([](const std::string& text) {
-        return parse_duration(text) ? "" : "'" + text + "' is not a time like 10s";
-      });
+      ->check(duration_trouble);
   command->add_option("--faults", arguments->faults,
                       "file that lists faults and their times (YAML)");
   add_number(*command, "--seed", arguments->seed, "seed of the random parts")

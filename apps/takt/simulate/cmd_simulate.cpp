@@ -22,18 +22,13 @@ struct Arguments {
   bool json = false;
 };
 
-bool announce(const Findings& findings) {
-  for (const Finding& finding : findings) std::cerr << finding_text(finding) << '\n';
-  return has_error(findings);
-}
-
 int run(Arguments& arguments) {
   const LoadedNetwork network = load_network(arguments.network);
-  if (announce(network.findings)) return 2;
+  if (print_findings(network.findings)) return 2;
   SimulationOptions& options = arguments.simulation;
   if (!arguments.faults.empty()) {
     FaultFile file = read_fault_file(arguments.faults, network.plan, options.applications);
-    if (announce(file.findings)) return 2;
+    if (print_findings(file.findings)) return 2;
     options.faults = std::move(file.faults);
     options.programs = std::move(file.programs);
   }
@@ -55,10 +50,6 @@ int run(Arguments& arguments) {
   return outcome.mandatory_failed ? 4 : 0;
 }
 
-std::string check_duration(const std::string& text) {
-  return parse_duration(text) ? "" : "'" + text + "' is not a time like 100s, 500ms or 2h";
-}
-
 }  // namespace
 
 void add_simulate(CLI::App& app, int& exit_code) {
@@ -66,7 +57,7 @@ void add_simulate(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("simulate", "runs the master and its devices in virtual time");
   command->add_option("NET.yaml", arguments->network, "network file")->required();
   command->add_option("--for", arguments->run_for, "simulated time until the ordered stop")
-      ->check(check_duration)
+      ->check(duration_trouble)
       ->capture_default_str();
   add_number(*command, "--seed", arguments->simulation.seed, "seed; equal seeds give equal runs")
       ->capture_default_str();
@@ -79,7 +70,7 @@ void add_simulate(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(std::size_t{1}, most_applications))
       ->excludes(move);
   command->add_option("--jitter", arguments->jitter, "how late the simulated master's thread wakes")
-      ->check(check_duration)
+      ->check(duration_trouble)
       ->capture_default_str();
   command->add_option("--candump", arguments->simulation.candump, "write all frames to this file");
   command->add_flag("--json", arguments->json,
@@ -100,14 +91,7 @@ void add_simulate(CLI::App& app, int& exit_code) {
       "  takt simulate share/demo/two_axes.yaml --for 100s --move\n"
       "  takt simulate share/demo/two_axes.yaml --applications 2 --faults crash.yaml\n"
       "  takt simulate lift.yaml --for 1h --seed 7 --faults bad_day.yaml --json");
-  command->callback([arguments, &exit_code] {
-    try {
-      exit_code = run(*arguments);
-    } catch (const std::exception& exception) {
-      std::cerr << "takt simulate: " << exception.what() << '\n';
-      exit_code = 2;
-    }
-  });
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace takt
