@@ -17,17 +17,12 @@ constexpr std::array<const char*, 4> states{"pre-operational", "operational", "s
 std::string ms_text(Time time) { return std::to_string(time / milliseconds{1}) + " ms"; }
 
 std::string words(const NodeAudit& node) {
-  switch (node.verdict) {
-    case Failsafe::harmless:
-      return "has no outputs";
-    case Failsafe::stops:
-      return (node.drive ? "stops" : "its outputs go to their error values") +
-             (node.notices ? ", at the latest " + ms_text(*node.notices) + " later"
-                           : std::string{});
-    case Failsafe::unspecified:
-      return "notices it; the EDS does not say what the outputs do";
-    case Failsafe::goes_on:
-      break;
+  using enum Failsafe;
+  if (node.verdict == harmless) return "has no outputs";
+  if (node.verdict == unspecified) return "notices it; the EDS does not say what the outputs do";
+  if (node.verdict == stops) {
+    return (node.drive ? "stops" : "its outputs go to their error values") +
+           (node.notices ? ", at the latest " + ms_text(*node.notices) + " later" : std::string{});
   }
   if (node.how.empty()) return "KEEPS ITS LAST SET-POINTS for ever: the device does not notice";
   return "KEEPS ITS LAST SET-POINTS for ever, although the device notices";

@@ -1,17 +1,10 @@
 #include "apps/takt/audit/device_values.hpp"
 
+#include <fmt/format.h>
 #include <span>
 
 namespace takt {
 namespace {
-
-std::uint64_t number_of(std::span<const std::byte> bytes) {
-  std::uint64_t number = 0;
-  for (std::size_t i = 0; i < bytes.size() && i < sizeof number; ++i) {
-    number |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
-  }
-  return number;
-}
 
 bool writes(BootAction action) {
   using enum BootAction;
@@ -24,6 +17,14 @@ bool is_writable(const DeviceObject& object) {
 }
 
 }  // namespace
+
+std::uint64_t number_of(std::span<const std::byte> bytes) noexcept {
+  std::uint64_t number = 0;
+  for (std::size_t i = 0; i < bytes.size() && i < sizeof number; ++i) {
+    number |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
+  }
+  return number;
+}
 
 DeviceValues::DeviceValues(const NodePlan& node, const DeviceTable& device) {
   for (const DeviceObject& object : device.objects) {
@@ -53,9 +54,9 @@ void DeviceValues::answered(ObjectKey key, std::span<const std::byte> bytes) {
   const std::uint64_t value = number_of(bytes);
   const auto known = values_.find(key);
   if (known != values_.end() && known->second != value) {
-    note(to_string(key) + " is " + hex(static_cast<std::uint32_t>(value), 2) +
-         " in the device, but " + hex(static_cast<std::uint32_t>(known->second), 2) +
-         " by network file and EDS");
+    note(fmt::format("{} is {} in the device, but {} by network file and EDS", to_string(key),
+                     hex(static_cast<std::uint32_t>(value), 2),
+                     hex(static_cast<std::uint32_t>(known->second), 2)));
   }
   values_[key] = value;
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
 
 #include "apps/takt/audit/reaction.hpp"
 
@@ -16,8 +17,9 @@ std::string braked(std::optional<int> code, std::string_view object) {
                                             ", at the voltage limit"};
   const int way = *code >= 5 && *code <= 8 && object == "605A" ? *code - 4 : *code;
   const bool known = way >= 0 && way < std::ssize(ways);
-  return (known ? ways[static_cast<std::size_t>(way)] : ", as the manufacturer defines") +
-         (" (" + std::string{object}) + " = " + std::to_string(*code) + ")";
+  return fmt::format("{} ({} = {})",
+                     known ? ways[static_cast<std::size_t>(way)] : ", as the manufacturer defines",
+                     object, *code);
 }
 
 class Axis {
@@ -54,8 +56,7 @@ class Axis {
     const ObjectKey code{at(0x6007), 0};
     for (const int value : {3, 1, 2}) {
       if (!values_.takes(code, value)) continue;
-      reaction.remedy.push_back("{index: " + hex(code.index) + ", value: " + std::to_string(value) +
-                                "}");
+      reaction.remedy.push_back(fmt::format("{{index: {}, value: {}}}", hex(code.index), value));
       return reaction;
     }
     reaction.fixed.push_back(code);

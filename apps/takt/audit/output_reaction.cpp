@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
+#include <set>
 
 #include "apps/takt/audit/reaction.hpp"
 
@@ -82,8 +84,7 @@ class Outputs {
       return;
     }
     const std::uint64_t taken = *mode & kind.all;
-    const std::string tail =
-        " (" + hex(kind.mode).substr(2) + " = " + number_text(kind, *mode) + ")";
+    const std::string tail = fmt::format(" ({:04X} = {})", kind.mode, number_text(kind, *mode));
     if (taken == kind.all) {
       fate.verdict = Failsafe::stops;
       fate.text = "goes to " + number_text(kind, *value & (kind.mask ? kind.all : ~0ULL)) + tail;
@@ -97,9 +98,8 @@ class Outputs {
       fixed_.push_back(mode_key);
       return;
     }
-    remedy_.push_back("{index: " + hex(kind.mode) +
-                      ", sub_index: " + std::to_string(fate.first.sub) +
-                      ", value: " + number_text(kind, kind.all) + "}");
+    remedy_.push_back(fmt::format("{{index: {}, sub_index: {}, value: {}}}", hex(kind.mode),
+                                  fate.first.sub, number_text(kind, kind.all)));
   }
 
   const DeviceValues& values_;
@@ -112,14 +112,10 @@ class Outputs {
 }  // namespace
 
 Reaction output_reaction(const BusPlan& plan, std::size_t node_index, const DeviceValues& values) {
-  std::vector<ObjectKey> commanded;
-  for (std::size_t i = plan.layout.inputs; i < plan.layout.signals.size(); ++i) {
-    const Signal& signal = plan.layout.signals[i];
-    if (signal.node_index == node_index) commanded.push_back(signal.object);
+  std::set<ObjectKey> commanded;
+  for (const Signal& signal : plan.layout.signals) {
+    if (signal.output && signal.node_index == node_index) commanded.insert(signal.object);
   }
-  std::ranges::sort(commanded);
-  const auto twice = std::ranges::unique(commanded);
-  commanded.erase(twice.begin(), twice.end());
   Outputs outputs{values};
   for (const ObjectKey& output : commanded) outputs.add(output);
   return outputs.take();

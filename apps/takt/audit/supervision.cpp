@@ -1,6 +1,7 @@
 #include "apps/takt/audit/supervision.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <string>
 
 namespace takt {
@@ -36,12 +37,12 @@ class Finder {
       const bool of_master = ((entry >> 16) & 0xFF) == plan_.master_id.value();
       if (!of_master || (entry & 0xFFFF) == 0) continue;
       const std::string name = to_string(ObjectKey{0x1016, sub});
-      if (plan_.master_heartbeat == Time{}) {
+      if (plan_.master_heartbeat != Time{}) {
+        notice(milliseconds{entry & 0xFFFF}, "no heartbeat of the master arrives (" + name + ")");
+      } else {
         found_.besides.push_back(name +
                                  " watches the master, but the master produces no heartbeat");
-        continue;
       }
-      notice(milliseconds{entry & 0xFFFF}, "no heartbeat of the master arrives (" + name + ")");
     }
   }
 
@@ -61,16 +62,12 @@ class Finder {
     if (period == 0 || !plan_.cycle.sync || heard) return;
     const std::string known =
         "the device expects SYNC every " + std::to_string(period) + " us (1006)";
-    if (plan_.cycle.sync_followed) {
-      found_.besides.push_back(known + "; another device produces SYNC, also without the master");
-      return;
-    }
-    if (node_.on_sync_loss.empty()) {
-      found_.besides.push_back(known + "; for the effect of a missing SYNC see the manual");
-      return;
-    }
-    found_.besides.push_back(known + ": without SYNC " + node_.on_sync_loss);
-    found_.by_sync = true;
+    found_.by_sync = !plan_.cycle.sync_followed && !node_.on_sync_loss.empty();
+    found_.besides.push_back(known +
+                             (found_.by_sync ? ": without SYNC " + node_.on_sync_loss
+                              : plan_.cycle.sync_followed
+                                  ? "; another device produces SYNC, also without the master"
+                                  : "; for the effect of a missing SYNC see the manual"));
   }
 
   /// Reports the deadlines of RPDOs. An expired deadline causes an EMCY; CiA 301 requires no
@@ -81,9 +78,10 @@ class Finder {
       const ObjectKey timer{static_cast<std::uint16_t>(0x1400 + row.number - 1), 5};
       const std::uint64_t deadline = values_.get(timer).value_or(0);
       if (deadline == 0) continue;
-      found_.besides.push_back("RPDO" + std::to_string(row.number) + " has a deadline of " +
-                               std::to_string(deadline) + " ms (" + to_string(timer) +
-                               "): the device sends EMCY 0x8250; for other effects see the manual");
+      found_.besides.push_back(fmt::format(
+          "RPDO{} has a deadline of {} ms ({}): the device sends EMCY 0x8250; for other "
+          "effects see the manual",
+          row.number, deadline, to_string(timer)));
     }
   }
 

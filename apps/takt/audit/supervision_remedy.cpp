@@ -1,7 +1,6 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
+#include <fmt/format.h>
 #include <optional>
 #include <string>
 
@@ -27,178 +26,171 @@ double multiplier_of(const NodePlan& node) {
          static_cast<double>(node.heartbeat_period.count());
 }
 
-/// Returns the entry of 0x1016 that the boot would write.
-std::int64_t consumer_entry(const BusPlan& plan, const NodePlan& node) {
-  const std::int64_t ms = plan.master_heartbeat == Time{} ? usual_heartbeat_ms
-                                                          : plan.master_heartbeat / milliseconds{1};
-  const double accepted =
-      std::min(longest_consumer_ms, std::ceil(static_cast<double>(ms) * multiplier_of(node)));
-  return (std::int64_t{plan.master_id.value()} << 16) | static_cast<std::int64_t>(accepted);
-}
-
-bool is_of_master(const BusPlan& plan, std::uint64_t entry) {
-  return ((entry >> 16) & 0xFF) == plan.master_id.value() && (entry & 0xFFFF) != 0;
-}
-
 /// Use of an entry of 0x1016, as the master sees it.
 enum class Entry : std::uint8_t { of_master, watches_nobody, of_another };
 
-Entry entry_of(const BusPlan& plan, const DeviceValues& values, std::uint8_t sub) {
-  const std::uint64_t entry = values.get({0x1016, sub}).value_or(0);
-  const std::uint64_t node = (entry >> 16) & 0xFF;
-  if (node == plan.master_id.value()) return Entry::of_master;
-  const bool watches = node != 0 && node <= 127 && (entry & 0xFFFF) != 0;
-  return watches ? Entry::of_another : Entry::watches_nobody;
-}
+class Adviser {
+ public:
+  Adviser(const BusPlan& plan, const NodePlan& node, const DeviceValues& values)
+      : plan_{plan},
+        node_{node},
+        values_{values},
+        entries_{static_cast<std::uint8_t>(
+            std::min<std::uint64_t>(values.get({0x1016, 0}).value_or(0), 127))} {}
 
-std::uint8_t entries_of(const DeviceValues& values) {
-  const auto count = std::min<std::uint64_t>(values.get({0x1016, 0}).value_or(0), 127);
-  return static_cast<std::uint8_t>(count);
-}
-
-/// Returns the entry that the boot chooses: the one for the master, or else the first that watches
-/// nobody.
-std::optional<std::uint8_t> chosen_entry(const BusPlan& plan, const DeviceValues& values) {
-  std::optional<std::uint8_t> unused;
-  for (std::uint8_t sub = 1; sub <= entries_of(values); ++sub) {
-    const Entry entry = entry_of(plan, values, sub);
-    if (entry == Entry::of_master) return sub;
-    if (entry == Entry::watches_nobody && !unused) unused = sub;
+  SupervisionRemedy run() {
+    if (!node_.boot) remedy_.node.emplace_back(boot_line);
+    if (watch_heartbeat()) return std::move(remedy_);
+    if (entries_ != 0 && !chosen_entry()) {
+      remedy_.why =
+          "each entry of 1016 watches another node: the device can't watch the master's heartbeat";
+    } else if (values_.has(0x1016)) {
+      remedy_.why =
+          "1016 can't be written, or by the limits of the EDS does not hold the master's node id "
+          "and a time: the device can't watch the master's heartbeat";
+    }
+    watch_guarding();
+    return std::move(remedy_);
   }
-  return unused;
-}
 
-/// Returns the first entry that watches nobody and that accepts the master's node-ID and time.
-std::optional<std::uint8_t> wide_entry(const BusPlan& plan, const NodePlan& node,
-                                       const DeviceValues& values) {
-  for (std::uint8_t sub = 1; sub <= entries_of(values); ++sub) {
-    const bool unused = entry_of(plan, values, sub) == Entry::watches_nobody;
-    if (unused && values.takes({0x1016, sub}, consumer_entry(plan, node))) return sub;
+ private:
+  /// Returns the first entry of 0x1016 for which `fits` is true.
+  template <class Fits>
+  std::optional<std::uint8_t> first_entry(const Fits& fits) const {
+    for (std::uint8_t sub = 1; sub <= entries_; ++sub) {
+      if (fits(sub)) return sub;
+    }
+    return std::nullopt;
   }
-  return std::nullopt;
-}
 
-std::uint64_t number_of(const BootStep& step) {
-  std::uint64_t number = 0;
-  for (std::size_t i = 0; i < step.value.size() && i < sizeof number; ++i) {
-    number |= std::to_integer<std::uint64_t>(step.value[i]) << (8 * i);
+  Entry use_of(std::uint8_t sub) const {
+    const std::uint64_t entry = values_.get({0x1016, sub}).value_or(0);
+    const std::uint64_t node = (entry >> 16) & 0xFF;
+    if (node == plan_.master_id.value()) return Entry::of_master;
+    const bool watches = node != 0 && node <= 127 && (entry & 0xFFFF) != 0;
+    return watches ? Entry::of_another : Entry::watches_nobody;
   }
-  return number;
-}
 
-/// Returns true if the boot writes a value into this entry of 0x1016 with which the device does not
-/// watch the master. `sdo` of the network file does that. A value of a DCF gives way to the
-/// boot's own value.
-bool is_overwritten(const BusPlan& plan, const NodePlan& node, std::uint8_t sub) {
-  return std::ranges::any_of(node.boot_plan.steps, [&](const BootStep& step) {
-    return step.object == ObjectKey{0x1016, sub} && !is_of_master(plan, number_of(step)) &&
-           !step.purpose.starts_with("DCF: ");
-  });
-}
-
-std::string explicit_entry(const BusPlan& plan, const NodePlan& node, std::uint8_t sub) {
-  std::array<char, 96> line{};
-  std::snprintf(line.data(), line.size(),
-                "sdo: [{index: 0x1016, sub_index: %u, value: 0x%06X}]   # watches the master",
-                unsigned{sub}, static_cast<unsigned>(consumer_entry(plan, node)));
-  return line.data();
-}
-
-/// Returns the first entry to which `sdo` of the network file gives another node, and which accepts
-/// the master's node-ID and time.
-std::optional<std::uint8_t> given_away(const BusPlan& plan, const NodePlan& node,
-                                       const DeviceValues& values) {
-  for (std::uint8_t sub = 1; sub <= entries_of(values); ++sub) {
-    if (!is_overwritten(plan, node, sub)) continue;
-    if (values.takes({0x1016, sub}, consumer_entry(plan, node))) return sub;
+  /// Returns the value of the entry that the boot would write.
+  std::int64_t consumer_entry() const {
+    const std::int64_t ms = plan_.master_heartbeat == Time{}
+                                ? usual_heartbeat_ms
+                                : plan_.master_heartbeat / milliseconds{1};
+    const double accepted =
+        std::min(longest_consumer_ms, std::ceil(static_cast<double>(ms) * multiplier_of(node_)));
+    return (std::int64_t{plan_.master_id.value()} << 16) | static_cast<std::int64_t>(accepted);
   }
-  return std::nullopt;
-}
 
-/// Adds the lines without which the boot does not write the master into 0x1016.
-void let_boot_write_consumer(const BusPlan& plan, const NodePlan& node, SupervisionRemedy& remedy) {
-  if (plan.master_heartbeat == Time{}) remedy.master = master_line;
-  if (node.consumes_master) return;
-  remedy.node.emplace_back("heartbeat_consumer: true   # 1016: the device watches the master");
-}
-
-/// Adds the lines for a device whose entries of 0x1016 all watch other nodes. Returns false if the
-/// network file can't free one of them.
-bool free_an_entry(const BusPlan& plan, const NodePlan& node, const DeviceValues& values,
-                   SupervisionRemedy& remedy) {
-  const auto entry = given_away(plan, node, values);
-  if (!entry) return false;
-  let_boot_write_consumer(plan, node, remedy);
-  remedy.removal = "each entry of 1016 watches another node, and `sdo` in the network file sets " +
-                   to_string(ObjectKey{0x1016, *entry}) +
-                   ": remove it there, then takt writes the master into the entry, and the device "
-                   "watches that other node no longer";
-  return true;
-}
-
-/// Adds the lines with which the device watches the guarding requests of the master. A guard plan
-/// without retries says that only `retry_factor: 0` keeps the master from guarding the node.
-void watch_guarding(const NodePlan& node, const DeviceValues& values, SupervisionRemedy& remedy) {
-  if (node.boot && node.guard.retries == 0) {
-    remedy.node.emplace_back(
-        "retry_factor: 3   # with 0 the master does not guard; in addition to life_time_factor");
-  } else if (node.boot && node.guard.period != Time{} &&
-             values.takes({0x100D, 0}, life_time_factor)) {
-    remedy.node.emplace_back("life_time_factor: 3   # life guarding notices a dead master");
-  } else if (values.takes({0x100C, 0}, guard_ms) && values.takes({0x100D, 0}, life_time_factor)) {
-    remedy.node.emplace_back("heartbeat_producer: 0");
-    remedy.node.emplace_back("guard_time: 100   # ms");
-    remedy.node.emplace_back("life_time_factor: 3   # life guarding notices a dead master");
-  } else {
-    remedy.node.clear();
+  /// Returns true if the entry accepts the master's node-ID and time.
+  bool takes_master(std::uint8_t sub) const {
+    return values_.takes({0x1016, sub}, consumer_entry());
   }
-}
 
-/// Adds the lines with which the device watches the heartbeat of the master. Returns false if no
-/// entry of 0x1016 can do that.
-bool watch_heartbeat(const BusPlan& plan, const NodePlan& node, const DeviceValues& values,
-                     SupervisionRemedy& remedy) {
-  const auto chosen = chosen_entry(plan, values);
-  if (!chosen) return free_an_entry(plan, node, values, remedy);
-  const bool by_default = values.takes({0x1016, *chosen}, consumer_entry(plan, node));
-  const auto wide = by_default ? std::nullopt : wide_entry(plan, node, values);
-  if (!by_default && !wide) return false;
-  if (wide) {
-    if (plan.master_heartbeat == Time{}) remedy.master = master_line;
-    remedy.why = "entry " + to_string(ObjectKey{0x1016, *chosen}) +
-                 " can't be written, or by the limits of the EDS does not hold the master's node "
-                 "id and a time, but another entry does: name that entry, or correct the EDS";
-    remedy.node.push_back(explicit_entry(plan, node, *wide));
+  /// Returns the entry that the boot chooses: the one for the master, or else the first that
+  /// watches nobody.
+  std::optional<std::uint8_t> chosen_entry() const {
+    const auto own = first_entry([this](auto sub) { return use_of(sub) == Entry::of_master; });
+    return own ? own
+               : first_entry([this](auto sub) { return use_of(sub) == Entry::watches_nobody; });
+  }
+
+  /// Returns true if the boot writes a value into this entry with which the device does not watch
+  /// the master. `sdo` of the network file does that. A value of a DCF gives way to the boot's own
+  /// value.
+  bool is_overwritten(std::uint8_t sub) const {
+    return std::ranges::any_of(node_.boot_plan.steps, [&](const BootStep& step) {
+      const std::uint64_t value = number_of(step.value);
+      const bool of_master =
+          ((value >> 16) & 0xFF) == plan_.master_id.value() && (value & 0xFFFF) != 0;
+      return step.object == ObjectKey{0x1016, sub} && !of_master &&
+             !step.purpose.starts_with("DCF: ");
+    });
+  }
+
+  /// Adds the lines without which the boot does not write the master into 0x1016.
+  void let_boot_write_consumer() {
+    if (plan_.master_heartbeat == Time{}) remedy_.master = master_line;
+    if (node_.consumes_master) return;
+    remedy_.node.emplace_back("heartbeat_consumer: true   # 1016: the device watches the master");
+  }
+
+  /// Adds the lines for a device whose entries of 0x1016 all watch other nodes. Returns false if
+  /// the network file can't free one of them.
+  bool free_an_entry() {
+    const auto entry =
+        first_entry([this](auto sub) { return is_overwritten(sub) && takes_master(sub); });
+    if (!entry) return false;
+    let_boot_write_consumer();
+    remedy_.removal =
+        "each entry of 1016 watches another node, and `sdo` in the network file sets " +
+        to_string(ObjectKey{0x1016, *entry}) +
+        ": remove it there, then takt writes the master into the entry, and the device watches "
+        "that other node no longer";
     return true;
   }
-  let_boot_write_consumer(plan, node, remedy);
-  if (is_overwritten(plan, node, *chosen)) {
-    remedy.removal =
-        "`sdo` in the network file sets " + to_string(ObjectKey{0x1016, *chosen}) +
-        " so that the entry does not watch the master: remove it there, then takt writes "
-        "the master into the entry";
+
+  /// Adds the lines with which the device watches the guarding requests of the master. A guard plan
+  /// without retries says that only `retry_factor: 0` keeps the master from guarding the node.
+  void watch_guarding() {
+    const bool takes_factor = values_.takes({0x100D, 0}, life_time_factor);
+    if (node_.boot && node_.guard.retries == 0) {
+      remedy_.node.emplace_back(
+          "retry_factor: 3   # with 0 the master does not guard; in addition to life_time_factor");
+    } else if (node_.boot && node_.guard.period != Time{} && takes_factor) {
+      remedy_.node.emplace_back("life_time_factor: 3   # life guarding notices a dead master");
+    } else if (values_.takes({0x100C, 0}, guard_ms) && takes_factor) {
+      remedy_.node.emplace_back("heartbeat_producer: 0");
+      remedy_.node.emplace_back("guard_time: 100   # ms");
+      remedy_.node.emplace_back("life_time_factor: 3   # life guarding notices a dead master");
+    } else {
+      remedy_.node.clear();
+    }
   }
-  return true;
-}
+
+  /// Adds the lines with which the device watches the heartbeat of the master. Returns false if no
+  /// entry of 0x1016 can do that.
+  bool watch_heartbeat() {
+    const auto chosen = chosen_entry();
+    if (!chosen) return free_an_entry();
+    const std::string name = to_string(ObjectKey{0x1016, *chosen});
+    if (!takes_master(*chosen)) return name_another_entry(name);
+    let_boot_write_consumer();
+    if (is_overwritten(*chosen)) {
+      remedy_.removal = "`sdo` in the network file sets " + name +
+                        " so that the entry does not watch the master: remove it there, then takt "
+                        "writes the master into the entry";
+    }
+    return true;
+  }
+
+  /// Adds the line for an entry that watches nobody and accepts the master, because the entry
+  /// `chosen` of the boot does not accept it. Returns false if there is no such entry.
+  bool name_another_entry(const std::string& chosen) {
+    const auto wide = first_entry(
+        [this](auto sub) { return use_of(sub) == Entry::watches_nobody && takes_master(sub); });
+    if (!wide) return false;
+    if (plan_.master_heartbeat == Time{}) remedy_.master = master_line;
+    remedy_.why = "entry " + chosen +
+                  " can't be written, or by the limits of the EDS does not hold the master's node "
+                  "id and a time, but another entry does: name that entry, or correct the EDS";
+    remedy_.node.push_back(fmt::format(
+        "sdo: [{{index: 0x1016, sub_index: {}, value: 0x{:06X}}}]   # watches the master", *wide,
+        consumer_entry()));
+    return true;
+  }
+
+  const BusPlan& plan_;
+  const NodePlan& node_;
+  const DeviceValues& values_;
+  std::uint8_t entries_;
+  SupervisionRemedy remedy_;
+};
 
 }  // namespace
 
 SupervisionRemedy supervision_remedy(const BusPlan& plan, std::size_t node_index,
                                      const DeviceValues& values) {
-  const NodePlan& node = plan.nodes[node_index];
-  SupervisionRemedy remedy;
-  if (!node.boot) remedy.node.emplace_back(boot_line);
-  if (watch_heartbeat(plan, node, values, remedy)) return remedy;
-  if (entries_of(values) != 0 && !chosen_entry(plan, values)) {
-    remedy.why =
-        "each entry of 1016 watches another node: the device can't watch the master's heartbeat";
-  } else if (values.has(0x1016)) {
-    remedy.why =
-        "1016 can't be written, or by the limits of the EDS does not hold the master's node id and "
-        "a time: the device can't watch the master's heartbeat";
-  }
-  watch_guarding(node, values, remedy);
-  return remedy;
+  return Adviser{plan, plan.nodes[node_index], values}.run();
 }
 
 }  // namespace takt
