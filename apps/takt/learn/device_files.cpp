@@ -1,10 +1,12 @@
 #include "apps/takt/learn/device_files.hpp"
 
 #include <algorithm>
+#include <ranges>
 #include <system_error>
 
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/read/eds.hpp"
+#include "eds_parser/report/text.hpp"
 
 namespace takt::learn {
 namespace {
@@ -18,10 +20,8 @@ std::uint32_t number_at(const ObjectDictionary& dictionary, ObjectKey key) {
 }
 
 bool is_device_file(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".eds" || extension == ".dcf";
+  const std::string extension = path.extension().string();
+  return same_word(extension, ".eds") || same_word(extension, ".dcf");
 }
 
 /// Returns the identity in a file. The values of [DeviceInfo] count only if the dictionary itself
@@ -40,10 +40,8 @@ SeenIdentity identity_of(const ObjectDictionary& dictionary) {
 }  // namespace
 
 SeenIdentity identity_of(const LearnedValues& values) {
-  const auto at = [&](ObjectKey key) -> std::uint32_t {
-    const auto found = values.find(key);
-    if (found == values.end() || !found->second.read) return 0;
-    return static_cast<std::uint32_t>(found->second.number().value_or(0));
+  const auto at = [&](ObjectKey key) {
+    return static_cast<std::uint32_t>(values.number_read(key).value_or(0));
   };
   return {.device_type = at({0x1000, 0}),
           .vendor_id = at({0x1018, 1}),
@@ -55,11 +53,10 @@ SeenIdentity identity_of(const LearnedValues& values) {
 void DeviceFiles::add_folder(const fs::path& folder, Findings& findings) {
   std::error_code error;
   std::vector<fs::path> paths;
-  // Subfolders that can't be opened are skipped.
-  constexpr auto what_is_shut = fs::directory_options::skip_permission_denied;
+  // Subfolders that can't be opened are skipped, but the folder itself must be open.
   fs::recursive_directory_iterator at;
   if (fs::directory_iterator{folder, error}; !error) {
-    at = fs::recursive_directory_iterator{folder, what_is_shut, error};
+    at = {folder, fs::directory_options::skip_permission_denied, error};
   }
   for (const fs::recursive_directory_iterator end; !error && at != end; at.increment(error)) {
     std::error_code ignored;
@@ -71,8 +68,8 @@ void DeviceFiles::add_folder(const fs::path& folder, Findings& findings) {
     findings.push_back({folder.string(), {}, Severity::error, "no-file", error.message()});
   }
   std::ranges::sort(paths);
-  Findings of_strangers;  // ignored: a folder may hold files that are no device files
-  for (const fs::path& path : paths) add_file(path, of_strangers);
+  Findings ignored;  // a folder may hold files that are no device files
+  for (const fs::path& path : paths) add_file(path, ignored);
 }
 
 bool DeviceFiles::add_file(const fs::path& file, Findings& findings) {
@@ -104,9 +101,8 @@ DeviceFiles::Match DeviceFiles::match(const fs::path& path, std::uint8_t node) {
 }
 
 std::vector<std::uint8_t> DeviceFiles::assigned() const {
-  std::vector<std::uint8_t> nodes;
-  for (const auto& [node, file] : assigned_) nodes.push_back(node);
-  return nodes;
+  const auto nodes = assigned_ | std::views::keys;
+  return {nodes.begin(), nodes.end()};
 }
 
 DeviceFiles::Match DeviceFiles::find(std::uint8_t node, const SeenIdentity& identity) const {

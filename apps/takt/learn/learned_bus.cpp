@@ -4,6 +4,7 @@
 #include <array>
 
 #include "apps/takt/learn/learned_pdos.hpp"
+#include "apps/takt/learn/sdo_value_text.hpp"
 
 namespace takt::learn {
 namespace {
@@ -22,9 +23,22 @@ const LearnedBoot* fullest(const std::vector<LearnedBoot>& boots) {
 
 std::optional<std::uint64_t> LearnedValue::number() const noexcept {
   if (last.empty() || last.size() > 8) return {};
-  std::uint64_t value = 0;
-  for (std::size_t i = last.size(); i-- > 0;) value = value << 8U | last[i];
-  return value;
+  return little_endian(last);
+}
+
+std::optional<std::uint64_t> LearnedValues::number(ObjectKey key) const noexcept {
+  const auto found = find(key);
+  return found == end() ? std::nullopt : found->second.number();
+}
+
+std::optional<std::uint64_t> LearnedValues::number_read(ObjectKey key) const noexcept {
+  const auto found = find(key);
+  return found == end() || !found->second.read ? std::nullopt : found->second.number();
+}
+
+std::optional<std::uint64_t> LearnedValues::number_written(ObjectKey key) const noexcept {
+  const auto found = find(key);
+  return found == end() || !found->second.written ? std::nullopt : found->second.number();
 }
 
 std::vector<LearnedWrite> LearnedNode::configuration() const {

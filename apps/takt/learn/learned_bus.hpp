@@ -30,7 +30,16 @@ struct LearnedValue {
   std::optional<std::uint64_t> number() const noexcept;
 };
 
-using LearnedValues = std::map<ObjectKey, LearnedValue>;
+/// Values of the objects of a device.
+struct LearnedValues : std::map<ObjectKey, LearnedValue> {
+  /// Returns the last value of an object as a number, or std::nullopt if it is no number or not
+  /// known.
+  std::optional<std::uint64_t> number(ObjectKey key) const noexcept;
+  /// Does the same for an object that the master has read.
+  std::optional<std::uint64_t> number_read(ObjectKey key) const noexcept;
+  /// Does the same for an object that the master has written.
+  std::optional<std::uint64_t> number_written(ObjectKey key) const noexcept;
+};
 
 /// Transfers from one reset or boot-up message to the next.
 struct LearnedBoot {

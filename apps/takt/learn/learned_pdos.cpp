@@ -9,8 +9,7 @@ namespace {
 
 template <class T>
 std::optional<T> at(const LearnedValues& values, ObjectKey key) {
-  const auto found = values.find(key);
-  const auto number = found == values.end() ? std::nullopt : found->second.number();
+  const auto number = values.number(key);
   return number ? std::optional{static_cast<T>(*number)} : std::nullopt;
 }
 
@@ -29,19 +28,16 @@ std::optional<std::vector<std::uint32_t>> entries(const LearnedValues& values, s
 }
 
 LearnedPdo pdo_of(const LearnedValues& values, std::uint16_t number, bool is_tpdo) {
-  const auto communication = static_cast<std::uint16_t>((is_tpdo ? 0x1800 : 0x1400) + number - 1);
-  const auto mapping = static_cast<std::uint16_t>(communication + 0x200);
-  LearnedPdo pdo{.number = number,
-                 .is_tpdo = is_tpdo,
-                 .cob_id = at<std::uint32_t>(values, {communication, 1}),
-                 .transmission = at<std::uint8_t>(values, {communication, 2}),
-                 .inhibit_time = at<std::uint16_t>(values, {communication, 3}),
-                 .timer = at<std::uint16_t>(values, {communication, 5}),
-                 .sync_start = at<std::uint8_t>(values, {communication, 6}),
-                 .count = at<std::uint8_t>(values, {mapping, 0}),
-                 .mapping = {}};
+  LearnedPdo pdo{.number = number, .is_tpdo = is_tpdo};
+  const std::uint16_t communication = pdo.communication_index();
+  pdo.cob_id = at<std::uint32_t>(values, {communication, 1});
+  pdo.transmission = at<std::uint8_t>(values, {communication, 2});
+  pdo.inhibit_time = at<std::uint16_t>(values, {communication, 3});
+  pdo.timer = at<std::uint16_t>(values, {communication, 5});
+  pdo.sync_start = at<std::uint8_t>(values, {communication, 6});
+  pdo.count = at<std::uint8_t>(values, {pdo.mapping_index(), 0});
   if (pdo.count && *pdo.count != 0 && *pdo.count <= 64) {
-    pdo.mapping = entries(values, mapping, *pdo.count);
+    pdo.mapping = entries(values, pdo.mapping_index(), *pdo.count);
   }
   return pdo;
 }

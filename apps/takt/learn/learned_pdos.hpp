@@ -11,16 +11,27 @@ namespace takt::learn {
 struct LearnedPdo {
   std::uint16_t number = 1;
   bool is_tpdo = false;
-  std::optional<std::uint32_t> cob_id;  ///< value of sub-index 1 with its flags
-  std::optional<std::uint8_t> transmission;
-  std::optional<std::uint16_t> inhibit_time;  ///< multiples of 100 us
-  std::optional<std::uint16_t> timer;         ///< sub-index 5, ms
-  std::optional<std::uint8_t> sync_start;
-  std::optional<std::uint8_t> count;                  ///< sub-index 0 of the mapping
-  std::optional<std::vector<std::uint32_t>> mapping;  ///< the first `count` entries; never empty
+  std::optional<std::uint32_t> cob_id{};  ///< value of sub-index 1 with its flags
+  std::optional<std::uint8_t> transmission{};
+  std::optional<std::uint16_t> inhibit_time{};  ///< multiples of 100 us
+  std::optional<std::uint16_t> timer{};         ///< sub-index 5, ms
+  std::optional<std::uint8_t> sync_start{};
+  std::optional<std::uint8_t> count{};                  ///< sub-index 0 of the mapping
+  std::optional<std::vector<std::uint32_t>> mapping{};  ///< the first `count` entries; never empty
+  std::uint16_t communication_index() const noexcept {
+    return static_cast<std::uint16_t>((is_tpdo ? 0x1800 : 0x1400) + number - 1);
+  }
+  std::uint16_t mapping_index() const noexcept {
+    return static_cast<std::uint16_t>(communication_index() + 0x200);
+  }
   bool enabled() const noexcept { return !cob_id || (*cob_id & 0x8000'0000U) == 0; }
   std::optional<CobId> identifier() const noexcept;
 };
+
+/// Returns the object of an entry of a mapping. Its lowest eight bits are the width.
+constexpr ObjectKey mapped_object(std::uint32_t entry) noexcept {
+  return {static_cast<std::uint16_t>(entry >> 16U), static_cast<std::uint8_t>(entry >> 8U & 0xFFU)};
+}
 
 /// Returns the PDOs of which the recording shows any parameter: first the RPDOs, then the TPDOs,
 /// each in ascending order.

@@ -51,39 +51,34 @@ bool is_signed_402(std::uint16_t index) {
 }
 
 DataType integer_of(unsigned bits, bool sign) {
-  switch (bits) {
-    case 1:
-      return DataType::boolean;
-    case 8:
-      return sign ? DataType::integer8 : DataType::unsigned8;
-    case 16:
-      return sign ? DataType::integer16 : DataType::unsigned16;
-    case 24:
-      return sign ? DataType::integer24 : DataType::unsigned24;
-    case 32:
-      return sign ? DataType::integer32 : DataType::unsigned32;
-    case 40:
-      return sign ? DataType::integer40 : DataType::unsigned40;
-    case 48:
-      return sign ? DataType::integer48 : DataType::unsigned48;
-    case 56:
-      return sign ? DataType::integer56 : DataType::unsigned56;
-    case 64:
-      return sign ? DataType::integer64 : DataType::unsigned64;
-    default:
-      return DataType::unknown;
-  }
+  using enum DataType;
+  constexpr std::array unsigned_types{unsigned8,  unsigned16, unsigned24, unsigned32,
+                                      unsigned40, unsigned48, unsigned56, unsigned64};
+  constexpr std::array signed_types{integer8,  integer16, integer24, integer32,
+                                    integer40, integer48, integer56, integer64};
+  if (bits == 1) return boolean;
+  if (bits == 0 || bits > 64 || bits % 8 != 0) return unknown;
+  return (sign ? signed_types : unsigned_types)[bits / 8 - 1];
 }
 
 bool is_text(const std::vector<std::uint8_t>& bytes) {
   return std::ranges::all_of(bytes, [](std::uint8_t c) { return c >= 0x20 && c < 0x7F; });
 }
 
+SubObject described(std::uint8_t sub, DataType type, Access access, std::string name) {
+  SubObject object;
+  object.sub = sub;
+  object.name = std::move(name);
+  object.type = type;
+  object.type_code = static_cast<std::uint16_t>(type);
+  object.access = access;
+  return object;
+}
+
 class EdsMaker {
  public:
   explicit EdsMaker(const LearnedNode& node) : values_{node.values()} {
-    const auto type = static_cast<std::uint16_t>(identity_of(values_).device_type & 0xFFFFU);
-    cia402_ = type == 402;
+    cia402_ = (identity_of(values_).device_type & 0xFFFFU) == 402;
     add_standard();
     if (node.heartbeats.median()) sub({0x1017, 0}, DataType::unsigned16, Access::rw);
     if (makes_sync()) {
@@ -115,11 +110,8 @@ class EdsMaker {
     const auto [at, is_new] = subs_.try_emplace(key);
     SubObject& sub = at->second;
     if (is_new) {
-      sub.sub = key.sub;
-      sub.type = type;
-      sub.type_code = static_cast<std::uint16_t>(type);
-      sub.access = access;
-      sub.name = key.sub == 0 ? object_name(key.index) : fmt::format("Entry {}", key.sub);
+      sub = described(key.sub, type, access,
+                      key.sub == 0 ? object_name(key.index) : fmt::format("Entry {}", key.sub));
     }
     return sub;
   }
@@ -133,10 +125,7 @@ class EdsMaker {
 
   /// Returns true if bit 30 of 0x1005 is set. Such a device has a SYNC period (0x1006) that can be
   /// written, even if the recording does not show a write.
-  bool makes_sync() const {
-    const auto found = values_.find({0x1005, 0});
-    return found != values_.end() && (found->second.number().value_or(0) >> 30U & 1U) != 0;
-  }
+  bool makes_sync() const { return (values_.number({0x1005, 0}).value_or(0) >> 30U & 1U) != 0; }
 
   void add_standard() {
     sub({0x1000, 0}, DataType::unsigned32, Access::ro);
@@ -171,9 +160,8 @@ class EdsMaker {
   }
 
   void add_pdo(const LearnedPdo& pdo) {
-    const auto communication =
-        static_cast<std::uint16_t>((pdo.is_tpdo ? 0x1800 : 0x1400) + pdo.number - 1);
-    const auto mapping = static_cast<std::uint16_t>(communication + 0x200);
+    const std::uint16_t communication = pdo.communication_index();
+    const std::uint16_t mapping = pdo.mapping_index();
     const auto parameter = [&](ObjectKey key, std::string value) {
       SubObject& entry = sub(key, standard_type(key), Access::rw);
       entry.access = Access::rw;
@@ -193,8 +181,7 @@ class EdsMaker {
   }
 
   void add_mapped(std::uint32_t entry, bool is_tpdo) {
-    const ObjectKey key{static_cast<std::uint16_t>(entry >> 16U),
-                        static_cast<std::uint8_t>(entry >> 8U & 0xFFU)};
+    const ObjectKey key = mapped_object(entry);
     if (key.index < 0x20) {
       dummies_.insert(key.index);
       return;
@@ -217,12 +204,8 @@ class EdsMaker {
     }
     object.type = ObjectType::record;
     if (object.subs.front().sub != 0) {
-      SubObject count;
-      count.name = "Highest sub-index";
-      count.type = DataType::unsigned8;
-      count.type_code = static_cast<std::uint16_t>(DataType::unsigned8);
-      count.access = Access::ro;
-      object.subs.insert(object.subs.begin(), count);
+      object.subs.insert(object.subs.begin(),
+                         described(0, DataType::unsigned8, Access::ro, "Highest sub-index"));
     }
     SubObject& first = object.subs.front();
     if (first.default_text.empty()) first.default_text = std::to_string(object.subs.back().sub);

@@ -45,7 +45,7 @@ class NetworkText {
 
   LearnedNetwork run() {
     find_master();
-    report_files_of_nobody();
+    report_files_without_node();
     for (const LearnedNode* node : devices_) find_file(*node);
     learn_sync();
     learn_time();
@@ -80,7 +80,7 @@ class NetworkText {
 
   /// Warns of files that the user gave for nodes that do not exist, like `--eds 5=FILE` without a
   /// node 5.
-  void report_files_of_nobody() {
+  void report_files_without_node() {
     for (const std::uint8_t id : files_.assigned()) {
       if (std::ranges::find(devices_, id, &LearnedNode::id) != devices_.end()) continue;
       announce(
@@ -192,11 +192,7 @@ class NetworkText {
     std::optional<std::uint64_t> period;
     for (const LearnedNode* node : devices_) {
       const LearnedValues values = node->values();
-      const auto at = [&](std::uint16_t index) -> std::optional<std::uint64_t> {
-        const auto found = values.find(ObjectKey{index, 0});
-        return found == values.end() || !found->second.written ? std::nullopt
-                                                               : found->second.number();
-      };
+      const auto at = [&](std::uint16_t index) { return values.number_written({index, 0}); };
       if (const auto id = at(0x1005)) {
         if ((*id & 0x2000'0000U) == 0) sync_.cob_id = static_cast<std::uint32_t>(*id & 0x7FFU);
         if ((*id & makes_sync) != 0) sync_.producer = node->id;
@@ -297,11 +293,9 @@ class NetworkText {
   bool is_emcy(CobId id) const {
     if (id.is_extended()) return false;
     return std::ranges::any_of(devices_, [&](const LearnedNode* node) {
-      const LearnedValues values = node->values();
-      const auto own = values.find({0x1014, 0});
-      const std::uint64_t set =
-          own == values.end() ? 0x80U + node->id : own->second.number().value_or(0);
-      return id.id() == 0x80U + node->id || id.id() == (set & 0x7FFU);
+      const unsigned usual = 0x80U + node->id;
+      const std::uint64_t set = node->values().number({0x1014, 0}).value_or(usual);
+      return id.id() == usual || id.id() == (set & 0x7FFU);
     });
   }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <ranges>
 
 #include "apps/takt/learn/learned_pdos.hpp"
 #include "apps/takt/learn/sdo_value_text.hpp"
@@ -19,8 +21,8 @@ constexpr std::uint32_t invalid_bit = 0x8000'0000;
 constexpr std::size_t most_comments = 40;
 
 std::string bytes_text(const std::vector<std::uint8_t>& bytes) {
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size() && i < 16; ++i) text += fmt::format(" {:02X}", bytes[i]);
+  if (bytes.empty()) return {};
+  const std::string text = fmt::format(" {:02X}", fmt::join(bytes | std::views::take(16), " "));
   return text + (bytes.size() > 16 ? fmt::format(" ... ({} bytes)", bytes.size()) : "");
 }
 
@@ -65,15 +67,8 @@ class NodeText {
                          fmt::format("node {}: {}", node_.id, std::move(message))});
   }
 
-  std::optional<std::uint64_t> number(ObjectKey key) const {
-    const auto found = values_.find(key);
-    return found == values_.end() ? std::nullopt : found->second.number();
-  }
-  /// Returns the number that the master wrote, or std::nullopt if it did not write the object.
-  std::optional<std::uint64_t> written(ObjectKey key) const {
-    const auto found = values_.find(key);
-    return found != values_.end() && found->second.written ? found->second.number() : std::nullopt;
-  }
+  std::optional<std::uint64_t> number(ObjectKey key) const { return values_.number(key); }
+  std::optional<std::uint64_t> written(ObjectKey key) const { return values_.number_written(key); }
   const SubObject* described(ObjectKey key) const {
     return what_.dictionary == nullptr ? nullptr : what_.dictionary->find(key);
   }
@@ -204,19 +199,19 @@ class NodeText {
       add(fmt::format("cob_id: 0x{:X}", id->id() | (id->is_extended() ? 0x2000'0000U : 0U)));
     }
     if (pdo.transmission) add(fmt::format("transmission: {}", *pdo.transmission));
-    const auto communication =
-        static_cast<std::uint16_t>((pdo.is_tpdo ? 0x1800 : 0x1400) + pdo.number - 1);
     const auto optional = [&](std::string_view key, std::uint8_t sub, const auto& value,
                               std::uint32_t unit = 1) {
-      const std::uint64_t known = what_.made ? 0 : described_number({communication, sub});
+      const std::uint64_t known =
+          what_.made ? 0 : described_number({pdo.communication_index(), sub});
       if (!value || *value == known) return;
       add(fmt::format("{}: {}", key, *value * unit));
     };
     optional("inhibit_time", 3, pdo.inhibit_time, what_.inhibit_unit_us / 100);
     optional(pdo.is_tpdo ? "event_timer" : "event_deadline", 5, pdo.timer);
     if (pdo.is_tpdo) optional("sync_start", 6, pdo.sync_start);
-    if (id && pdo.is_tpdo) add_poll(*id, add);
-    if (id && !pdo.is_tpdo && pdo.transmission.value_or(0) > 240) add_repetition(*id, add);
+    if (id && (pdo.is_tpdo || pdo.transmission.value_or(0) > 240)) {
+      if (const std::string key = period_key(*id, pdo.is_tpdo); !key.empty()) add(key);
+    }
     if (pdo.count == 0xFE || pdo.count == 0xFF) {
       add(pdo.count == 0xFE ? "mpdo: sam" : "mpdo: dam");
     }
@@ -227,25 +222,17 @@ class NodeText {
                          unknown ? "  the mapping is not in the recording" : "");
   }
 
-  /// Adds `event_timer` to an event-driven RPDO that the master sends at a steady period.
-  template <class Add>
-  void add_repetition(CobId id, const Add& add) {
+  /// Returns the key for an event-driven RPDO that the master sends at a steady period, or for a
+  /// TPDO that the master polls. Empty if the frames show no period.
+  std::string period_key(CobId id, bool is_tpdo) const {
     const auto traffic = bus_.traffic.find(id);
-    if (traffic == bus_.traffic.end()) return;
-    const auto period = traffic->second.frames.steady();
-    if (period && *period >= 1000) {
-      add(fmt::format("event_timer: {}",
-                      std::min<std::int64_t>(65535, as_configured(*period) / 1000)));
-    }
-  }
-
-  template <class Add>
-  void add_poll(CobId id, const Add& add) {
-    const auto traffic = bus_.traffic.find(id);
-    if (traffic == bus_.traffic.end()) return;
-    const auto period = traffic->second.requests.median();
-    if (period)
-      add(fmt::format("poll_ms: {}", std::max<std::int64_t>(1, as_configured(*period) / 1000)));
+    if (traffic == bus_.traffic.end()) return {};
+    const auto period =
+        is_tpdo ? traffic->second.requests.median() : traffic->second.frames.steady();
+    if (!period || (!is_tpdo && *period < 1000)) return {};
+    const std::int64_t ms = as_configured(*period) / 1000;
+    return is_tpdo ? fmt::format("poll_ms: {}", std::max<std::int64_t>(1, ms))
+                   : fmt::format("event_timer: {}", std::min<std::int64_t>(65535, ms));
   }
 
   std::string mapping_text(const LearnedPdo& pdo) {
@@ -257,8 +244,7 @@ class NodeText {
     std::string text = "mapping: [";
     for (std::size_t i = 0; i < pdo.mapping->size(); ++i) {
       const std::uint32_t entry = (*pdo.mapping)[i];
-      const ObjectKey key{static_cast<std::uint16_t>(entry >> 16U),
-                          static_cast<std::uint8_t>(entry >> 8U & 0xFFU)};
+      const ObjectKey key = mapped_object(entry);
       const SubObject* sub = described(key);
       text += fmt::format("{}{{index: 0x{:04X}", i == 0 ? "" : ", ", key.index);
       if (key.sub != 0) text += fmt::format(", sub_index: {}", key.sub);

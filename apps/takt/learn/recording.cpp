@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fmt/format.h>
 #include <utility>
 
 #include "master/trace/trace_line.hpp"
@@ -213,9 +214,7 @@ void Recording::error_control(std::uint8_t id, const Frame& frame) {
   if (frame.data[0] == 0) {
     sender.booted_up = true;
     sender.deaf_to_reset = false;
-    const bool whole_node = sender.reset_node;
-    reset(sender, whole_node);
-    return;
+    return reset(sender, sender.reset_node);
   }
   if ((frame.data[0] & 0x7F) == 5) start(sender, false);
   if (!sender.guarded()) sender.heartbeats.add(us_);
@@ -223,16 +222,14 @@ void Recording::error_control(std::uint8_t id, const Frame& frame) {
 
 void Recording::transfer(LearnedNode& node, const std::optional<SeenTransfer>& transfer) {
   if (!transfer) return;
+  const bool written = transfer->kind == SeenTransfer::Kind::write;
   if (transfer->abort_code) {
-    if (transfer->kind == SeenTransfer::Kind::write && node.refused.size() < most_writes) {
-      node.refused.push_back({*transfer, line_});
-    }
+    if (written && node.refused.size() < most_writes) node.refused.push_back({*transfer, line_});
     return;
   }
-  if (transfer->kind == SeenTransfer::Kind::write) write(node, *transfer);
+  if (written) write(node, *transfer);
   LearnedBoot& now = boot(node);
   if (transfer->extent != SeenTransfer::Extent::whole || now.values.size() >= most_objects) return;
-  const bool written = transfer->kind == SeenTransfer::Kind::write;
   if (written && now.started) return;  // the configuration has ended
   LearnedValue& value = now.values[transfer->object];
   if (!value.read && !value.written) value.first = transfer->value;
@@ -268,7 +265,7 @@ LearnedBus Recording::take() {
   if (!early_.empty()) choose(early_.front().interface);
   if (strange_ > 3) {
     announce(Severity::warning, "not-candump", 0,
-             std::to_string(strange_) + " lines hold no frame and were left out");
+             fmt::format("{} lines hold no frame and were left out", strange_));
   }
   if (backward_ >= 4 && backward_ > bus_.frames / 8) {
     announce(Severity::error, "no-times", 0,
@@ -277,20 +274,22 @@ LearnedBus Recording::take() {
   }
   if (foreign_ != 0) {
     announce(Severity::note, "other-interface", 0,
-             std::to_string(foreign_) + " frames of other interfaces (" + foreign_name_ +
-                 ") were left out; --bus " + foreign_name_ + " learns from them");
+             fmt::format("{} frames of other interfaces ({}) were left out; --bus {} learns from "
+                         "them",
+                         foreign_, foreign_name_, foreign_name_));
   }
   for (const auto& [id, node] : bus_.nodes) {
     if (node.sdo.strays() != 0) {
       announce(Severity::note, "no-beginning", node.first_line,
-               "node " + std::to_string(id) + ": " + std::to_string(node.sdo.strays()) +
-                   " SDO frames of transfers whose beginning is not in the recording");
+               fmt::format("node {}: {} SDO frames of transfers whose beginning is not in the "
+                           "recording",
+                           id, node.sdo.strays()));
     }
     if (node.sdo.cut_off() != 0) {
       announce(Severity::warning, "cut-off", node.first_line,
-               "node " + std::to_string(id) + ": " + std::to_string(node.sdo.cut_off()) +
-                   " SDO transfers were cut off by another request: no answer, lost frames, or two "
-                   "clients at once");
+               fmt::format("node {}: {} SDO transfers were cut off by another request: no answer, "
+                           "lost frames, or two clients at once",
+                           id, node.sdo.cut_off()));
     }
   }
   return std::move(bus_);

@@ -11,12 +11,6 @@ namespace {
 
 constexpr std::size_t longest_text = 4096;
 
-std::uint64_t little_endian(std::span<const std::uint8_t> bytes) {
-  std::uint64_t value = 0;
-  for (std::size_t i = bytes.size(); i-- > 0;) value = value << 8U | bytes[i];
-  return value;
-}
-
 /// Returns the bytes in quotes. YAML has an escape for every character, but a byte above 0x7F would
 /// become two bytes in UTF-8; returns std::nullopt for these.
 std::optional<std::string> quoted(std::span<const std::uint8_t> bytes) {
@@ -43,6 +37,12 @@ std::optional<std::string> real_text(double value) {
 
 }  // namespace
 
+std::uint64_t little_endian(std::span<const std::uint8_t> bytes) noexcept {
+  std::uint64_t value = 0;
+  for (std::size_t i = bytes.size(); i-- > 0;) value = value << 8U | bytes[i];
+  return value;
+}
+
 bool is_longer_than(std::span<const std::uint8_t> bytes, DataType type) {
   const std::size_t size = byte_width(type);
   if (is_bytes(type) || bytes.size() <= size) return false;
@@ -58,8 +58,7 @@ std::optional<std::string> sdo_value_text(std::span<const std::uint8_t> bytes, D
   if (bytes.empty() || bytes.size() > 8 || is_longer_than(bytes, type)) return {};
   const std::uint64_t raw = little_endian(bytes);
   if (type == DataType::real32) {
-    const double value = std::bit_cast<float>(static_cast<std::uint32_t>(raw));
-    return real_text(value);
+    return real_text(std::bit_cast<float>(static_cast<std::uint32_t>(raw)));
   }
   if (type == DataType::real64) return real_text(std::bit_cast<double>(raw));
   if (type == DataType::boolean && raw > 1) return {};
