@@ -9,16 +9,16 @@
 #include <yaml-cpp/yaml.h>
 
 #include "apps/command_line/duration.hpp"
+#include "apps/command_line/live_arguments.hpp"
 #include "eds_parser/ini/number.hpp"
 #include "eds_parser/report/suggest.hpp"
 
 namespace takt {
 namespace {
 
-constexpr std::array<std::string_view, 12> keys{"kind",   "node",   "at",          "for",
-                                                "until",  "time",   "probability", "ppm",
-                                                "cob_id", "object", "abort_code",  "value"};
-constexpr std::array<std::string_view, 2> more_keys{"emcy_code", "data"};
+constexpr std::array<std::string_view, 14> keys{
+    "kind", "node",   "at",     "for",        "until", "time",      "probability",
+    "ppm",  "cob_id", "object", "abort_code", "value", "emcy_code", "data"};
 constexpr Time shortest_step = std::chrono::microseconds{100};
 constexpr Time longest_step = std::chrono::hours{1};
 
@@ -45,22 +45,21 @@ std::optional<std::uint64_t> integer(const std::string& text) {
   return number->negative ? ~number->magnitude + 1 : number->magnitude;
 }
 
-/// Parses index and sub-index in hex, for example `1018:01`, `0x1018:1` or `6040`.
-std::optional<ObjectKey> object_key(std::string_view text) {
-  if (text.starts_with("0x") || text.starts_with("0X")) text.remove_prefix(2);
-  unsigned index = 0;
-  unsigned sub = 0;
-  const char* end = text.data() + text.size();
-  auto [at, error] = std::from_chars(text.data(), end, index, 16);
-  if (error != std::errc{} || index > 0xFFFF) return std::nullopt;
-  if (at != end && *at == ':') {
-    const auto rest = std::from_chars(at + 1, end, sub, 16);
-    if (rest.ec != std::errc{} || sub > 0xFF) return std::nullopt;
-    at = rest.ptr;
-  }
-  if (at != end) return std::nullopt;
-  return ObjectKey{static_cast<std::uint16_t>(index), static_cast<std::uint8_t>(sub)};
-}
+/// One key of a fault with its value.
+struct Item {
+  explicit Item(const std::pair<YAML::Node, YAML::Node>& pair)
+      : key{pair.first.as<std::string>("")},
+        key_mark{pair.first.Mark()},
+        is_scalar{pair.second.IsScalar()},
+        text{is_scalar ? pair.second.as<std::string>("") : std::string{}},
+        mark{pair.second.Mark()} {}
+
+  std::string key;
+  YAML::Mark key_mark;
+  bool is_scalar;
+  std::string text;
+  YAML::Mark mark;
+};
 
 /// Reads one list entry after the other and collects the errors.
 class Reader {
@@ -101,17 +100,15 @@ class Reader {
     const auto program = program_fault_kind(kind ? kind.as<std::string>("") : "");
     if (program) return read_program_fault(entry, *program);
     sim::Fault fault;
-    bool has_kind = false;
-    for (const auto& item : entry) {
-      const auto key = item.first.as<std::string>("");
-      has_kind |= key == "kind";
-      if (!item.second.IsScalar()) {
-        error(item.second.Mark(), "fault-value", "`" + key + "` needs a single value");
-        continue;
+    for (const auto& pair : entry) {
+      const Item item{pair};
+      if (item.is_scalar) {
+        read_key(fault, item);
+      } else {
+        error(item.mark, "fault-value", "`" + item.key + "` needs a single value");
       }
-      read_key(fault, key, item.second, item.first.Mark());
     }
-    if (!has_kind) error(entry.Mark(), "fault-kind", "`kind` is missing");
+    if (!kind) error(entry.Mark(), "fault-kind", "`kind` is missing");
     settle_end(fault.at, fault.until);
     result_.faults.push_back(std::move(fault));
   }
@@ -129,148 +126,143 @@ class Reader {
             "`" + std::string{name(kind)} +
                 "` concerns programs, but there is no program: add `--applications 1`");
     }
-    for (const auto& item : entry) {
-      const auto key = item.first.as<std::string>("");
-      const auto text = item.second.IsScalar() ? item.second.as<std::string>("") : std::string{};
-      const YAML::Mark mark = item.second.Mark();
-      if (key == "kind") continue;
-      if (key == "at") {
-        read_time(fault.at, text, mark);
-      } else if (key == "for" || key == "until") {
-        until_is_absolute_ = key == "until";
-        read_time(fault.until, text, mark);
-      } else if (key == "time") {
-        read_step(fault.time, text, mark);
-      } else if (key == "application" && concerns_application(kind)) {
-        read_application(fault, text, mark);
+    for (const auto& pair : entry) {
+      const Item item{pair};
+      if (item.key == "kind" || read_span(fault, item)) continue;
+      if (item.key == "time") {
+        read_step(fault.time, item);
+      } else if (item.key == "application" && concerns_application(kind)) {
+        read_application(fault, item);
       } else {
-        error(item.first.Mark(), "unknown-key",
-              "`" + key + "` has no meaning for `" + std::string{name(kind)} + "`");
+        error(item.key_mark, "unknown-key",
+              "`" + item.key + "` has no meaning for `" + std::string{name(kind)} + "`");
       }
     }
     settle_end(fault.at, fault.until);
     result_.programs.push_back(fault);
   }
 
-  /// Reads the interval of a repeated action, or a delay.
-  void read_step(Time& time, const std::string& text, const YAML::Mark& mark) {
-    read_time(time, text, mark);
-    if (time < shortest_step || time > longest_step) refuse(mark, text, "a time of 100us to 1h");
+  /// Reads a key of the time in which a fault lasts. Returns false for other keys.
+  template <class Fault>
+  bool read_span(Fault& fault, const Item& item) {
+    if (item.key == "at") {
+      read_time(fault.at, item);
+      return true;
+    }
+    if (item.key != "for" && item.key != "until") return false;
+    until_is_absolute_ = item.key == "until";
+    read_time(fault.until, item);
+    return true;
   }
 
-  void read_application(ProgramFault& fault, const std::string& text, const YAML::Mark& mark) {
-    const auto number = integer(text);
+  /// Reads the interval of a repeated action, or a delay.
+  void read_step(Time& time, const Item& item) {
+    read_time(time, item);
+    if (time < shortest_step || time > longest_step) refuse(item, "a time of 100us to 1h");
+  }
+
+  void read_application(ProgramFault& fault, const Item& item) {
+    const auto number = integer(item.text);
     if (!number || *number < 1 || (applications_ != 0 && *number > applications_)) {
-      return refuse(mark, text, "the number of an application, counted from 1");
+      return refuse(item, "the number of an application, counted from 1");
     }
     fault.application = *number - 1;
   }
 
-  void read_key(sim::Fault& fault, const std::string& key, const YAML::Node& value,
-                const YAML::Mark& mark) {
-    const auto text = value.as<std::string>("");
-    if (key == "kind") return read_kind(fault, text, value.Mark());
-    if (key == "node") return read_node(fault, text, value.Mark());
-    if (key == "at") return read_time(fault.at, text, value.Mark());
-    if (key == "for") return read_time(fault.until, text, value.Mark());
-    if (key == "time") return read_time(fault.time, text, value.Mark());
-    if (key == "until") {
-      until_is_absolute_ = true;
-      return read_time(fault.until, text, value.Mark());
-    }
-    if (key == "object") {
-      fault.object = object_key(text);
-      if (!fault.object) refuse(value.Mark(), text, "an object like 6041:00");
-      return;
-    }
-    if (key == "probability") return read_probability(fault, text, value.Mark());
-    if (key == "data") return read_data(fault, text, value.Mark());
-    read_number(fault, key, value, mark);
+  void read_key(sim::Fault& fault, const Item& item) {
+    if (read_span(fault, item)) return;
+    if (item.key == "kind") return read_kind(fault, item);
+    if (item.key == "node") return read_node(fault, item);
+    if (item.key == "time") return read_time(fault.time, item);
+    if (item.key == "probability") return read_probability(fault, item);
+    if (item.key == "data") return read_data(fault, item);
+    if (item.key == "value") return read_value(fault, item.text);
+    if (item.key != "object") return read_number(fault, item);
+    fault.object = parse_object(item.text);
+    if (!fault.object) refuse(item, "an object like 6041:00");
   }
 
-  void read_number(sim::Fault& fault, const std::string& key, const YAML::Node& value,
-                   const YAML::Mark& mark) {
-    const auto text = value.as<std::string>("");
-    const auto number = integer(text);
-    const auto small = static_cast<std::int64_t>(number.value_or(0));
-    if (key == "value") {
-      if (number) {
-        fault.value = little_endian(*number);
-      } else {
-        const auto bytes = std::as_bytes(std::span{text});
-        fault.value.assign(bytes.begin(), bytes.end());
-      }
-      return;
+  /// Reads a value of an object: a number, or else a text.
+  static void read_value(sim::Fault& fault, const std::string& text) {
+    if (const auto number = integer(text)) {
+      fault.value = little_endian(*number);
+    } else {
+      const auto bytes = std::as_bytes(std::span{text});
+      fault.value.assign(bytes.begin(), bytes.end());
     }
+  }
+
+  void read_number(sim::Fault& fault, const Item& item) {
+    const auto number = integer(item.text);
+    const auto small = static_cast<std::int64_t>(number.value_or(0));
     bool in_range = true;
-    if (key == "ppm") {
+    if (item.key == "ppm") {
       in_range = small >= -50'000 && small <= 50'000;
       fault.ppm = static_cast<int>(small);
-    } else if (key == "cob_id") {
+    } else if (item.key == "cob_id") {
       in_range = small >= 0 && small <= 0x1FFF'FFFF;
       const auto id = static_cast<std::uint32_t>(small);
       fault.cob_id = id > 0x7FF ? CobId::extended(id) : CobId::base(id);
-    } else if (key == "abort_code") {
+    } else if (item.key == "abort_code") {
       in_range = small > 0 && small <= 0xFFFF'FFFF;
       fault.abort_code = static_cast<std::uint32_t>(small);
-    } else if (key == "emcy_code") {
+    } else if (item.key == "emcy_code") {
       in_range = small > 0 && small <= 0xFFFF;
       fault.emcy_code = static_cast<std::uint16_t>(small);
     } else {
-      const bool late = !did_you_mean(key, more_keys).empty();
-      error(mark, "unknown-key",
-            "unknown key `" + key + "`" +
-                (late ? did_you_mean(key, more_keys) : did_you_mean(key, keys)));
-      return;
+      return error(item.key_mark, "unknown-key",
+                   "unknown key `" + item.key + "`" + did_you_mean(item.key, keys));
     }
-    if (!number || !in_range) refuse(value.Mark(), text, "a number in the range of `" + key + "`");
+    if (!number || !in_range) refuse(item, "a number in the range of `" + item.key + "`");
   }
 
-  void read_kind(sim::Fault& fault, const std::string& text, const YAML::Mark& mark) {
-    const auto kind = sim::fault_kind(text);
+  void read_kind(sim::Fault& fault, const Item& item) {
+    const auto kind = sim::fault_kind(item.text);
     if (kind) {
       fault.kind = *kind;
     } else {
-      error(mark, "fault-kind", "unknown kind `" + text + "`" + did_you_mean(text, kinds()));
+      error(item.mark, "fault-kind",
+            "unknown kind `" + item.text + "`" + did_you_mean(item.text, kinds()));
     }
   }
 
-  void read_node(sim::Fault& fault, const std::string& text, const YAML::Mark& mark) {
-    const auto number = integer(text);
+  void read_node(sim::Fault& fault, const Item& item) {
+    const auto number = integer(item.text);
     for (const NodePlan& node : plan_.nodes) {
-      if (node.name == text || (number && node.id.value() == *number)) fault.node = node.id;
+      if (node.name == item.text || (number && node.id.value() == *number)) fault.node = node.id;
     }
-    if (!fault.node) refuse(mark, text, "a node of the network, by name or number");
+    if (!fault.node) refuse(item, "a node of the network, by name or number");
   }
 
-  void read_time(Time& time, const std::string& text, const YAML::Mark& mark) {
-    const auto parsed = parse_duration(text);
-    const bool has_unit = text.find_first_not_of("0123456789.") != std::string::npos;
-    if (!parsed || !has_unit) return refuse(mark, text, "a time like 500ms, 2s or 100us");
+  void read_time(Time& time, const Item& item) {
+    const auto parsed = parse_duration(item.text);
+    const bool has_unit = item.text.find_first_not_of("0123456789.") != std::string::npos;
+    if (!parsed || !has_unit) return refuse(item, "a time like 500ms, 2s or 100us");
     time = *parsed;
   }
 
-  void read_probability(sim::Fault& fault, const std::string& text, const YAML::Mark& mark) {
-    const auto parsed = parse_real(text);
-    if (!parsed || !(*parsed >= 0.0 && *parsed <= 1.0)) return refuse(mark, text, "0 to 1");
+  void read_probability(sim::Fault& fault, const Item& item) {
+    const auto parsed = parse_real(item.text);
+    if (!parsed || !(*parsed >= 0.0 && *parsed <= 1.0)) return refuse(item, "0 to 1");
     fault.probability = *parsed;
   }
 
-  void read_data(sim::Fault& fault, const std::string& text, const YAML::Mark& mark) {
+  void read_data(sim::Fault& fault, const Item& item) {
+    const std::string& text = item.text;
     unsigned byte = 0;
-    for (std::size_t i = 0; i + 1 < text.size() + 1; i += 2) {
+    for (std::size_t i = 0; i < text.size(); i += 2) {
       const char* begin = text.data() + i;
       const char* end = text.data() + std::min(i + 2, text.size());
       const auto parsed = std::from_chars(begin, end, byte, 16);
       if (parsed.ec != std::errc{} || parsed.ptr != end || i >= 16) {
-        return refuse(mark, text, "up to eight bytes in hex, like 0102FF");
+        return refuse(item, "up to eight bytes in hex, like 0102FF");
       }
       fault.value.push_back(std::byte(byte));
     }
   }
 
-  void refuse(const YAML::Mark& mark, const std::string& text, const std::string& wanted) {
-    error(mark, "fault-value", "`" + text + "` is not " + wanted);
+  void refuse(const Item& item, const std::string& wanted) {
+    error(item.mark, "fault-value", "`" + item.text + "` is not " + wanted);
   }
 
   std::string file_;
