@@ -9,6 +9,7 @@
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/duration.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/known_words.hpp"
 #include "apps/command_line/whole_number.hpp"
@@ -34,7 +35,7 @@ const std::map<std::string, SoakPart> parts{
 struct Sum {
   std::uint64_t runs = 0;
   std::uint64_t bad = 0;
-  SoakOutcome total;
+  SoakCounts total;
 };
 
 /// Parses a seed or a range of seeds, `17` or `1..200`. Returns false if the text is neither.
@@ -64,35 +65,14 @@ void announce(const Arguments& arguments, const SoakReport& report) {
             << std::endl;
 }
 
-void add(Sum& sum, const SoakReport& report) {
-  const SoakOutcome& one = report.outcome;
-  SoakOutcome& total = sum.total;
-  ++sum.runs;
-  sum.bad += one.violation.has_value() || report.signal != 0;
-  total.simulated += one.simulated;
-  total.images += one.images;
-  total.frames += one.frames;
-  total.rubbish += one.rubbish;
-  total.faults += one.faults;
-  total.requests += one.requests;
-  total.boots += one.boots;
-  total.events += one.events;
-  total.commands += one.commands;
-  total.moves += one.moves;
-  total.forged += one.forged;
-  total.troubles += one.troubles;
-}
-
 int run(Arguments& arguments) {
   const LoadedNetwork network = load_network(arguments.network);
-  for (const Finding& finding : network.findings) std::cerr << finding_text(finding) << '\n';
-  if (has_error(network.findings)) return 2;
+  if (print_findings(network.findings)) return 2;
   SoakPlan& plan = arguments.plan;
   plan.run.duration = *parse_duration(arguments.run_for);
   if (!parse_seeds(arguments.seeds, plan)) {
-    std::cerr << "takt soak: --seeds " << arguments.seeds
-              << " is not a seed like 17 or a range like 1..200\n";
-    return 2;
+    throw Failure{"--seeds " + arguments.seeds + " is not a seed like 17 or a range like 1..200",
+                  2};
   }
   plan.part = parts.at(arguments.part);
   if (arguments.hours > 0) {
@@ -108,13 +88,16 @@ int run(Arguments& arguments) {
   };
   double next_word = 10;
   run_jobs(network, plan, [&](const SoakReport& report) {
-    add(sum, report);
-    if (report.signal != 0 || report.outcome.violation) announce(arguments, report);
+    const bool bad = report.signal != 0 || report.outcome.violation;
+    ++sum.runs;
+    sum.bad += bad;
+    sum.total += report.outcome;
+    if (bad) announce(arguments, report);
     if (elapsed() < next_word) return;
     next_word = elapsed() + 10;
     std::cerr << sum.runs << " of " << plan.last - plan.first + 1 << " seeds\n";
   });
-  const SoakOutcome& total = sum.total;
+  const SoakCounts& total = sum.total;
   const double hours = std::chrono::duration<double, std::ratio<3600>>(total.simulated).count();
   std::cout << sum.runs << " seeds, " << hours << " h of bus '" << network.plan.name
             << "': " << total.images << " images, " << total.frames << " frames (" << total.rubbish
@@ -138,9 +121,7 @@ void add_soak(CLI::App& app, int& exit_code) {
   command->add_option("--seeds,--seed", arguments->seeds, "one run for each seed: 17 or 1..200")
       ->capture_default_str();
   command->add_option("--for", arguments->run_for, "time in which faults happen in each run")
-      ->check([](const std::string& text) {
-        return parse_duration(text) ? "" : "'" + text + "' is not a time like 20s or 1h";
-      })
+      ->check(duration_trouble)
       ->capture_default_str();
   command
       ->add_option("--part", arguments->part,
@@ -175,14 +156,7 @@ void add_soak(CLI::App& app, int& exit_code) {
       "Example:\n"
       "  takt soak share/demo/two_axes.yaml --hours 24 --jobs 2\n"
       "  takt soak share/demo/two_axes.yaml --seed 17 --part front --verbose");
-  command->callback([arguments, &exit_code] {
-    try {
-      exit_code = soak::run(*arguments);
-    } catch (const std::exception& exception) {
-      std::cerr << "takt soak: " << exception.what() << '\n';
-      exit_code = 2;
-    }
-  });
+  command->callback([arguments, &exit_code] { exit_code = soak::run(*arguments); });
 }
 
 }  // namespace takt

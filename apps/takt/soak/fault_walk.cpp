@@ -10,10 +10,10 @@ using namespace std::chrono_literals;
 using sim::Fault;
 using sim::FaultKind;
 
-constexpr std::array<Time, 5> weathers{20ms, 100ms, 300ms, 1s, 4s};  // mean time between faults
+constexpr std::array<Time, 5> mean_pauses{20ms, 100ms, 300ms, 1s, 4s};  // mean time between faults
 constexpr std::array<std::uint32_t, 5> aborts{0x0602'0000, 0x0800'0000, 0x0800'0022, 0x0504'0000,
                                               0x0609'0030};
-constexpr std::array<ObjectKey, 6> touchy{
+constexpr std::array<ObjectKey, 6> objects{
     {{0x1000, 0}, {0x1017, 0}, {0x1400, 1}, {0x1600, 0}, {0x1800, 1}, {0x1A00, 0}}};
 
 class Walk {
@@ -23,14 +23,14 @@ class Walk {
 
   sim::Faults take() {
     for (; now_ < end_; now_ += pause()) {
-      if (random_.chance(0.1)) weather_ = weathers[random_.below(weathers.size())];
+      if (random_.chance(0.1)) mean_pause_ = mean_pauses[random_.below(mean_pauses.size())];
       step();
     }
     return std::move(faults_);
   }
 
  private:
-  Time pause() { return Time{1ms} + Time{below(2 * weather_.count())}; }
+  Time pause() { return Time{1ms} + Time{below(2 * mean_pause_.count())}; }
   Time::rep below(Time::rep limit) {
     return static_cast<Time::rep>(random_.next() % static_cast<std::uint64_t>(limit));
   }
@@ -132,7 +132,7 @@ class Walk {
     constexpr std::array kinds{refuse_object, refuse_write, ignore_write, mute_sdo};
     add({.kind = kinds[random_.below(kinds.size())],
          .node = node(),
-         .object = touchy[random_.below(touchy.size())],
+         .object = objects[random_.below(objects.size())],
          .abort_code = aborts[random_.below(aborts.size())]},
         now_);
   }
@@ -141,7 +141,7 @@ class Walk {
   sim::Random random_;
   Time now_;
   Time end_;
-  Time weather_ = 300ms;
+  Time mean_pause_ = 300ms;
   std::vector<Time> other_until_;  // until when a node is exchanged, by node-ID
   sim::Faults faults_;
 };

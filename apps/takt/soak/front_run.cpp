@@ -1,12 +1,10 @@
 #include "apps/takt/soak/front_run.hpp"
 
 #include <array>
-#include <cstdio>
 #include <functional>
 #include <memory>
 #include <utility>
 
-#include "apps/takt/simulate/candump_log.hpp"
 #include "apps/takt/simulate/program/forger.hpp"
 #include "apps/takt/simulate/program/staged_port.hpp"
 #include "apps/takt/simulate/program/virtual_application.hpp"
@@ -15,6 +13,7 @@
 #include "apps/takt/soak/fault_walk.hpp"
 #include "apps/takt/soak/judge/stop_judge.hpp"
 #include "apps/takt/soak/judge/wire_judge.hpp"
+#include "apps/takt/soak/soak_trace.hpp"
 #include "apps/takt/soak/troubles.hpp"
 #include "master/sim/bus/world.hpp"
 
@@ -55,22 +54,6 @@ BusPlan daemon_plan(const BusPlan& plan, const FrontMeddle& meddle) {
   return copy;
 }
 
-/// Passes the frames on the wire to the judge and, if requested, to a candump file.
-class Listener final : public sim::BusObserver {
- public:
-  Listener(const BusPlan& plan, const std::string& candump, WireJudge& judge) : judge_{judge} {
-    if (!candump.empty()) log_ = std::make_unique<CandumpLog>(plan, candump + ".front");
-  }
-  void on_wire(const sim::WireFrame& wire) noexcept override {
-    if (wire.result == sim::WireResult::sent) judge_.heard(wire.frame);
-    if (log_) log_->on_wire(wire);
-  }
-
- private:
-  WireJudge& judge_;
-  std::unique_ptr<CandumpLog> log_;
-};
-
 class Run {
  public:
   Run(const LoadedNetwork& network, const SoakOptions& options)
@@ -85,7 +68,10 @@ class Run {
                 .power_on_spread = 100ms}},
         wire_{plan_, world_, verdict_},
         stop_{plan_, world_, verdict_},
-        listener_{plan_, options.candump, wire_},
+        listener_{plan_, options.candump.empty() ? "" : options.candump + ".front",
+                  [this](const sim::WireFrame& wire) {
+                    if (wire.result == sim::WireResult::sent) wire_.heard(wire.frame);
+                  }},
         clocks_{world_},
         lcm_{world_, random_.fork(1)},
         port_{world_, port_options(plan_, options), stage_,
@@ -126,15 +112,15 @@ class Run {
     if (verdict_.good()) stop();
     std::uint64_t commands = rival_->sent();
     for (const auto& application : applications_) commands += application->sent();
-    return {.seed = options_.seed,
-            .simulated = world_.now(),
-            .images = images_,
-            .events = events_,
-            .commands = commands,
-            .moves = wire_.moves(),
-            .forged = forger_.sent(),
-            .troubles = troubles_.count(),
-            .violation = verdict_.violation()};
+    return {{.simulated = world_.now(),
+             .images = images_,
+             .events = events_,
+             .commands = commands,
+             .moves = wire_.moves(),
+             .forged = forger_.sent(),
+             .troubles = troubles_.count()},
+            options_.seed,
+            verdict_.violation()};
   }
 
  private:
@@ -276,9 +262,7 @@ class Run {
   }
 
   void announce(const Notice& notice) const {
-    if (!options_.verbose) return;
-    std::fprintf(stderr, "%12.3f ms  %s\n", 1e-6 * static_cast<double>(notice.when.count()),
-                 notice.text.c_str());
+    if (options_.verbose) print_at(notice.when, notice.text);
   }
 
   const BusPlan& plan_;

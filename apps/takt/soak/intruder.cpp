@@ -9,8 +9,8 @@ void Intruder::act() noexcept {
   while (port_.receive(heard) == heard.size()) {
   }
   if (gone_) return;
-  if (random_.chance(0.001)) zeal_ = random_.chance(0.7) ? 0 : 0.01 * random_.below(60);
-  for (int i = 0; i < 8 && random_.chance(zeal_); ++i) {
+  if (random_.chance(0.001)) activity_ = random_.chance(0.7) ? 0 : 0.01 * random_.below(60);
+  for (int i = 0; i < 8 && random_.chance(activity_); ++i) {
     const Frame next = frame();
     sent_ += port_.send({&next, 1}, world_.now()).sent;
   }

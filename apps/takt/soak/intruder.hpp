@@ -26,7 +26,7 @@ class Intruder {
   sim::RemotePort& port_;
   const BusPlan& plan_;
   sim::Random random_;
-  double zeal_ = 0;  ///< probability of a frame in each act()
+  double activity_ = 0;  ///< probability of a frame in each act()
   std::uint64_t sent_ = 0;
   bool gone_ = false;
 };

@@ -20,42 +20,20 @@ struct Record {
   std::uint32_t worker = 0;
   bool begins = false;
   std::uint64_t seed = 0;
-  SoakOutcome numbers() const {
-    SoakOutcome outcome{.seed = seed,
-                        .simulated = simulated,
-                        .images = images,
-                        .frames = frames,
-                        .rubbish = rubbish,
-                        .faults = faults,
-                        .requests = requests,
-                        .boots = boots,
-                        .events = events,
-                        .commands = commands,
-                        .moves = moves,
-                        .forged = forged,
-                        .troubles = troubles};
+  SoakCounts counts{};
+  std::uint64_t cycle = 0;
+  Time when{};
+  std::array<char, 64> invariant{};  ///< empty if the run was good
+  std::array<char, 256> what{};
+
+  SoakOutcome outcome() const {
+    SoakOutcome outcome{counts, seed};
     if (invariant[0] != 0) {
       outcome.violation = {
           .cycle = cycle, .when = when, .invariant = invariant.data(), .what = what.data()};
     }
     return outcome;
   }
-  Time simulated{};
-  std::uint64_t images = 0;
-  std::uint64_t frames = 0;
-  std::uint64_t rubbish = 0;
-  std::uint64_t faults = 0;
-  std::uint64_t requests = 0;
-  std::uint64_t boots = 0;
-  std::uint64_t events = 0;
-  std::uint64_t commands = 0;
-  std::uint64_t moves = 0;
-  std::uint64_t forged = 0;
-  std::uint64_t troubles = 0;
-  std::uint64_t cycle = 0;
-  Time when{};
-  std::array<char, 64> invariant{};
-  std::array<char, 256> what{};
 };
 static_assert(std::is_trivially_copyable_v<Record> && sizeof(Record) <= 512);
 
@@ -65,20 +43,7 @@ void copy_text(std::array<char, N>& to, const std::string& from) {
 }
 
 Record record_of(std::uint32_t worker, const SoakOutcome& outcome) {
-  Record record{.worker = worker,
-                .seed = outcome.seed,
-                .simulated = outcome.simulated,
-                .images = outcome.images,
-                .frames = outcome.frames,
-                .rubbish = outcome.rubbish,
-                .faults = outcome.faults,
-                .requests = outcome.requests,
-                .boots = outcome.boots,
-                .events = outcome.events,
-                .commands = outcome.commands,
-                .moves = outcome.moves,
-                .forged = outcome.forged,
-                .troubles = outcome.troubles};
+  Record record{.worker = worker, .seed = outcome.seed, .counts = outcome};
   if (outcome.violation) {
     record.cycle = outcome.violation->cycle;
     record.when = outcome.violation->when;
@@ -98,13 +63,7 @@ SoakOutcome run(const LoadedNetwork& network, const SoakPlan& plan, const SoakOp
   SoakOutcome outcome = soak(network, options);
   if (plan.part == SoakPart::bus || outcome.violation) return outcome;
   const SoakOutcome front = soak_front(network, options);
-  outcome.simulated += front.simulated;
-  outcome.images += front.images;
-  outcome.events += front.events;
-  outcome.commands = front.commands;
-  outcome.moves = front.moves;
-  outcome.forged = front.forged;
-  outcome.troubles = front.troubles;
+  outcome += front;
   outcome.violation = front.violation;
   return outcome;
 }
@@ -142,14 +101,14 @@ void run_jobs(const LoadedNetwork& network, const SoakPlan& plan,
   Record record;
   while (::read(ends[0], &record, sizeof record) == static_cast<ssize_t>(sizeof record)) {
     workers[record.worker].seed = record.begins ? record.seed : 0;
-    if (!record.begins) reported({.outcome = record.numbers()});
+    if (!record.begins) reported({.outcome = record.outcome()});
   }
   ::close(ends[0]);
   for (const Worker& worker : workers) {
     int status = 0;
     ::waitpid(worker.pid, &status, 0);
     if (worker.seed != 0) {
-      reported({.outcome = {.seed = worker.seed},
+      reported({.outcome = {{}, worker.seed, {}},
                 .signal = WIFSIGNALED(status) ? WTERMSIG(status) : -1});
     }
   }

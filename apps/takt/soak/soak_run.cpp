@@ -1,11 +1,9 @@
 #include "apps/takt/soak/soak_run.hpp"
 
 #include <array>
-#include <cstdio>
 #include <malloc.h>
 #include <memory>
 
-#include "apps/takt/simulate/candump_log.hpp"
 #include "apps/takt/soak/fault_walk.hpp"
 #include "apps/takt/soak/intruder.hpp"
 #include "apps/takt/soak/judge/image_judge.hpp"
@@ -13,6 +11,7 @@
 #include "apps/takt/soak/judge/output_judge.hpp"
 #include "apps/takt/soak/judged_port.hpp"
 #include "apps/takt/soak/restless_user.hpp"
+#include "apps/takt/soak/soak_trace.hpp"
 #include "master/explain/boot_report.hpp"
 #include "master/rt/bus_loop.hpp"
 #include "master/sim/bus/sim_port.hpp"
@@ -26,22 +25,6 @@ constexpr Time calm = 1s;                         // before the first fault
 constexpr Time time_to_recover = 60s;             // after the last one
 constexpr std::size_t memory_slack = 256 * 1024;  // bytes for open requests and event texts
 constexpr std::array<Time, 4> latenesses{0us, 60us, 300us, 2ms};
-
-/// Passes the frames on the wire to the judge and, if requested, to a candump file.
-class Listener final : public sim::BusObserver {
- public:
-  Listener(const BusPlan& plan, const std::string& candump, ImageJudge& judge) : judge_{judge} {
-    if (!candump.empty()) log_ = std::make_unique<CandumpLog>(plan, candump);
-  }
-  void on_wire(const sim::WireFrame& wire) noexcept override {
-    judge_.on_wire(wire);
-    if (log_) log_->on_wire(wire);
-  }
-
- private:
-  ImageJudge& judge_;
-  std::unique_ptr<CandumpLog> log_;
-};
 
 sim::Faults faults_of(const BusPlan& plan, const SoakOptions& options) {
   return fault_walk(plan, sim::Random{options.seed}.fork(1), calm, calm + options.duration);
@@ -69,7 +52,8 @@ class Run {
         images_{plan_, verdict_},
         outputs_{plan_, verdict_},
         nodes_{plan_, verdict_},
-        listener_{plan_, options.candump, images_},
+        listener_{plan_, options.candump,
+                  [this](const sim::WireFrame& wire) { images_.on_wire(wire); }},
         world_{network.devices, world_options(network, options)},
         sim_port_{world_, port_options(network, options)},
         intruder_{world_, plan_, random_.fork(3)},
@@ -85,16 +69,16 @@ class Run {
     walk();
     if (verdict_.good()) settle();
     if (verdict_.good()) stop();
-    return {.seed = options_.seed,
-            .simulated = world_.now(),
-            .images = images_.images(),
-            .frames = images_.frames(),
-            .rubbish = intruder_.sent(),
-            .faults = faults_of(plan_, options_).size(),
-            .requests = user_.asked(),
-            .boots = nodes_.boots(status_),
-            .events = events_,
-            .violation = verdict_.violation()};
+    return {{.simulated = world_.now(),
+             .images = images_.images(),
+             .frames = images_.frames(),
+             .rubbish = intruder_.sent(),
+             .faults = faults_of(plan_, options_).size(),
+             .requests = user_.asked(),
+             .boots = nodes_.boots(status_),
+             .events = events_},
+            options_.seed,
+            verdict_.violation()};
   }
 
  private:
@@ -115,9 +99,7 @@ class Run {
 
   void announce(const Event& event) {
     ++events_;
-    if (!options_.verbose) return;
-    std::fprintf(stderr, "%12.3f ms  %s\n", 1e-6 * static_cast<double>(event.when.count()),
-                 describe(plan_, event).c_str());
+    if (options_.verbose) print_at(event.when, describe(plan_, event));
   }
 
   void walk() {
@@ -185,16 +167,32 @@ class Run {
 
 void report_faults(const BusPlan& plan, const SoakOptions& options) {
   for (const sim::Fault& fault : faults_of(plan, options)) {
-    std::fprintf(
-        stderr, "%12.3f ms  fault until %.3f ms: %s", 1e-6 * static_cast<double>(fault.at.count()),
-        1e-6 * static_cast<double>(fault.until.count()), std::string{name(fault.kind)}.c_str());
-    if (fault.node) std::fprintf(stderr, " node %u", fault.node->value());
-    if (fault.object) std::fprintf(stderr, " %s", to_string(*fault.object).c_str());
-    std::fprintf(stderr, "\n");
+    std::string text =
+        fmt::format("fault until {:.3f} ms: {}", 1e-6 * static_cast<double>(fault.until.count()),
+                    name(fault.kind));
+    if (fault.node) text += fmt::format(" node {}", fault.node->value());
+    if (fault.object) text += " " + to_string(*fault.object);
+    print_at(fault.at, text);
   }
 }
 
 }  // namespace
+
+SoakCounts& SoakCounts::operator+=(const SoakCounts& other) noexcept {
+  simulated += other.simulated;
+  images += other.images;
+  frames += other.frames;
+  rubbish += other.rubbish;
+  faults += other.faults;
+  requests += other.requests;
+  boots += other.boots;
+  events += other.events;
+  commands += other.commands;
+  moves += other.moves;
+  forged += other.forged;
+  troubles += other.troubles;
+  return *this;
+}
 
 SoakOutcome soak(const LoadedNetwork& network, const SoakOptions& options) {
   if (options.verbose) report_faults(network.plan, options);

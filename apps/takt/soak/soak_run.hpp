@@ -27,9 +27,8 @@ struct SoakOptions {
   FrontMeddle front{};
 };
 
-/// Counters of one run, and its first violation.
-struct SoakOutcome {
-  std::uint64_t seed = 0;
+/// Counters of one run, or of several runs.
+struct SoakCounts {
   Time simulated{};
   std::uint64_t images = 0;
   std::uint64_t frames = 0;
@@ -42,6 +41,13 @@ struct SoakOutcome {
   std::uint64_t moves = 0;     ///< positions on the wire that the programs commanded
   std::uint64_t forged = 0;    ///< forged messages
   std::uint64_t troubles = 0;  ///< faults of programs: stalls, deaths, rivals, replays ...
+
+  SoakCounts& operator+=(const SoakCounts& other) noexcept;
+};
+
+/// One run and its first violation.
+struct SoakOutcome : SoakCounts {
+  std::uint64_t seed = 0;
   std::optional<Violation> violation{};
 };
 

@@ -1,7 +1,8 @@
 #include "apps/takt/soak/troubles.hpp"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "apps/takt/soak/soak_trace.hpp"
 
 namespace takt::soak {
 namespace {
@@ -147,10 +148,8 @@ void Troubles::slow_down_lcm(Time now) {
 
 void Troubles::announce(Time now, const char* what, Time span) const {
   if (!verbose_) return;
-  std::fprintf(stderr, "%12.3f ms  %s", 1e-6 * static_cast<double>(now.count()), what);
-  if (span != Time{})
-    std::fprintf(stderr, " for %.3f ms", 1e-6 * static_cast<double>(span.count()));
-  std::fprintf(stderr, "\n");
+  const double ms = 1e-6 * static_cast<double>(span.count());
+  print_at(now, span == Time{} ? what : fmt::format("{} for {:.3f} ms", what, ms));
 }
 
 }  // namespace takt::soak

@@ -14,6 +14,17 @@ std::uint64_t bits_of(const Frame& frame, unsigned offset, unsigned count) noexc
   return value;
 }
 
+bool is_lasting(const BusPlan& plan, const Signal& signal, std::uint64_t value) noexcept {
+  constexpr std::uint64_t enabled = 0x0F;  // controlword: bits of "enable operation"
+  if (plan.nodes[signal.node_index].cia402 && signal.object.index == 0x6040) {
+    return (value & enabled) != enabled;
+  }
+  const std::uint64_t mask = mask_of(signal.bits);
+  return signal.fallback == Fallback::hold ||
+         value == (static_cast<std::uint64_t>(signal.fallback_value) & mask) ||
+         value == (static_cast<std::uint64_t>(signal.safe_value.value_or(0)) & mask);
+}
+
 ImageJudge::ImageJudge(const BusPlan& plan, Verdict& verdict)
     : plan_{plan},
       verdict_{verdict},
@@ -36,7 +47,7 @@ bool ImageJudge::shows(const PdoRow& row, const Frame& frame,
                        const ImageView& image) const noexcept {
   for (std::size_t i = row.first_field; i < row.first_field + row.field_count; ++i) {
     const PdoField& field = plan_.pdos.fields[i];
-    const std::uint64_t mask = field.bits >= 64 ? ~0ULL : (1ULL << field.bits) - 1;
+    const std::uint64_t mask = mask_of(field.bits);
     const auto value = static_cast<std::uint64_t>(image.values[field.signal]);
     if ((value & mask) != bits_of(frame, field.bit_offset, field.bits)) return false;
     const bool negative = field.sign_extend && ((value >> (field.bits - 1)) & 1) != 0;

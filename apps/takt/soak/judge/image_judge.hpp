@@ -13,6 +13,16 @@ namespace takt::soak {
 /// 7.1.4.
 std::uint64_t bits_of(const Frame& frame, unsigned offset, unsigned count) noexcept;
 
+/// Returns a mask of the lowest `bits` bits.
+constexpr std::uint64_t mask_of(unsigned bits) noexcept {
+  return bits >= 64 ? ~0ULL : (1ULL << bits) - 1;
+}
+
+/// Returns true for values that may be sent without a fresh command: those of the fallback and of
+/// the ordered stop, the safe value, and positions that a drive holds. A controlword is lasting if
+/// it does not enable operation.
+bool is_lasting(const BusPlan& plan, const Signal& signal, std::uint64_t value) noexcept;
+
 /// Checks each image against the frames on the wire: the values of one PDO come from one frame,
 /// that frame is not older than the one in the image before, and cycle numbers and times rise.
 class ImageJudge final : public sim::BusObserver {

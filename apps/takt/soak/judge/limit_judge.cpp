@@ -4,7 +4,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <string>
+#include <fmt/format.h>
 
 #include "apps/takt/soak/judge/image_judge.hpp"
 #include "apps/takt/soak/judge/true_axes.hpp"
@@ -218,9 +218,8 @@ void LimitJudge::judge_way(const Place& place, double value, const Way& way) {
     const double most = std::ceil(rate * way.cycles) + rounding;
     if (counts <= most || !std::isfinite(rate)) return;
     blame(place, value, kind,
-          "the value is " + std::to_string(std::llround(counts)) +
-              " counts away from the one before, " + std::to_string(std::llround(most)) +
-              " are allowed");
+          fmt::format("the value is {:.0f} counts away from the one before, {:.0f} are allowed",
+                      counts, most));
   };
   judge(place.limit->step, LimitKind::step);
   judge(place.limit->rate, place.limit->rate_of);
@@ -249,10 +248,8 @@ void LimitJudge::judge_bend(const Place& place, double value, const Way& way) {
   if (place.limit->bend == OutputLimit::none || !place.last_way || real) return;
   if (!too_sharp(place, way)) return;
   blame(place, value, LimitKind::acceleration,
-        "the value is " + std::to_string(std::llround(way.length)) + " counts away in " +
-            std::to_string(way.cycles) + " cycles, after " +
-            std::to_string(std::llround(place.last_way->length)) + " in " +
-            std::to_string(place.last_way->cycles));
+        fmt::format("the value is {:.0f} counts away in {} cycles, after {:.0f} in {}", way.length,
+                    way.cycles, place.last_way->length, place.last_way->cycles));
 }
 
 void LimitJudge::sent(SignalIndex index, std::uint64_t bits, bool begins) {
@@ -339,10 +336,10 @@ void LimitJudge::judge_place(Place& place, News news, Time now) {
 
 void LimitJudge::blame(const Place& place, double value, LimitKind kind, const std::string& what) {
   const Signal& signal = signal_of(place);
-  verdict_.blame("no output leaves its limits",
-                 plan_.nodes[signal.node_index].name + "." + signal.name + " = " +
-                     std::to_string(std::llround(value)) + " breaks the limit of " +
-                     std::string{name(kind)} + ": " + what);
+  verdict_.blame(
+      "no output leaves its limits",
+      fmt::format("{}.{} = {:.0f} breaks the limit of {}: {}", plan_.nodes[signal.node_index].name,
+                  signal.name, value, name(kind), what));
 }
 
 }  // namespace takt::soak

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
 #include <utility>
 
 namespace takt::soak {
@@ -26,10 +27,10 @@ bool NodeJudge::ready(const NodeStatus& node) noexcept {
 
 std::string NodeJudge::story(std::size_t index, const NodeStatus& node) const {
   const auto boot = static_cast<std::size_t>(node.boot);
-  std::string text = "node " + std::to_string(plan_.nodes[index].id.value()) + " is " +
-                     (boot < boot_names.size() ? boot_names[boot] : "in an unknown boot state") +
-                     ", NMT state " + std::to_string(std::to_underlying(node.nmt)) +
-                     ", boot step " + std::to_string(node.boot_step + 1);
+  std::string text =
+      fmt::format("node {} is {}, NMT state {}, boot step {}", plan_.nodes[index].id.value(),
+                  boot < boot_names.size() ? boot_names[boot] : "in an unknown boot state",
+                  std::to_underlying(node.nmt), node.boot_step + 1);
   if (node.boot_letter != 0) text += std::string{", letter "} + node.boot_letter;
   return text;
 }

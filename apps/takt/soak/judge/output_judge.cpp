@@ -1,19 +1,12 @@
 #include "apps/takt/soak/judge/output_judge.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "apps/takt/soak/judge/image_judge.hpp"
 #include "master/wire/nmt.hpp"
 
 namespace takt::soak {
-namespace {
-
-constexpr std::uint64_t enabled = 0x0F;  // controlword: bits of "enable operation"
-
-std::uint64_t mask_of(unsigned bits) noexcept { return bits >= 64 ? ~0ULL : (1ULL << bits) - 1; }
-
-}  // namespace
-
 OutputJudge::OutputJudge(const BusPlan& plan, Verdict& verdict)
     : plan_{plan},
       verdict_{verdict},
@@ -88,18 +81,6 @@ void OutputJudge::judge_counter(std::uint8_t counter, Time now) {
   }
 }
 
-/// Returns true for values that may be sent without a fresh command: those of the fallback and of
-/// the ordered stop, the safe value, and positions that a drive holds.
-bool OutputJudge::lasting(const Signal& signal, std::uint64_t value) const noexcept {
-  if (signal.fallback == Fallback::hold) return true;
-  if (plan_.nodes[signal.node_index].cia402 && signal.object.index == 0x6040) {
-    return (value & enabled) != enabled;
-  }
-  const std::uint64_t mask = mask_of(signal.bits);
-  return value == (static_cast<std::uint64_t>(signal.fallback_value) & mask) ||
-         value == (static_cast<std::uint64_t>(signal.safe_value.value_or(0)) & mask);
-}
-
 bool OutputJudge::fresh(std::size_t output, std::uint64_t value, Time now) const noexcept {
   return std::ranges::any_of(commands_[output], [&](const Command& command) {
     return command.value == value && command.until >= now;
@@ -111,12 +92,13 @@ void OutputJudge::judge_pdo(const PdoRow& row, const Frame& frame, Time now) {
     const PdoField& field = plan_.pdos.fields[i];
     const Signal& signal = plan_.layout.signals[field.signal];
     const std::uint64_t value = bits_of(frame, field.bit_offset, field.bits);
-    if (lasting(signal, value) || fresh(field.signal - plan_.layout.inputs, value, now)) continue;
+    const bool lasting = signal.fallback == Fallback::hold || is_lasting(plan_, signal, value);
+    if (lasting || fresh(field.signal - plan_.layout.inputs, value, now)) continue;
     verdict_.blame("no stale output",
-                   "RPDO" + std::to_string(row.number) + " of node " +
-                       std::to_string(row.node.value()) + " sends " + signal.name + " = " +
-                       hex(static_cast<std::uint32_t>(value)) +
-                       ", which no program has commanded within its time to live");
+                   fmt::format("RPDO{} of node {} sends {} = {}, which no program has commanded "
+                               "within its time to live",
+                               row.number, row.node.value(), signal.name,
+                               hex(static_cast<std::uint32_t>(value))));
   }
 }
 

@@ -35,7 +35,6 @@ class OutputJudge {
   void judge_counter(std::uint8_t counter, Time now);
   void note_nmt(const Frame& frame, Time now);
   void judge_pdo(const PdoRow& row, const Frame& frame, Time now);
-  bool lasting(const Signal& signal, std::uint64_t value) const noexcept;
   bool fresh(std::size_t output, std::uint64_t value, Time now) const noexcept;
 
   const BusPlan& plan_;

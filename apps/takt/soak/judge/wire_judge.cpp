@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <fmt/format.h>
 
 #include "apps/takt/soak/judge/image_judge.hpp"
 
@@ -11,13 +12,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint64_t enabled = 0x0F;  // controlword: bits of "enable operation"
 constexpr std::uint16_t target_position = 0x607A;
 constexpr Time longest_lease = 1s;         // upper limit for every command
 constexpr unsigned cycles_on_the_way = 4;  // longest way from the front thread to the wire
 constexpr unsigned cycles_of_doubt = 5;    // a lease may end this much early
-
-std::uint64_t mask_of(unsigned bits) noexcept { return bits >= 64 ? ~0ULL : (1ULL << bits) - 1; }
 
 bool is_target(const Signal& signal) noexcept { return signal.object.index == target_position; }
 
@@ -80,17 +78,6 @@ void WireJudge::sent(std::span<const Frame> frames, Time now) {
   limits_.judge(now);
 }
 
-/// Returns true for values that may be sent without a fresh command; see OutputJudge.
-bool WireJudge::lasting(const Signal& signal, std::uint64_t value) const noexcept {
-  if (plan_.nodes[signal.node_index].cia402 && signal.object.index == 0x6040) {
-    return (value & enabled) != enabled;
-  }
-  if (signal.fallback == Fallback::hold) return true;
-  const std::uint64_t mask = mask_of(signal.bits);
-  return value == (static_cast<std::uint64_t>(signal.fallback_value) & mask) ||
-         value == (static_cast<std::uint64_t>(signal.safe_value.value_or(0)) & mask);
-}
-
 void WireJudge::judge(SignalIndex index, std::uint64_t value, Time now) {
   const Signal& signal = plan_.layout.signals[index];
   Output& output = this->output(index);
@@ -108,8 +95,9 @@ void WireJudge::judge(SignalIndex index, std::uint64_t value, Time now) {
   }
   // While an axis does not obey, the master itself sends its actual position.
   if (is_target(signal) && limits_.is_actual(index, value)) return;
-  const bool old = known != nullptr && (is_target(signal) ? changed : !lasting(signal, value));
-  if (old || (known == nullptr && !lasting(signal, value))) {
+  const bool old =
+      known != nullptr && (is_target(signal) ? changed : !is_lasting(plan_, signal, value));
+  if (old || (known == nullptr && !is_lasting(plan_, signal, value))) {
     blame_stale(signal, value, known, now);
   }
 }
@@ -121,11 +109,11 @@ void WireJudge::judge_holder(const Signal& signal, const Known& known, Time now)
   const auto sender = static_cast<std::size_t>(std::countr_zero(known.senders));
   moved_[sender] = now;
   if (holder.sender != 0 && holder.sender != known.senders && now < holder.until) {
-    verdict_.blame("no sender moves what another holds",
-                   plan_.nodes[signal.node_index].name + " is moved by program " +
-                       std::to_string(std::countr_zero(known.senders)) + ", but program " +
-                       std::to_string(std::countr_zero(holder.sender)) + " holds it for another " +
-                       std::to_string((holder.until - now) / 1us) + " us");
+    verdict_.blame(
+        "no sender moves what another holds",
+        fmt::format("{} is moved by program {}, but program {} holds it for another {} us",
+                    plan_.nodes[signal.node_index].name, std::countr_zero(known.senders),
+                    std::countr_zero(holder.sender), (holder.until - now) / 1us));
   }
   if (holder.sender != known.senders) holder = {.sender = known.senders, .until = {}};
   // A value from before the release may still be on its way to the wire, and holds nothing.
