@@ -29,27 +29,20 @@ std::string read_text(const std::filesystem::path& path) {
 /// Returns a value on one line, cut to 60 characters.
 std::string value_text(const YamlNode& node) {
   std::string text;
-  switch (node.kind) {
-    case YamlNode::Kind::null:
-      break;
-    case YamlNode::Kind::scalar:
-      for (const char c : node.text) text += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-      break;
-    case YamlNode::Kind::sequence:
-      for (const YamlNode* const& item : node.items) {
-        text += (&item == node.items.data() ? "" : ", ") + value_text(*item);
-        if (text.size() > longest_value) break;
-      }
-      text = '[' + text + ']';
-      break;
-    case YamlNode::Kind::map:
-      for (const YamlPair& pair : node.pairs) {
-        text += (text.empty() ? "" : ", ") + pair.key + ": " + value_text(*pair.value);
-        if (text.size() > longest_value) break;
-      }
-      text = '{' + text + '}';
-      break;
+  using enum YamlNode::Kind;
+  if (node.kind == scalar) {
+    for (const char c : node.text) text += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
   }
+  for (const YamlNode* const& item : node.items) {
+    text += (&item == node.items.data() ? "" : ", ") + value_text(*item);
+    if (text.size() > longest_value) break;
+  }
+  for (const YamlPair& pair : node.pairs) {
+    text += (text.empty() ? "" : ", ") + pair.key + ": " + value_text(*pair.value);
+    if (text.size() > longest_value) break;
+  }
+  if (node.kind == sequence) text = '[' + text + ']';
+  if (node.kind == map) text = '{' + text + '}';
   return text.size() > longest_value ? text.substr(0, longest_value - 3) + "..." : text;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <fmt/format.h>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -32,7 +33,7 @@ std::string read_text(const fs::path& path) {
 
 std::string lower(std::string_view text) {
   std::string out{text};
-  for (char& c : out) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  std::ranges::transform(out, out.begin(), fold);
   return out;
 }
 
@@ -90,8 +91,8 @@ class Importer {
   Importer(const fs::path& cpj, unsigned number, const fs::path& folder)
       : cpj_{cpj},
         folder_{folder},
-        section_{number <= 1 ? "topology" : "topology" + std::to_string(number)},
-        number_{number},
+        section_{number <= 1 ? "Topology" : fmt::format("Topology{}", number)},
+        is_first_{number <= 1},
         report_{cpj.string()},
         values_{report_, std::nullopt} {}
 
@@ -105,8 +106,7 @@ class Importer {
     const IniSection* topology = find_topology(file);
     if (topology == nullptr) {
       wrong({}, "no-topology",
-            "there is no [" +
-                (number_ <= 1 ? std::string{"Topology"} : "Topology" + std::to_string(number_)) +
+            "there is no [" + section_ +
                 "]: the file is not a nodelist.cpj of CiA 306-3, or has no such network");
       return finish();
     }
@@ -122,7 +122,7 @@ class Importer {
     const IniSection* found = nullptr;
     for (const IniSection& section : file.sections) {
       const std::string name = lower(section.name);
-      const bool wanted = name == section_ || (number_ <= 1 && name == "topology1");
+      const bool wanted = name == lower(section_) || (is_first_ && name == "topology1");
       if (wanted && found == nullptr) {
         found = &section;
         title_ = std::string{section.name};
@@ -224,8 +224,8 @@ class Importer {
     label(id, node);
     if (!node.dcf) {
       wrong(node.pos, "missing-key",
-            "node " + std::to_string(id) + " has no Node" + std::to_string(id) +
-                "DCFName: taktd needs the DCF or EDS of the node");
+            fmt::format("node {} has no Node{}DCFName: taktd needs the DCF or EDS of the node", id,
+                        id));
       return;
     }
     find_file(id, node);
@@ -267,8 +267,8 @@ class Importer {
     const auto& declared = file.dictionary.commissioning;
     if (declared.node_id && declared.node_id->value() != id) {
       row.fate = KeyFate::suspicious;
-      row.why = "the NodeID of the file is " + std::to_string(declared.node_id->value()) +
-                "; takt uses node id " + std::to_string(id) + " of the project";
+      row.why = fmt::format("the NodeID of the file is {}; takt uses node id {} of the project",
+                            declared.node_id->value(), id);
     }
     if (declared.manager) {
       row.fate = KeyFate::ignored;
@@ -295,34 +295,32 @@ class Importer {
     const auto master = master_id();
     if (!master)
       return wrong({}, "no-free-id", "all 127 node ids are taken: no id is left for takt");
-    yaml_ = "# from " + cpj_.filename().string() + ", [" + to_utf8(title_) + "]\n";
-    yaml_ += "bus:\n  name: " + plain_name(name_, "bus") + "\n" + bitrate_line();
-    yaml_ += "master:\n  node_id: " + std::to_string(*master) +
-             "\n  # sync_period: 10000  # us; without it there is no SYNC\n";
-    yaml_ += "nodes:\n";
-    bool any = false;
+    std::string nodes;
     for (const auto& [id, node] : nodes_) {
       if (!node.is_present) continue;
-      any = true;
-      yaml_ += "  " + node.label + ":\n    node_id: " + std::to_string(id) +
-               "\n    dcf: " + in_quotes(node.file) + '\n';
+      nodes += fmt::format("  {}:\n    node_id: {}\n    dcf: {}\n", node.label, id,
+                           in_quotes(node.file));
     }
-    if (any) return;
-    wrong({}, "no-nodes", "no node is present");
-    yaml_.clear();
+    const std::string bitrate = bitrate_line();
+    if (nodes.empty()) return wrong({}, "no-nodes", "no node is present");
+    yaml_ = fmt::format(
+        "# from {}, [{}]\nbus:\n  name: {}\n{}master:\n  node_id: {}\n"
+        "  # sync_period: 10000  # us; without it there is no SYNC\nnodes:\n{}",
+        cpj_.filename().string(), to_utf8(title_), plain_name(name_, "bus"), bitrate, *master,
+        nodes);
   }
 
   std::string bitrate_line() {
     if (bitrates_.size() == 1) {
-      return "  bitrate_kbit: " + std::to_string(*bitrates_.begin()) + "  # Baudrate of the DCFs\n";
+      return fmt::format("  bitrate_kbit: {}  # Baudrate of the DCFs\n", *bitrates_.begin());
     }
     const bool none = bitrates_.empty();
+    const unsigned chosen = none ? default_bitrate : *bitrates_.rbegin();
     report_.warning(
         {}, "bitrate",
-        std::string{none ? "no DCF contains a Baudrate" : "the DCFs differ in Baudrate"} +
-            ": `bitrate_kbit` was set to " +
-            std::to_string(none ? default_bitrate : *bitrates_.rbegin()) + "; correct this value");
-    return "  bitrate_kbit: " + std::to_string(none ? default_bitrate : *bitrates_.rbegin()) + "\n";
+        fmt::format("{}: `bitrate_kbit` was set to {}; correct this value",
+                    none ? "no DCF contains a Baudrate" : "the DCFs differ in Baudrate", chosen));
+    return fmt::format("  bitrate_kbit: {}\n", chosen);
   }
 
   ImportedNodelist finish() {
@@ -339,7 +337,7 @@ class Importer {
   fs::path cpj_;
   fs::path folder_;
   std::string section_;
-  unsigned number_;
+  bool is_first_;  // [Topology] may also be named [Topology1]
   Report report_;
   ValueReader values_;
   std::string title_;
