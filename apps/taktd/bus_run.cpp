@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <fmt/format.h>
 #include <utility>
 
 #include "apps/taktd/bus_choice.hpp"
@@ -44,11 +45,10 @@ std::optional<Exit> BusRun::start() {
   }
   say(realtime_.complete() ? Weight::note : Weight::warning, "real time: " + to_string(realtime_));
   if (!realtime_.may_run()) {
-    say(Weight::error,
-        "--rt enforce: taktd does not start, because the requested real-time settings are not "
-        "available");
     master_->join();
-    return Exit::refused;
+    return refuse(Exit::refused,
+                  "--rt enforce: taktd does not start, because the requested real-time settings "
+                  "are not available");
   }
   say(Weight::note, plan_summary(network_) + "  on " + bus_name_ + ", LCM channels " +
                         Channels{network_.plan.name}.image + " ...");
@@ -92,12 +92,9 @@ void BusRun::watch_lateness() {
   if (network_.realtime.mode != RtMode::enforce || limit == Time{0}) return;
   const Time latest = master_->timing().sync_lateness.snapshot().maximum();
   if (latest <= limit) return;
-  using std::chrono::microseconds;
+  using namespace std::chrono_literals;
   stop(Exit::too_late,
-       "SYNC was up to " +
-           std::to_string(std::chrono::duration_cast<microseconds>(latest).count()) +
-           " us late, but the limit is " +
-           std::to_string(std::chrono::duration_cast<microseconds>(limit).count()) + " us");
+       fmt::format("SYNC was up to {} us late, but the limit is {} us", latest / 1us, limit / 1us));
 }
 
 /// Ends the run if the boot of a mandatory node fails before the node was ever ready, and the next
@@ -115,8 +112,8 @@ void BusRun::on_notice(const Notice& notice) {
   if (!failed || once_ready_[notice.node]) return;
   for (const NodePlan& node : network_.plan.nodes) {
     if (node.id.value() == notice.node && node.mandatory) {
-      stop(Exit::node_missing, "node " + std::to_string(notice.node) + " (" + node.name +
-                                   ") is mandatory and did not boot");
+      stop(Exit::node_missing,
+           fmt::format("node {} ({}) is mandatory and did not boot", notice.node, node.name));
     }
   }
 }
@@ -155,7 +152,7 @@ std::string BusRun::never_ready() const {
   for (std::size_t i = 0; i < statuses.size(); ++i) {
     const NodePlan& node = network_.plan.nodes[i];
     if (!node.mandatory || !node.boot || statuses[i].boot_count != 0) continue;
-    names += (names.empty() ? "" : ", ") + std::to_string(node.id.value()) + " " + node.name;
+    names += fmt::format("{}{} {}", names.empty() ? "" : ", ", node.id.value(), node.name);
   }
   return names;
 }

@@ -99,6 +99,11 @@ class BusRun {
   void judge_stop();
   Exit exit_of_cut_stop() const;
   void say(Weight weight, const std::string& sentence) { front_.reporter.say(weight, sentence); }
+  /// Reports the reason why the bus can't start, and returns the exit code.
+  Exit refuse(Exit code, const std::string& why) {
+    say(Weight::error, why);
+    return code;
+  }
 
   LoadedNetwork network_;
   FrontThread front_;

@@ -28,16 +28,10 @@ constexpr Time look = std::chrono::milliseconds{10};
 
 std::optional<Exit> BusRun::open() {
   auto url = parse_lcm_url(choose_lcm_url(front_.options.lcm_url, network_.lcm.url));
-  if (!url) {
-    say(Weight::error, url.error());
-    return Exit::wrong_use;
-  }
+  if (!url) return refuse(Exit::wrong_use, url.error());
   if (const auto trouble = open_gateway()) return trouble;
   auto bus = OpenedBus::open(bus_name_, network_.plan, network_.devices, network_.realtime.spin);
-  if (!bus) {
-    say(Weight::error, bus.error().message);
-    return Exit::bus_trouble;
-  }
+  if (!bus) return refuse(Exit::bus_trouble, bus.error().message);
   bus_ = std::move(*bus);
   for (const std::string& warning : bus_->warnings()) say(Weight::warning, warning);
   if (const auto trouble = open_black_box()) return trouble;
@@ -49,10 +43,7 @@ std::optional<Exit> BusRun::open_gateway() {
   if (where.empty()) return std::nullopt;
   auto gateway = AsciiFront::open(where, network_.plan,
                                   [this](const auto& sentence) { say(Weight::warning, sentence); });
-  if (!gateway) {
-    say(Weight::error, gateway.error());
-    return Exit::wrong_use;
-  }
+  if (!gateway) return refuse(Exit::wrong_use, gateway.error());
   gateway_ = std::move(*gateway);
   say(Weight::note, "CiA 309-3 gateway on " + gateway_->where());
   return std::nullopt;
@@ -83,10 +74,7 @@ std::optional<Exit> BusRun::open_keys(std::vector<std::string> guarded) {
   const auto file = key_file(front_.options, network_);
   if (file.empty()) return std::nullopt;
   auto keys = WatchedKeyFile::open(file);
-  if (!keys) {
-    say(Weight::error, keys.error());
-    return Exit::wrong_use;
-  }
+  if (!keys) return refuse(Exit::wrong_use, keys.error());
   secured_ = std::make_unique<SecuredTransport>(
       *link_, front_.clocks, std::move(*keys),
       SecuredTransport::Options{
@@ -101,10 +89,7 @@ std::optional<Exit> BusRun::open_keys(std::vector<std::string> guarded) {
 std::optional<Exit> BusRun::claim() {
   if (front_.options.observe) return std::nullopt;
   auto claim = BusClaim::take(BusName::parse(bus_name_));
-  if (!claim) {
-    say(Weight::error, claim.error().message);
-    return Exit::bus_trouble;
-  }
+  if (!claim) return refuse(Exit::bus_trouble, claim.error().message);
   claim_.emplace(std::move(*claim));
   return std::nullopt;
 }
@@ -116,10 +101,7 @@ std::optional<Exit> BusRun::look_for_master() {
   OtherMaster other{network_.plan, bus_name_, session_, secured_ ? as_warning : as_refusal};
   listen(other);
   for (const std::string& warning : other.warnings()) say(Weight::warning, warning);
-  if (other.refusal()) {
-    say(Weight::error, *other.refusal());
-    return Exit::bus_trouble;
-  }
+  if (other.refusal()) return refuse(Exit::bus_trouble, *other.refusal());
   if (StopSignal::count() == 0) return std::nullopt;
   say(Weight::note, "a stop was requested before the start");
   return Exit::good;
@@ -138,8 +120,9 @@ void BusRun::listen(OtherMaster& other) {
   for (Time now = begin; now < std::max(frames_until, until); now = front_.clocks.now()) {
     if (other.refusal() || StopSignal::count() > 0) return;
     descriptors.clear();
-    if (listener != nullptr)
+    if (listener != nullptr) {
       descriptors.push_back({.fd = listener->fd(), .events = POLLIN, .revents = 0});
+    }
     link_->watch(descriptors);
     front_.wait.wait(descriptors, never, std::min(std::max(frames_until, until), now + look));
     if (listener != nullptr)
@@ -166,9 +149,8 @@ std::optional<Exit> BusRun::open_black_box() {
                      .observe = front_.options.observe};
   const auto opened = recorder_.open({.folder = folder, .bytes = wanted.bytes, .keep = wanted.keep},
                                      network_.plan, std::move(head));
-  if (opened) return std::nullopt;
-  say(Weight::error, opened.error());
-  return Exit::wrong_use;
+  if (!opened) return refuse(Exit::wrong_use, opened.error());
+  return std::nullopt;
 }
 
 }  // namespace takt

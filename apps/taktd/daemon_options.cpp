@@ -57,6 +57,7 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
                  "use this URL, not LCM_DEFAULT_URL and `lcm: {url, broker}` of the file")
       ->type_name("URL");
   app.add_option("--for", run_for, "start the ordered stop after this time: 10s, 500ms, 2min")
+      ->check(duration_trouble)
       ->type_name("TIME");
   app.add_option("--events", options.events_file, "append events as JSON, one object a line")
       ->type_name("FILE");
@@ -78,11 +79,7 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
     app.parse(argc, argv);
     if (!rt.empty()) options.rt = rt_modes.at(rt);
     if (typed != 0) options.typed = typed > 0;
-    if (!run_for.empty()) {
-      const auto time = parse_duration(run_for);
-      if (!time) throw CLI::ValidationError("--for", "'" + run_for + "' is not a time like 10s");
-      options.run_for = *time;
-    }
+    if (!run_for.empty()) options.run_for = *parse_duration(run_for);
     if (const auto url = parse_lcm_url(options.lcm_url); !options.lcm_url.empty() && !url) {
       throw CLI::ValidationError("--lcm-url", url.error());
     }

@@ -39,34 +39,30 @@ bool has_good_keys(const DaemonOptions& options, const LoadedNetwork& network) {
   return keys.has_value();
 }
 
-int run(const DaemonOptions& options) {
+Exit run(const DaemonOptions& options) {
   LoadedNetwork network = load_network(options.network_file);
-  for (const Finding& finding : network.findings) {
-    std::fprintf(stderr, "%s\n", finding_text(finding).c_str());
-  }
-  if (has_error(network.findings)) return static_cast<int>(Exit::wrong_use);
+  if (print_findings(network.findings)) return Exit::wrong_use;
   if (options.check) {
     choose_bus(options, network);
-    if (!has_good_keys(options, network)) return static_cast<int>(Exit::wrong_use);
+    if (!has_good_keys(options, network)) return Exit::wrong_use;
     if (std::fputs(plan_summary(network).c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
       std::fprintf(stderr, "taktd: can't write to stdout: %s\n", std::strerror(errno));
-      return static_cast<int>(Exit::refused);
+      return Exit::refused;
     }
-    return static_cast<int>(fits_the_bus(network, options.network_file, "") ? Exit::good
-                                                                            : Exit::refused);
+    return fits_the_bus(network, options.network_file, "") ? Exit::good : Exit::refused;
   }
   if (lacks_bus(options, network)) {
     std::fprintf(stderr,
                  "taktd: %s names no bus: write `bus: {interface: can0}` into it, or start taktd "
                  "with --bus can0 (--bus sim simulates bus and devices)\n",
                  options.network_file.c_str());
-    return static_cast<int>(Exit::wrong_use);
+    return Exit::wrong_use;
   }
   fits_the_bus(network, options.network_file, "warning: ");
   std::vector<LoadedNetwork> networks;
   networks.push_back(std::move(network));
   Daemon daemon{std::move(networks), options};
-  return static_cast<int>(daemon.run());
+  return daemon.run();
 }
 
 }  // namespace
@@ -76,7 +72,7 @@ int main(int argc, char** argv) {
   const auto options = takt::read_command_line(argc, argv);
   if (!options) return options.error();
   try {
-    return takt::run(*options);
+    return static_cast<int>(takt::run(*options));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "taktd: %s\n", error.what());
     return static_cast<int>(takt::Exit::bus_trouble);

@@ -12,15 +12,8 @@ namespace takt {
 namespace {
 
 spdlog::level::level_enum level_of(Weight weight) noexcept {
-  switch (weight) {
-    case Weight::note:
-      return spdlog::level::info;
-    case Weight::warning:
-      return spdlog::level::warn;
-    case Weight::error:
-      return spdlog::level::err;
-  }
-  return spdlog::level::err;
+  if (weight == Weight::note) return spdlog::level::info;
+  return weight == Weight::warning ? spdlog::level::warn : spdlog::level::err;
 }
 
 const char* colour_of(spdlog::level::level_enum level) noexcept {
