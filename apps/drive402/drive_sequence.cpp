@@ -11,38 +11,16 @@ constexpr std::uint16_t enable_operation = 0x000F;
 constexpr std::uint16_t fault_reset = 0x0080;
 
 std::uint16_t word_to_enable(State402 state) noexcept {
-  switch (state) {
-    case State402::switch_on_disabled:
-      return shutdown;
-    case State402::ready_to_switch_on:
-      return switch_on;
-    case State402::switched_on:
-    case State402::operation_enabled:
-      return enable_operation;
-    case State402::not_ready_to_switch_on:
-    case State402::quick_stop_active:
-    case State402::fault_reaction_active:
-    case State402::fault:
-      break;
-  }
-  return disable_voltage;
+  using enum State402;
+  if (state == switch_on_disabled) return shutdown;
+  if (state == ready_to_switch_on) return switch_on;
+  const bool on = state == switched_on || state == operation_enabled;
+  return on ? enable_operation : disable_voltage;
 }
 
 std::uint16_t word_to_disable(State402 state) noexcept {
-  switch (state) {
-    case State402::operation_enabled:
-      return switch_on;
-    case State402::switched_on:
-      return shutdown;
-    case State402::not_ready_to_switch_on:
-    case State402::switch_on_disabled:
-    case State402::ready_to_switch_on:
-    case State402::quick_stop_active:
-    case State402::fault_reaction_active:
-    case State402::fault:
-      break;
-  }
-  return disable_voltage;
+  if (state == State402::operation_enabled) return switch_on;
+  return state == State402::switched_on ? shutdown : disable_voltage;
 }
 
 std::uint16_t word_to_quick_stop(State402 state) noexcept {
@@ -89,16 +67,9 @@ std::uint16_t DriveSequence::reset_word() noexcept {
 }
 
 std::uint16_t DriveSequence::word_for_goal(Enabling enabling) const noexcept {
-  switch (goal_) {
-    case DriveGoal::enabled:
-      if (enabling == Enabling::waits && !enabled()) break;
-      return word_to_enable(state_);
-    case DriveGoal::quick_stopped:
-      return word_to_quick_stop(state_);
-    case DriveGoal::disabled:
-      break;
-  }
-  return word_to_disable(state_);
+  if (goal_ == DriveGoal::quick_stopped) return word_to_quick_stop(state_);
+  const bool enables = goal_ == DriveGoal::enabled && (enabling == Enabling::goes_on || enabled());
+  return enables ? word_to_enable(state_) : word_to_disable(state_);
 }
 
 bool DriveSequence::in_fault() const noexcept {
@@ -106,16 +77,12 @@ bool DriveSequence::in_fault() const noexcept {
 }
 
 bool DriveSequence::reached() const noexcept {
-  switch (goal_) {
-    case DriveGoal::enabled:
-      return enabled();
-    case DriveGoal::quick_stopped:
-      return state_ == State402::quick_stop_active || state_ == State402::switch_on_disabled;
-    case DriveGoal::disabled:
-      break;
+  using enum State402;
+  if (goal_ == DriveGoal::enabled) return enabled();
+  if (goal_ == DriveGoal::quick_stopped) {
+    return state_ == quick_stop_active || state_ == switch_on_disabled;
   }
-  return state_ == State402::switch_on_disabled || state_ == State402::not_ready_to_switch_on ||
-         state_ == State402::fault;
+  return state_ == switch_on_disabled || state_ == not_ready_to_switch_on || state_ == fault;
 }
 
 }  // namespace takt

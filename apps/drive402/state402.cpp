@@ -1,6 +1,8 @@
 #include <array>
 #include <takt/drive402.hpp>
 
+#include "eds_parser/table/name_of.hpp"
+
 namespace takt {
 namespace {
 
@@ -31,25 +33,10 @@ std::optional<State402> decode_statusword(std::uint16_t statusword) noexcept {
 }
 
 std::string_view name(State402 state) noexcept {
-  switch (state) {
-    case State402::not_ready_to_switch_on:
-      return "not ready to switch on";
-    case State402::switch_on_disabled:
-      return "switch on disabled";
-    case State402::ready_to_switch_on:
-      return "ready to switch on";
-    case State402::switched_on:
-      return "switched on";
-    case State402::operation_enabled:
-      return "operation enabled";
-    case State402::quick_stop_active:
-      return "quick stop active";
-    case State402::fault_reaction_active:
-      return "fault reaction active";
-    case State402::fault:
-      return "fault";
-  }
-  return "unknown";
+  static constexpr std::string_view names[]{
+      "not ready to switch on", "switch on disabled", "ready to switch on",    "switched on",
+      "operation enabled",      "quick stop active",  "fault reaction active", "fault"};
+  return name_of(state, names, "unknown");
 }
 
 }  // namespace takt

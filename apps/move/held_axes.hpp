@@ -1,8 +1,14 @@
 #pragma once
+#include <ranges>
 #include <string>
 #include <takt/axis.hpp>
 
 namespace takt {
+
+/// The numbers of all axes.
+inline auto numbers_of(const AxisControl& axes) {
+  return std::views::iota(AxisControl::Index{0}, axes.size());
+}
 
 /// Returns true if the newest status_t shows that this program holds the nodes of all axes.
 bool holds_all(AxisGroup& group);

@@ -6,7 +6,9 @@
 #include <takt/axis.hpp>
 #include <takt/lcm.hpp>
 #include <unistd.h>
+#include <utility>
 
+#include "apps/command_line/failure.hpp"
 #include "apps/move/move_options.hpp"
 #include "apps/move/move_run.hpp"
 #include "master/lcm/envelope/checked_transport.hpp"
@@ -31,10 +33,27 @@ void ask_for_real_time() {
   ::sched_setscheduler(0, SCHED_FIFO, &parameters);
 }
 
-takt::AxisGroupOptions group_options(const takt::MoveOptions& options) {
-  return {.bus = options.bus,
-          .sender = fmt::format("takt-move {}", ::getpid()),
-          .stale_cycles = options.stale_cycles};
+/// Opens LCM. If the options require it, the connection accepts only messages that the daemon has
+/// signed.
+std::unique_ptr<takt::Transport> open_lcm(const takt::MoveOptions& options) {
+  auto lcm = takt::value_or_fail(takt::open_lcm(options.lcm_url), 3);
+  if (!options.check_images) return lcm;
+  if (options.keys.empty()) {
+    throw takt::Failure{"--check-images needs a key file: --keys FILE", 2};
+  }
+  auto keys = takt::value_or_fail(takt::WatchedKeyFile::open(options.keys), 2);
+  return std::make_unique<takt::CheckedTransport>(std::move(lcm), std::move(keys));
+}
+
+int run(const takt::MoveOptions& options) {
+  takt::AxisGroup group{open_lcm(options),
+                        {.bus = options.bus,
+                         .sender = fmt::format("takt-move {}", ::getpid()),
+                         .stale_cycles = options.stale_cycles}};
+  if (!options.keys.empty()) {
+    group.sign_with(takt::value_or_fail(takt::load_keys(options.keys), 2).front());
+  }
+  return takt::MoveRun{group, options, stop}.run();
 }
 
 }  // namespace
@@ -47,31 +66,10 @@ int main(int argc, char** argv) {
   if (std::signal(SIGHUP, on_hangup) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // under nohup
   std::signal(SIGPIPE, on_hangup);
   ask_for_real_time();
-  auto lcm = takt::open_lcm(options.lcm_url);
-  if (!lcm) {
-    fmt::print(stderr, "takt-move: {}\n", lcm.error());
-    return 3;
+  try {
+    return run(options);
+  } catch (const takt::Failure& failure) {
+    fmt::print(stderr, "takt-move: {}\n", failure.what());
+    return failure.code;
   }
-  if (options.check_images) {
-    if (options.keys.empty()) {
-      fmt::print(stderr, "takt-move: --check-images needs a key file: --keys FILE\n");
-      return 2;
-    }
-    auto keys = takt::WatchedKeyFile::open(options.keys);
-    if (!keys) {
-      fmt::print(stderr, "takt-move: {}\n", keys.error());
-      return 2;
-    }
-    *lcm = std::make_unique<takt::CheckedTransport>(std::move(*lcm), std::move(*keys));
-  }
-  takt::AxisGroup group{std::move(*lcm), group_options(options)};
-  if (!options.keys.empty()) {
-    const auto keys = takt::load_keys(options.keys);
-    if (!keys) {
-      fmt::print(stderr, "takt-move: {}\n", keys.error());
-      return 2;
-    }
-    group.sign_with(keys->front());
-  }
-  return takt::MoveRun{group, options, stop}.run();
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "apps/command_line/known_words.hpp"
+#include "apps/command_line/live_arguments.hpp"
 
 namespace takt {
 namespace {
@@ -47,13 +48,7 @@ ParsedMove parse_move(int argc, char** argv) {
   app.set_version_flag("--version", "takt-move " TAKT_VERSION);
   app.add_option("bus", options.bus, "name of the bus (default: the first bus that is heard)");
   app.add_option("--lcm-url", options.lcm_url, "LCM URL of the daemon; default: LCM_DEFAULT_URL");
-  app.add_option("--keys", options.keys, "key file, if the daemon has one; default: TAKT_KEYS")
-      ->type_name("FILE")
-      ->envname("TAKT_KEYS");
-  app.add_flag("--check-images", options.check_images,
-               "accept only messages that the daemon has signed (see\n"
-               "`authenticate: images`); TAKT_CHECK_IMAGES=true does the same")
-      ->envname("TAKT_CHECK_IMAGES");
+  add_key_options(app, options.keys, options.check_images);
   auto* const to = app.add_option("--to", options.to, "target of each axis, or one for all");
   to->delimiter(',')->check(finite);
   app.add_flag("--sine", only_sine, "move in a sine (without --to: only in a sine)");

@@ -85,7 +85,7 @@ bool MoveRun::fits() {
                   ": no node has 6040 and 6041 in its PDOs");
     return false;
   }
-  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+  for (const AxisControl::Index i : numbers_of(axes_)) {
     if (axes_.signals(i).position && axes_.signals(i).target_position) continue;
     progress_.say(axes_.name(i) + " can't be moved: its PDOs do not contain both 6064 and 607A");
     return false;
@@ -98,7 +98,7 @@ bool MoveRun::fits() {
 
 void MoveRun::begin() {
   const auto& signals = group_.input().signals();
-  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+  for (const AxisControl::Index i : numbers_of(axes_)) {
     const std::string& unit = signals[*axes_.signals(i).position].unit;
     sizes_.push_back(sizes_for(options_, unit));
     units_.push_back(unit.empty() ? "counts" : unit);
@@ -129,15 +129,10 @@ bool MoveRun::devices_answer() {
   const auto answers = [this](AxisControl::Index axis) {
     return !axes_.stale(axis) && axes_.drive(axis).state() != State402::not_ready_to_switch_on;
   };
-  const auto all_answer = [&] {
-    for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
-      if (!answers(i)) return false;
-    }
-    return true;
-  };
+  const auto all_answer = [&] { return std::ranges::all_of(numbers_of(axes_), answers); };
   if (hold_until(all_answer, options_.wait_seconds)) return true;
   if (stop_ != 0) return false;
-  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+  for (const AxisControl::Index i : numbers_of(axes_)) {
     if (!answers(i)) progress_.say(axes_.name(i) + ": the device does not answer (did it boot?)");
   }
   return false;
@@ -204,7 +199,7 @@ bool MoveRun::swing(double seconds) {
   Sine sine{axes_.target_positions(),
             {.amplitude = amplitude, .frequency = options_.frequency, .duration = seconds}};
   std::string reduced;
-  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+  for (const AxisControl::Index i : numbers_of(axes_)) {
     const auto axis = static_cast<std::size_t>(i);
     const double within = sine.amplitude_within(sizes_[axis].limits);
     if (amplitude(i) <= within) continue;
@@ -336,10 +331,7 @@ void MoveRun::disable() {
   }
   axes_.set_goal(DriveGoal::disabled);
   const auto all_over = [this] {
-    for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
-      if (!is_over(i)) return false;
-    }
-    return true;
+    return std::ranges::all_of(numbers_of(axes_), [this](auto i) { return is_over(i); });
   };
   if (all_over() || hold_until(all_over, last_seconds, any_stops)) return;
   good_ = false;
@@ -373,7 +365,7 @@ std::string MoveRun::verdict() const {
 int MoveRun::sum_up() const {
   std::string text =
       fmt::format("\n{:<14}{:>16}{:>24}   unit\n", "axis", "position", "largest following error");
-  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+  for (const AxisControl::Index i : numbers_of(axes_)) {
     text += fmt::format("{:<14}{:>16.4f}{:>24.4f}   {}\n", axes_.name(i), axes_.positions()(i),
                         following_.largest()(i), units_[static_cast<std::size_t>(i)]);
   }

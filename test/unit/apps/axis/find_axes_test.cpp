@@ -1,0 +1,31 @@
+#include "apps/axis/find_axes.hpp"
+
+#include <gtest/gtest.h>
+
+#include "test/unit/apps/axis/messages_for_tests.hpp"
+
+namespace takt {
+namespace {
+
+using test::signal;
+
+TEST(AxisSignals, FindsTheSecondAxisOfADevice) {
+  const std::vector signals{signal(5, 0x6041, false, 16), signal(5, 0x6040, true, 16),
+                            signal(5, 0x6841, false, 16), signal(5, 0x6840, true, 16),
+                            signal(5, 0x687A, true, 32)};
+  const auto axes = find_axes(signals);
+
+  ASSERT_EQ(axes.size(), 2U);
+  EXPECT_EQ(axes[1].name, "shoulder.2");
+  EXPECT_EQ(axes[1].target_position, 4U);
+  EXPECT_EQ(axes[0].target_position, std::nullopt);
+}
+
+TEST(AxisSignals, LeavesOutWhatIsNoAxis) {
+  const std::vector signals{signal(5, 0x6041, false, 16),  // no controlword
+                            signal(6, 0x6000, false, 8), signal(6, 0x6200, true, 8)};
+  EXPECT_TRUE(find_axes(signals).empty());
+}
+
+}  // namespace
+}  // namespace takt
