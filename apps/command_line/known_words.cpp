@@ -1,6 +1,7 @@
 #include "apps/command_line/known_words.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -77,6 +78,19 @@ std::string unknown_word(const CLI::App& app, int argc, const char* const* argv)
     at = verbs.front();
   }
   return {};
+}
+
+std::optional<int> parse_arguments(CLI::App& app, int argc, const char* const* argv) {
+  if (const std::string wrong = unknown_word(app, argc, argv); !wrong.empty()) {
+    std::fprintf(stderr, "%s\n", wrong.c_str());
+    return 2;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return std::nullopt;
 }
 
 }  // namespace takt

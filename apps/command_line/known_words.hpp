@@ -1,5 +1,6 @@
 #pragma once
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,10 @@ namespace takt {
 /// is most likely meant. Empty if all names are known. CLI11 itself would report what is missing
 /// instead.
 std::string unknown_word(const CLI::App& app, int argc, const char* const* argv);
+
+/// Parses the command line of a program. Returns the exit code if the program ends with it, because
+/// the command line is wrong or asks for help.
+std::optional<int> parse_arguments(CLI::App& app, int argc, const char* const* argv);
 
 /// Returns `, did you mean 'start'?`, or an empty text if no name is similar to the word.
 std::string guess(const std::string& word, const std::vector<std::string>& names);

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <cstdio>
 
 #include "apps/command_line/known_words.hpp"
 #include "apps/command_line/live_arguments.hpp"
@@ -62,15 +61,7 @@ ParsedMove parse_move(int argc, char** argv) {
   app.add_option("--wait", options.wait_seconds, "longest wait for the daemon and its devices, s")
       ->check(positive());
   add_motion_options(app, options);
-  if (const std::string wrong = unknown_word(app, argc, argv); !wrong.empty()) {
-    std::fprintf(stderr, "%s\n", wrong.c_str());
-    return {options, 2};
-  }
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return {options, app.exit(error) == 0 ? 0 : 2};
-  }
+  if (const auto exit_code = parse_arguments(app, argc, argv)) return {options, exit_code};
   if (to->count() != 0 || only_sine) {
     options.point = to->count() != 0;
     options.sine = only_sine;

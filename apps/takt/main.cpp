@@ -51,18 +51,12 @@ int run(int argc, char** argv) {
       "was broken, 6 the ordered stop was not confirmed.");
   int exit_code = 0;
   for (const AddCommand add : commands) add(app, exit_code);
-  if (const std::string wrong = unknown_word(app, argc, argv); !wrong.empty()) {
-    std::fprintf(stderr, "%s\n", wrong.c_str());
-    return 2;
-  }
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    const auto ended = parse_arguments(app, argc, argv);  // runs the command, too
+    return ended.value_or(exit_code);
   } catch (const Failure& failure) {
     return complain(failure.what(), failure.code);
   }
-  return exit_code;
 }
 
 }  // namespace

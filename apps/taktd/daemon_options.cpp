@@ -1,7 +1,6 @@
 #include "apps/taktd/daemon_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <map>
 
 #include "apps/command_line/bus_option.hpp"
@@ -37,6 +36,12 @@ Exit codes: 0 good, 1 refused (real time under --rt enforce), 2 wrong use or net
 const std::map<std::string, RtMode> rt_modes{
     {"enforce", RtMode::enforce}, {"try", RtMode::attempt}, {"off", RtMode::off}};
 
+/// Returns the reason why LCM does not take this URL. Empty if it does, or if no URL is given.
+std::string lcm_url_trouble(const std::string& text) {
+  const auto url = parse_lcm_url(text);
+  return url || text.empty() ? "" : url.error();
+}
+
 }  // namespace
 
 std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
@@ -55,6 +60,7 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
       ->type_name("MODE");
   app.add_option("--lcm-url", options.lcm_url,
                  "use this URL, not LCM_DEFAULT_URL and `lcm: {url, broker}` of the file")
+      ->check(lcm_url_trouble)
       ->type_name("URL");
   app.add_option("--for", run_for, "start the ordered stop after this time: 10s, 500ms, 2min")
       ->check(duration_trouble)
@@ -71,21 +77,10 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
                "use BUS_NODE_STATE and BUS_NODE_COMMAND in the types of `takt export lcm`");
   app.add_flag("--check", options.check, "compile everything, print a summary, touch no bus");
   app.add_flag("--observe", options.observe, "listen only: no NMT, no SDO, no SYNC, no outputs");
-  if (const std::string wrong = unknown_word(app, argc, argv); !wrong.empty()) {
-    std::fprintf(stderr, "%s\n", wrong.c_str());
-    return std::unexpected{2};
-  }
-  try {
-    app.parse(argc, argv);
-    if (!rt.empty()) options.rt = rt_modes.at(rt);
-    if (typed != 0) options.typed = typed > 0;
-    if (!run_for.empty()) options.run_for = *parse_duration(run_for);
-    if (const auto url = parse_lcm_url(options.lcm_url); !options.lcm_url.empty() && !url) {
-      throw CLI::ValidationError("--lcm-url", url.error());
-    }
-  } catch (const CLI::ParseError& error) {
-    return std::unexpected{app.exit(error) == 0 ? 0 : 2};
-  }
+  if (const auto exit_code = parse_arguments(app, argc, argv)) return std::unexpected{*exit_code};
+  if (!rt.empty()) options.rt = rt_modes.at(rt);
+  if (typed != 0) options.typed = typed > 0;
+  if (!run_for.empty()) options.run_for = *parse_duration(run_for);
   return options;
 }
 

@@ -201,11 +201,9 @@ std::size_t add_signals(std::vector<Line>& lines, const BusView& bus, std::size_
 Line event_line(const event_t& event) {
   static constexpr Paint paints[] = {Paint::plain, Paint::warning, Paint::bad};
   const std::time_t seconds = event.utime / 1'000'000;
-  std::tm local{};
-  ::localtime_r(&seconds, &local);
   const std::string_view text{event.text};
   Line line;
-  line.add(fmt::format("{:%H:%M:%S} ", local), Paint::dim)
+  line.add(fmt::format("{:%H:%M:%S} ", fmt::localtime(seconds)), Paint::dim)
       .add(text.substr(0, text.find('\n')), paints[std::clamp<int>(event.severity, 0, 2)]);
   return line;
 }
