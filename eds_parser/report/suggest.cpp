@@ -1,23 +1,22 @@
 #include "eds_parser/report/suggest.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <numeric>
 #include <vector>
+
+#include "eds_parser/report/message.hpp"
 
 namespace takt {
 namespace {
 
 constexpr std::size_t longest_word = 64;
 
-char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
-
 /// Returns the Levenshtein distance, in which the exchange of two neighbours counts as one step.
 /// Differences in case, and between `_` and `-`, cost nothing.
 std::size_t distance(std::string_view a, std::string_view b) {
   const auto same = [](char x, char y) {
-    const auto plain = [](char c) { return c == '-' ? '_' : lower(c); };
+    const auto plain = [](char c) { return c == '-' ? '_' : fold(c); };
     return plain(x) == plain(y);
   };
   std::vector<std::size_t> before(b.size() + 1);  // the row before `above`
@@ -41,7 +40,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
 std::string without_underscores(std::string_view text) {
   std::string out;
   for (const char c : text) {
-    if (c != '_' && c != '-' && c != ' ') out += lower(c);
+    if (c != '_' && c != '-' && c != ' ') out += fold(c);
   }
   return out;
 }
@@ -71,7 +70,7 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
 
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates) {
   const std::string_view best = nearest(word, candidates);
-  return best.empty() ? std::string{} : ", did you mean `" + std::string{best} + "`?";
+  return best.empty() ? std::string{} : concat(", did you mean `", best, "`?");
 }
 
 }  // namespace takt

@@ -1,12 +1,14 @@
 #include "eds_parser/report/text.hpp"
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstring>
 
 namespace takt {
 namespace {
 
-/// Windows-1252, 0x80..0x9F; the rest is as in Latin-1.
+/// Windows-1252, 0x80..0x9F; other bytes are as in Latin-1.
 constexpr std::array<char16_t, 32> windows_1252 = {
     0x20AC, 0xFFFD, 0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
     0x2039, 0x0152, 0xFFFD, 0x017D, 0xFFFD, 0xFFFD, 0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
@@ -15,22 +17,10 @@ constexpr std::array<char16_t, 32> windows_1252 = {
 constexpr char32_t replacement = 0xFFFD;
 
 void append_utf8(std::string& out, char32_t code) {
-  const auto put = [&](char32_t byte) { out += static_cast<char>(byte); };
-  if (code < 0x80) {
-    put(code);
-  } else if (code < 0x800) {
-    put(0xC0 | (code >> 6));
-    put(0x80 | (code & 0x3F));
-  } else if (code < 0x10000) {
-    put(0xE0 | (code >> 12));
-    put(0x80 | ((code >> 6) & 0x3F));
-    put(0x80 | (code & 0x3F));
-  } else {
-    put(0xF0 | (code >> 18));
-    put(0x80 | ((code >> 12) & 0x3F));
-    put(0x80 | ((code >> 6) & 0x3F));
-    put(0x80 | (code & 0x3F));
-  }
+  constexpr std::array<char32_t, 4> leads = {0x00, 0xC0, 0xE0, 0xF0};
+  const unsigned more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
+  out += static_cast<char>(leads[more] | code >> 6 * more);
+  for (unsigned i = more; i-- > 0;) out += static_cast<char>(0x80 | (code >> 6 * i & 0x3F));
 }
 
 /// One character and its length. Length 0 means that the bytes are not UTF-8.
@@ -57,29 +47,27 @@ Decoded decode_utf8(std::string_view text, std::size_t at) noexcept {
 
 bool is_ascii(std::string_view text) noexcept {
   std::size_t i = 0;
-  for (; i + 32 <= text.size(); i += 32) {
-    std::array<std::uint64_t, 4> words;
-    std::memcpy(words.data(), text.data() + i, 32);
-    if (((words[0] | words[1] | words[2] | words[3]) & 0x8080'8080'8080'8080) != 0) return false;
-  }
   for (; i + 8 <= text.size(); i += 8) {
     std::uint64_t word = 0;
     std::memcpy(&word, text.data() + i, 8);
     if ((word & 0x8080'8080'8080'8080) != 0) return false;
   }
-  for (; i < text.size(); ++i) {
-    if (static_cast<unsigned char>(text[i]) >= 0x80) return false;
-  }
-  return true;
+  return std::ranges::all_of(text.substr(i),
+                             [](char c) { return static_cast<unsigned char>(c) < 0x80; });
 }
 
 }  // namespace
 
+std::optional<std::uint32_t> hex_digits(std::string_view text) noexcept {
+  std::uint32_t value = 0;
+  const auto* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value, 16);
+  return error == std::errc{} && stop == end ? std::optional{value} : std::nullopt;
+}
+
 std::string_view without_comment(std::string_view value) noexcept {
-  for (std::size_t at = 0; at < value.size(); ++at) {
-    if (value[at] == ';' || value[at] == '#') return trim(value.substr(0, at));
-  }
-  return value;
+  const auto at = value.find_first_of(";#");
+  return at == std::string_view::npos ? value : trim(value.substr(0, at));
 }
 
 bool is_utf8(std::string_view text) noexcept {
@@ -147,6 +135,11 @@ std::string utf8_to_utf16le(std::string_view text) {
     i += length;
   }
   return out;
+}
+
+std::string real_text(double value) {
+  std::array<char, 32> text;
+  return {text.data(), std::to_chars(text.begin(), text.end(), value).ptr};
 }
 
 std::string quoted(std::string_view text) {

@@ -74,7 +74,8 @@ class Differ {
     for (const std::string_view line : lines) out_.push_back({kind, line});
   }
 
-  /// Handles a range: the common beginning and end are the same, and middle() compares the rest.
+  /// Handles a range: the common beginning and end are the same, and middle() compares the lines
+  /// between.
   void range(Lines before, Lines after) {
     std::size_t head = 0;
     const std::size_t least = std::min(before.size(), after.size());

@@ -27,7 +27,7 @@ EDS = "eds_parser/report eds_parser/dictionary eds_parser/ini eds_parser/read"
 ROOMS = {
     TABLE: ("compiled tables: all that the master knows of a network", ""),
     "eds_parser/lcm": ("names, URLs and message types of a bus on LCM", ""),
-    "eds_parser/report": ("findings with their positions, suggestions for misspelled words, differences of texts", ""),
+    "eds_parser/report": ("findings with their positions, messages from parts, suggestions for misspelled words, differences of texts", ""),
     "eds_parser/dictionary": ("the object dictionary of one device", "eds_parser/report eds_parser/ini/number.hpp"),
     "eds_parser/ini": ("the notation of an EDS: sections, keys, numbers, $NODEID", "eds_parser/report eds_parser/dictionary"),
     "eds_parser/read": ("reads the text of an EDS or DCF into a dictionary",
@@ -54,7 +54,7 @@ ROOMS = {
     "eds_parser/network_file": ("reads the YAML file into a specification, and runs all steps up to the plan",
                                 EDS + " eds_parser/lcm eds_parser/check eds_parser/specification eds_parser/plan "
                                 "eds_parser/budget"),
-    "eds_parser/export": ("writes the plan for other tools: DBC, C++ header, LCM types", "eds_parser/lcm"),
+    "eds_parser/export": ("writes the plan for other tools: DBC, C++ header, LCM types", "eds_parser/report eds_parser/lcm"),
     "eds_parser/print": ("dictionaries, budgets and findings as text and JSON",
                          "eds_parser/report eds_parser/dictionary eds_parser/plan eds_parser/budget"),
     "eds_parser/print/plan": ("plans and their differences as text and JSON",
