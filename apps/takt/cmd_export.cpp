@@ -8,9 +8,7 @@
 #include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/text_file.hpp"
-#include "eds_parser/export/cpp_header.hpp"
-#include "eds_parser/export/dbc.hpp"
-#include "eds_parser/export/lcm_text.hpp"
+#include "eds_parser/export/export.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/print/plan/print_plan.hpp"
 

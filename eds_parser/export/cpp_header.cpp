@@ -1,43 +1,27 @@
-#include "eds_parser/export/cpp_header.hpp"
-
 #include <set>
 
 #include "eds_parser/export/dbc_text.hpp"
-#include "eds_parser/export/hex64.hpp"
+#include "eds_parser/export/export.hpp"
+#include "eds_parser/report/message.hpp"
+#include "eds_parser/table/word_list.hpp"
 
 namespace takt {
 namespace {
 
 /// Names that a namespace or constant cannot have: keywords, macros of compilers, and std.
-const std::set<std::string_view> cpp_words{
-    "alignas",   "alignof",      "and",           "and_eq",
-    "asm",       "auto",         "bitand",        "bitor",
-    "bool",      "break",        "case",          "catch",
-    "char",      "char8_t",      "char16_t",      "char32_t",
-    "class",     "co_await",     "co_return",     "co_yield",
-    "compl",     "concept",      "const",         "const_cast",
-    "consteval", "constexpr",    "constinit",     "continue",
-    "decltype",  "default",      "delete",        "do",
-    "double",    "dynamic_cast", "else",          "enum",
-    "explicit",  "export",       "extern",        "false",
-    "float",     "for",          "friend",        "goto",
-    "if",        "inline",       "int",           "linux",
-    "long",      "mutable",      "namespace",     "new",
-    "noexcept",  "not",          "not_eq",        "nullptr",
-    "operator",  "or",           "or_eq",         "private",
-    "protected", "public",       "register",      "reinterpret_cast",
-    "requires",  "return",       "short",         "signed",
-    "sizeof",    "static",       "static_assert", "static_cast",
-    "std",       "struct",       "switch",        "template",
-    "this",      "thread_local", "throw",         "true",
-    "try",       "typedef",      "typeid",        "typename",
-    "union",     "unix",         "unsigned",      "using",
-    "virtual",   "void",         "volatile",      "wchar_t",
-    "while",     "xor",          "xor_eq"};
+constexpr std::string_view cpp_words =
+    "alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t "
+    "char32_t class co_await co_return co_yield compl concept const const_cast consteval "
+    "constexpr constinit continue decltype default delete do double dynamic_cast else enum "
+    "explicit export extern false float for friend goto if inline int linux long mutable "
+    "namespace new noexcept not not_eq nullptr operator or or_eq private protected public "
+    "register reinterpret_cast requires return short signed sizeof static static_assert "
+    "static_cast std struct switch template this thread_local throw true try typedef typeid "
+    "typename union unix unsigned using virtual void volatile wchar_t while xor xor_eq";
 
 std::string cpp_name(std::string_view text) {
   auto name = dbc_name(text);
-  if (cpp_words.contains(name)) name += '_';
+  if (has_word(cpp_words, name)) name += '_';
   return name;
 }
 
@@ -59,17 +43,16 @@ std::string quoted_text(std::string_view text) {
 
 /// Returns the positions of one node's signals, one constant each.
 std::string positions(const BusPlan& plan, std::size_t node, const std::string& space) {
-  std::string out = "\nnamespace " + space + " {\n";
+  std::string out = concat("\nnamespace ", space, " {\n");
   std::set<std::string> used;
   for (std::size_t i = 0; i < plan.layout.signals.size(); ++i) {
     const auto& signal = plan.layout.signals[i];
     if (signal.node_index != node) continue;
-    const auto what = to_string(signal.object) + (signal.output ? ", output" : ", input") +
-                      (signal.unit.empty() ? "" : ", " + signal.unit);
-    out += "inline constexpr std::uint16_t " + unique_name(signal.name, used) + " = " +
-           std::to_string(i) + ";  // " + what + '\n';
+    append(out, "inline constexpr std::uint16_t ", unique_name(signal.name, used), " = ", i,
+           ";  // ", signal.object, signal.output ? ", output" : ", input",
+           signal.unit.empty() ? "" : ", ", signal.unit, '\n');
   }
-  return out + "}  // namespace " + space + '\n';
+  return concat(out, "}  // namespace ", space, '\n');
 }
 
 std::string table(const BusPlan& plan) {
@@ -79,9 +62,9 @@ std::string table(const BusPlan& plan) {
       "  double scale;\n  double offset;\n};\n"
       "inline constexpr Signal signals[] = {\n";
   for (const auto& signal : plan.layout.signals) {
-    out += "    {" + quoted_text(plan.nodes[signal.node_index].name) + ", " +
-           quoted_text(signal.name) + ", " + quoted_text(signal.unit) + ", " +
-           dbc_number(signal.scale) + ", " + dbc_number(signal.offset) + "},\n";
+    append(out, "    {", quoted_text(plan.nodes[signal.node_index].name), ", ",
+           quoted_text(signal.name), ", ", quoted_text(signal.unit), ", ", signal.scale, ", ",
+           signal.offset, "},\n");
   }
   return out + "};\n";
 }
@@ -91,13 +74,12 @@ std::string table(const BusPlan& plan) {
 std::string to_cpp_header(const BusPlan& plan) {
   const auto space = cpp_name(plan.name);
   std::string out =
-      "// Generated by `takt export header`: image layout of bus " + plan.name +
-      ".\n#pragma once\n#include <cstdint>\n\nnamespace " + space + " {\n\n" +
-      "inline constexpr std::uint64_t layout_hash = " + hex64(plan.layout.hash) +
-      ";\ninline constexpr std::uint16_t num_signals = " +
-      std::to_string(plan.layout.signals.size()) +
-      ";\ninline constexpr std::uint16_t num_inputs = " + std::to_string(plan.layout.inputs) +
-      ";  // the rest are outputs\n";
+      concat("// Generated by `takt export header`: image layout of bus ", plan.name,
+             ".\n#pragma once\n#include <cstdint>\n\nnamespace ", space,
+             " {\n\ninline constexpr std::uint64_t layout_hash = ", hex64(plan.layout.hash),
+             ";\ninline constexpr std::uint16_t num_signals = ", plan.layout.signals.size(),
+             ";\ninline constexpr std::uint16_t num_inputs = ", plan.layout.inputs,
+             ";  // the others are outputs\n");
   std::set<std::string> used{"Signal", "signals", "layout_hash", "num_signals", "num_inputs"};
   for (std::size_t node = 0; node < plan.nodes.size(); ++node) {
     out += positions(plan, node, unique_name(plan.nodes[node].name, used));

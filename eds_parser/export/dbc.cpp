@@ -1,11 +1,11 @@
-#include "eds_parser/export/dbc.hpp"
-
 #include <optional>
 #include <set>
 #include <vector>
 
 #include "eds_parser/export/dbc_text.hpp"
 #include "eds_parser/export/drive_words.hpp"
+#include "eds_parser/export/export.hpp"
+#include "eds_parser/report/message.hpp"
 
 namespace takt {
 namespace {
@@ -74,14 +74,13 @@ class DbcWriter {
                        const std::string& receivers) {
     begin_message(CobId::base(0x700U + id.value()), name + "_heartbeat", 1, name, period);
     write_signal({.name = "nmt_state", .bits = 8}, receivers);
-    values_ += "VAL_ " + id_ +
-               " nmt_state 0 \"boot-up\" 4 \"stopped\" 5 \"operational\" 127 \"pre-operational\" "
-               ";\n";
+    append(values_, "VAL_ ", id_,
+           " nmt_state 0 \"boot-up\" 4 \"stopped\" 5 \"operational\" 127 \"pre-operational\" ;\n");
   }
 
   void error_text(const EmcyText& text) {
-    if (texts_.empty()) texts_ = "VAL_ " + id_ + " error_code";
-    texts_ += ' ' + std::to_string(text.code) + " \"" + dbc_text(text.text) + '"';
+    if (texts_.empty()) texts_ = concat("VAL_ ", id_, " error_code");
+    append(texts_, ' ', text.code, " \"", dbc_text(text.text), '"');
   }
 
   void end_values() {
@@ -95,8 +94,8 @@ class DbcWriter {
     const std::string receiver = sent_by_node ? "master" : node;
     if (!continues_mpdo(row)) {
       const bool cyclic = row.cyclic() && plan_.cycle.sync;
-      begin_message(row.cob_id, node + '_' + std::string{kind} + std::to_string(row.number),
-                    row.length, sent_by_node ? node : "master",
+      begin_message(row.cob_id, concat(node, '_', kind, row.number), row.length,
+                    sent_by_node ? node : "master",
                     cyclic ? plan_.cycle.period * row.transmission : row.event_timer);
       if (row.multiplexed()) {
         write_signal({.name = "object", .bits = 32, .multiplex = "M"}, receiver);
@@ -132,27 +131,27 @@ class DbcWriter {
                   .multiplex = multiplex_},
                  receiver);
     if (is_real(signal.type)) {
-      value_types_ += "SIG_VALTYPE_ " + id_ + ' ' + last_name_ + " : " +
-                      (signal.type == DataType::real32 ? "1" : "2") + ";\n";
+      append(value_types_, "SIG_VALTYPE_ ", id_, ' ', last_name_, " : ",
+             signal.type == DataType::real32 ? "1" : "2", ";\n");
     }
-    comments_ += "CM_ SG_ " + id_ + ' ' + last_name_ + " \"" + to_string(signal.object) + ' ' +
-                 std::string{takt::name(signal.type)} + "\";\n";
+    append(comments_, "CM_ SG_ ", id_, ' ', last_name_, " \"", signal.object, ' ', signal.type,
+           "\";\n");
   }
 
   void write_word(const PdoField& field, const Signal& signal, const std::string& receiver) {
     const bool status = signal.object.index == 0x6041;
     const auto& names = status ? statusword_bits : controlword_bits;
     for (unsigned bit = 0; bit < names.size(); ++bit) {
-      write_signal({.name = signal.name + '_' + std::string{names[bit]},
+      write_signal({.name = concat(signal.name, '_', names[bit]),
                     .start = field.bit_offset + bit,
                     .bits = 1,
                     .multiplex = multiplex_},
                    receiver);
       const bool stops = names[bit] == "quick_stop";  // active low
-      values_ += "VAL_ " + id_ + ' ' + last_name_ +
-                 (stops                         ? " 0 \"quick stop\" 1 \"no quick stop\" ;\n"
-                  : status && bit == remote_bit ? " 0 \"local\" 1 \"remote\" ;\n"
-                                                : " 0 \"no\" 1 \"yes\" ;\n");
+      append(values_, "VAL_ ", id_, ' ', last_name_,
+             stops                         ? " 0 \"quick stop\" 1 \"no quick stop\" ;\n"
+             : status && bit == remote_bit ? " 0 \"local\" 1 \"remote\" ;\n"
+                                           : " 0 \"no\" 1 \"yes\" ;\n");
     }
   }
 
@@ -162,37 +161,31 @@ class DbcWriter {
     names_.clear();
     full_names_.clear();
     const auto unique = shorten(name, message_names_);
-    out_ += "\nBO_ " + id_ + ' ' + unique + ": " + std::to_string(length) + ' ' + sender + '\n';
+    append(out_, "\nBO_ ", id_, ' ', unique, ": ", length, ' ', sender, '\n');
     if (unique != name) {
-      attributes_ += "BA_ \"SystemMessageLongSymbol\" BO_ " + id_ + " \"" + name + "\";\n";
+      append(attributes_, "BA_ \"SystemMessageLongSymbol\" BO_ ", id_, " \"", name, "\";\n");
     }
     const auto ms = std::chrono::round<std::chrono::milliseconds>(cycle).count();
-    if (ms > 0) {
-      attributes_ += "BA_ \"GenMsgCycleTime\" BO_ " + id_ + ' ' + std::to_string(ms) + ";\n";
-    }
+    if (ms > 0) append(attributes_, "BA_ \"GenMsgCycleTime\" BO_ ", id_, ' ', ms, ";\n");
   }
 
   /// Makes a name unique in the message. An output that a PDO carries twice is one signal of the
   /// image but two signals of the message.
   std::string unique_in_message(const std::string& name) {
     std::string unique = name;
-    for (unsigned n = 2; !full_names_.insert(unique).second; ++n) {
-      unique = name + '_' + std::to_string(n);
-    }
+    for (unsigned n = 2; !full_names_.insert(unique).second; ++n) unique = concat(name, '_', n);
     return unique;
   }
 
   void write_signal(const DbcSignal& signal, const std::string& receivers) {
     const std::string name = unique_in_message(signal.name);
     last_name_ = shorten(name, names_);
-    out_ += " SG_ " + last_name_ + (signal.multiplex.empty() ? "" : ' ' + signal.multiplex) +
-            " : " + std::to_string(signal.start) + '|' + std::to_string(signal.bits) + "@1" +
-            (signal.is_signed ? '-' : '+') + " (" + dbc_number(signal.scale) + ',' +
-            dbc_number(signal.offset) + ") [0|0] \"" + dbc_text(signal.unit) + "\" " + receivers +
-            '\n';
+    append(out_, " SG_ ", last_name_, signal.multiplex.empty() ? "" : " ", signal.multiplex, " : ",
+           signal.start, '|', signal.bits, "@1", signal.is_signed ? '-' : '+', " (", signal.scale,
+           ',', signal.offset, ") [0|0] \"", dbc_text(signal.unit), "\" ", receivers, '\n');
     if (last_name_ != name) {
-      attributes_ +=
-          "BA_ \"SystemSignalLongSymbol\" SG_ " + id_ + ' ' + last_name_ + " \"" + name + "\";\n";
+      append(attributes_, "BA_ \"SystemSignalLongSymbol\" SG_ ", id_, ' ', last_name_, " \"", name,
+             "\";\n");
     }
   }
 

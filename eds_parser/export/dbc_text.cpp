@@ -1,7 +1,5 @@
 #include "eds_parser/export/dbc_text.hpp"
 
-#include <charconv>
-
 namespace takt {
 namespace {
 
@@ -47,12 +45,6 @@ std::string dbc_text(std::string_view utf8) {
     while (i + 1 < utf8.size() && (static_cast<unsigned char>(utf8[i + 1]) & 0xC0) == 0x80) ++i;
   }
   return text;
-}
-
-std::string dbc_number(double value) {
-  char text[40];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  return {text, end};
 }
 
 }  // namespace takt

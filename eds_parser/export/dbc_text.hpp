@@ -11,7 +11,5 @@ std::string dbc_name(std::string_view text);
 std::string shorten(const std::string& name, std::set<std::string>& used);
 /// Converts UTF-8 to text for use within quotes: Windows-1252 without quotes.
 std::string dbc_text(std::string_view utf8);
-/// Returns the shortest text that reads back as the same number.
-std::string dbc_number(double value);
 
 }  // namespace takt

@@ -1,36 +1,28 @@
 #include "eds_parser/lcm/typed_message.hpp"
 
 #include <algorithm>
-#include <array>
 #include <set>
 
 #include "eds_parser/lcm/lcm_channel.hpp"
+#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/table/word_list.hpp"
 
 namespace takt {
 namespace {
 
 /// Reserved words of C, C++, Java, Python and LCM, names that their C libraries define, and names
 /// of functions in generated code. They are in lower case, as field names are.
-constexpr std::array<std::string_view, 129> taken{
-    "abstract",  "alignas",    "alignof",  "and",      "as",         "asm",      "assert",
-    "async",     "auto",       "await",    "bool",     "boolean",    "break",    "byte",
-    "case",      "catch",      "char",     "class",    "clone",      "concept",  "const",
-    "constexpr", "continue",   "copy",     "decltype", "decode",     "def",      "default",
-    "del",       "delete",     "do",       "double",   "elif",       "else",     "encode",
-    "enum",      "eof",        "equals",   "errno",    "except",     "exec",     "explicit",
-    "export",    "extends",    "extern",   "false",    "final",      "finally",  "finalize",
-    "float",     "for",        "friend",   "from",     "getclass",   "gethash",  "global",
-    "goto",      "hashcode",   "i386",     "if",       "implements", "import",   "in",
-    "inline",    "instanceof", "int",      "int16_t",  "int32_t",    "int64_t",  "int8_t",
-    "interface", "is",         "lambda",   "linux",    "long",       "mutable",  "namespace",
-    "native",    "new",        "noexcept", "none",     "nonlocal",   "not",      "notify",
-    "null",      "nullptr",    "operator", "or",       "package",    "pass",     "print",
-    "private",   "protected",  "public",   "raise",    "register",   "requires", "return",
-    "self",      "short",      "signed",   "sizeof",   "static",     "stderr",   "stdin",
-    "stdout",    "strictfp",   "string",   "struct",   "super",      "switch",   "synchronized",
-    "template",  "this",       "throw",    "throws",   "transient",  "true",     "try",
-    "typedef",   "typename",   "union",    "unix",     "unsigned",   "using",    "virtual",
-    "void",      "volatile",   "while"};
+constexpr std::string_view taken =
+    "abstract alignas alignof and as asm assert async auto await bool boolean break byte case "
+    "catch char class clone concept const constexpr continue copy decltype decode def default del "
+    "delete do double elif else encode enum eof equals errno except exec explicit export extends "
+    "extern false final finally finalize float for friend from getclass gethash global goto "
+    "hashcode i386 if implements import in inline instanceof int int16_t int32_t int64_t int8_t "
+    "interface is lambda linux long mutable namespace native new noexcept none nonlocal not "
+    "notify null nullptr operator or package pass print private protected public raise register "
+    "requires return self short signed sizeof static stderr stdin stdout strictfp string struct "
+    "super switch synchronized template this throw throws transient true try typedef typename "
+    "union unix unsigned using virtual void volatile while";
 
 /// Makes an identifier of lower-case letters, digits and `_` that does not begin with a digit and
 /// is not a reserved word.
@@ -43,7 +35,7 @@ std::string identifier(std::string_view text) {
   }
   // Names that begin with `_` belong to the generated code.
   if (name.empty() || name[0] == '_' || (name[0] >= '0' && name[0] <= '9')) name.insert(0, 1, 'x');
-  if (std::ranges::find(taken, name) != taken.end()) name += '_';
+  if (has_word(taken, name)) name += '_';
   return name;
 }
 
@@ -87,32 +79,22 @@ std::string comment_of(const Signal& signal) {
 }
 
 std::vector<TypedField> head_of(bool command) {
+  using enum LcmPrimitive;
   if (command) {
-    return {{"utime", LcmPrimitive::int64, {}, "microseconds since 1970"},
-            {"session",
-             LcmPrimitive::int64,
-             {},
-             "session of the state; commands of another session are refused"},
-            {"instance",
-             LcmPrimitive::int64,
-             {},
-             "instance of the sender: random, chosen when the sender starts, not 0"},
-            {"sender", LcmPrimitive::string, {}, "name of the sender in events and in status_t"},
-            {"cycle",
-             LcmPrimitive::int64,
-             {},
-             "cycle of the state from which the set-points were computed"},
-            {"time_to_live", LcmPrimitive::int32, {}, "in cycles; 0 = the configured time to live"},
-            {"release", LcmPrimitive::boolean, {}, "the sender gives up the node's outputs"}};
+    return {
+        {"utime", int64, "microseconds since 1970"},
+        {"session", int64, "session of the state; commands of another session are refused"},
+        {"instance", int64, "instance of the sender: random, chosen when the sender starts, not 0"},
+        {"sender", string, "name of the sender in events and in status_t"},
+        {"cycle", int64, "cycle of the state from which the set-points were computed"},
+        {"time_to_live", int32, "in cycles; 0 = the configured time to live"},
+        {"release", boolean, "the sender gives up the node's outputs"}};
   }
-  return {{"utime", LcmPrimitive::int64, {}, "wall clock of SYNC, microseconds since 1970"},
-          {"sync_mono_ns", LcmPrimitive::int64, {}, "monotonic clock of SYNC"},
-          {"session",
-           LcmPrimitive::int64,
-           {},
-           "session of this run of taktd; commands repeat this number"},
-          {"cycle", LcmPrimitive::int64, {}, "number of this SYNC"},
-          {"stale", LcmPrimitive::boolean, {}, "a PDO of the node did not arrive when expected"}};
+  return {{"utime", int64, "wall clock of SYNC, microseconds since 1970"},
+          {"sync_mono_ns", int64, "monotonic clock of SYNC"},
+          {"session", int64, "session of this run of taktd; commands repeat this number"},
+          {"cycle", int64, "number of this SYNC"},
+          {"stale", boolean, "a PDO of the node did not arrive when expected"}};
 }
 
 TypedMessage message_of(const BusPlan& plan, std::size_t node, bool command) {
@@ -129,8 +111,8 @@ TypedMessage message_of(const BusPlan& plan, std::size_t node, bool command) {
     if (signal.node_index != node || signal.output != command) continue;
     message.fields.push_back({.name = unused(identifier(signal.name), used),
                               .type = type_of(signal),
-                              .signal = static_cast<SignalIndex>(i),
-                              .comment = comment_of(signal)});
+                              .comment = comment_of(signal),
+                              .signal = static_cast<SignalIndex>(i)});
   }
   return message;
 }
@@ -153,9 +135,9 @@ std::int64_t mix(std::int64_t value, std::string_view text) noexcept {
 }  // namespace
 
 std::string_view name(LcmPrimitive type) noexcept {
-  constexpr std::array<std::string_view, 8> names{"boolean", "int8_t", "int16_t", "int32_t",
-                                                  "int64_t", "float",  "double",  "string"};
-  return names[static_cast<std::size_t>(type)];
+  static constexpr std::string_view names[]{"boolean", "int8_t", "int16_t", "int32_t",
+                                            "int64_t", "float",  "double",  "string"};
+  return name_of(type, names);
 }
 
 std::uint64_t TypedMessage::fingerprint() const noexcept {

@@ -27,8 +27,8 @@ std::string_view name(LcmPrimitive type) noexcept;
 struct TypedField {
   std::string name;
   LcmPrimitive type = LcmPrimitive::int64;
-  std::optional<SignalIndex> signal{};  ///< empty for a field that every such message has
   std::string comment{};
+  std::optional<SignalIndex> signal{};  ///< empty for a field that every such message has
 };
 
 /// The LCM type of one node's inputs, or of the set-points for its outputs.

@@ -57,6 +57,10 @@ constexpr bool is_real(DataType type) noexcept {
   return type == DataType::real32 || type == DataType::real64;
 }
 
+constexpr bool is_time(DataType type) noexcept {
+  return type == DataType::time_of_day || type == DataType::time_difference;
+}
+
 /// Whether a value is a byte sequence of any length: strings, domains and unknown codes.
 constexpr bool is_bytes(DataType type) noexcept { return bit_width(type) == 0; }
 

@@ -5,9 +5,12 @@
 
 namespace takt {
 
-std::string hex(std::uint32_t value, int digits) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "0x%0*X", digits, value);
+std::string hex(std::uint32_t value, int digits) { return hex64(value, digits); }
+
+std::string hex64(std::uint64_t value, int digits) {
+  std::array<char, 24> text{};
+  std::snprintf(text.data(), text.size(), "0x%0*llX", digits,
+                static_cast<unsigned long long>(value));
   return text.data();
 }
 

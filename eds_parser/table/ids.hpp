@@ -58,6 +58,8 @@ struct ObjectKey {
 
 /// Formats a value as `0x6041`, with at least `digits` digits.
 std::string hex(std::uint32_t value, int digits = 4);
+/// Formats a value of up to 64 bits in the same way.
+std::string hex64(std::uint64_t value, int digits = 16);
 /// Formats an object as `6041:00`.
 std::string to_string(ObjectKey key);
 /// Formats an identifier as `0x185`, or as `0x00012345` if it has 29 bits.

@@ -1,9 +1,7 @@
-#include "eds_parser/export/dbc.hpp"
-
 #include <gtest/gtest.h>
 
-#include "eds_parser/export/cpp_header.hpp"
 #include "eds_parser/export/dbc_text.hpp"
+#include "eds_parser/export/export.hpp"
 
 namespace takt {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "eds_parser/export/lcm_text.hpp"
+#include "eds_parser/export/export.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 
 namespace takt {
