@@ -53,9 +53,7 @@ class Others {
   }
 
  private:
-  bool is_service(std::size_t i) const {
-    return traffic_.frames[i].from_master && !traffic_.frames[i].in_cycle;
-  }
+  bool is_service(std::size_t i) const { return traffic_.frames[i].is_service(); }
 
   void make_streams() {
     std::size_t priority = 0;
@@ -74,7 +72,7 @@ class Others {
 
   Time jitter_of(const TrafficFrame& frame) const {
     if (frame.kind == Traffic::sync) return sync_end_ - sync_frame_;
-    if (frame.in_cycle && frame.kind == Traffic::tpdo) return sync_end_ + options_.device_time;
+    if (frame.is_input()) return sync_end_ + options_.device_time;
     const bool with_sync = frame.in_cycle && frame.from_master && !plan_.cycle.makes_sync();
     const Time jitter = with_sync ? sync_end_ - sync_frame_ : frame.jitter;
     return frame.in_cycle ? jitter + cycle_.outputs_wait : jitter;
@@ -116,7 +114,7 @@ Bounds bounds(const BusTraffic& traffic, const BusPlan& plan, const BudgetOption
 /// last output that is sent.
 Bounds steady_bounds(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options) {
   const auto changes = [](const TrafficFrame& frame) {
-    return frame.in_cycle && frame.on_change && frame.kind == Traffic::rpdo;
+    return frame.is_output() && frame.on_change;
   };
   BusTraffic steady = traffic;
   std::erase_if(steady.frames, changes);
@@ -126,8 +124,8 @@ Bounds steady_bounds(const BusTraffic& traffic, const BusPlan& plan, const Budge
   for (std::size_t i = 0, k = 0; i < all.size(); ++i) {
     if (changes(traffic.frames[i])) continue;
     all[i] = found[k++];
-    const bool output = traffic.frames[i].in_cycle && traffic.frames[i].kind == Traffic::rpdo;
-    if (output) last = last && all[i] ? std::optional{std::max(*last, *all[i])} : std::nullopt;
+    if (traffic.frames[i].is_output())
+      last = last && all[i] ? std::optional{std::max(*last, *all[i])} : std::nullopt;
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (changes(traffic.frames[i])) all[i] = last;

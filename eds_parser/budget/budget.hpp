@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "eds_parser/budget/load.hpp"
 #include "eds_parser/budget/traffic.hpp"
 
 namespace takt {
@@ -28,8 +27,8 @@ struct BudgetRow {
   /// Whether an output delays the next SYNC by more than the tolerance, but only if all
   /// event-driven outputs change at once. Such an output has no deadline of its own.
   bool is_late_by_changes_only() const noexcept {
-    const bool output = frame.in_cycle && frame.kind == Traffic::rpdo;
-    return output && worst && !within(worst) && meets_limit(*worst) && within(worst_steady);
+    return frame.is_output() && worst && !within(worst) && meets_limit(*worst) &&
+           within(worst_steady);
   }
 
  private:

@@ -27,7 +27,7 @@ Time BusyChains::from_devices(std::size_t first, std::size_t end, int rounds, Ti
   if (rounds == 0) return all;
   Time too_many{};
   for (std::size_t k = first; k < end; ++k) {
-    if (!is_answer(frames_[k]) || frames_[k].period < plan_.cycle.period) continue;
+    if (!frames_[k].is_answer() || frames_[k].period < plan_.cycle.period) continue;
     too_many += by_themselves(k, k + 1, within) - answers_in(rounds - 1) - late_answers();
   }
   return all - std::max(too_many, Time{0});

@@ -112,7 +112,8 @@ class BusyChains : protected CycleFrames {
     return services_in_queue() ? std::max(lowest_output_, lowest_service_) : lowest_output_;
   }
 
-  /// The longest frame that may begin while the devices compute, unless the chain counts it anyway.
+  /// The longest frame that may begin while the devices compute, unless the chain already counts
+  /// it.
   Time gap_blocking() const {
     if (options_.device_time == Time{0}) return Time{0};
     const bool counted = services_in_queue() && late_ == LateSync::follows_up;

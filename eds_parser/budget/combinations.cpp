@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <array>
-
-#include "eds_parser/budget/plan_changes.hpp"
+#include <span>
 
 namespace takt {
 namespace {
 
 constexpr std::size_t most_suggestions = 3;
 constexpr unsigned most_tries = 400;
-constexpr std::size_t turns_by_level[] = {2, 4, 8, 16, 32};
+constexpr unsigned turns_by_level[] = {2, 4, 8, 16, 32};
 constexpr unsigned factors_by_level[] = {2, 4, 8, 16, 32, 64};
 constexpr unsigned percents_by_level[] = {115, 130, 150, 200, 300, 400, 800};
 
@@ -27,7 +26,11 @@ class Combinations {
  public:
   Combinations(const BusPlan& plan, const WhatIf& base, const ChangeFits& fits)
       : plan_{plan}, base_{base}, fits_{fits} {
-    ladders_ = {identifiers(), inhibit_times(), turns(), periods(), bitrates()};
+    ladders_ = {identifiers(),
+                ladder_of(1, factors_by_level, longer_inhibits),
+                ladder_of(2, turns_by_level, by_turns),
+                periods(),
+                {.cost = 3, .levels = higher_bitrates(plan)}};
   }
 
   std::vector<Suggestion> run() {
@@ -47,30 +50,17 @@ class Combinations {
   Ladder identifiers() const {
     auto moved = lower_priorities(plan_);
     if (moved.empty()) return {};
-    const std::string text = "lower priority than all synchronous PDOs for " + names_of(moved);
-    return {.cost = 1, .levels = {{.text = text, .changes = {.pdos = std::move(moved)}}}};
+    return {.cost = 1, .levels = {lower_priority_of(std::move(moved))}};
   }
 
-  Ladder inhibit_times() const {
-    Ladder ladder{.cost = 1};
-    for (const unsigned factor : factors_by_level) {
-      auto longer = longer_inhibits(plan_, factor);
-      if (longer.empty()) break;
-      const std::string text =
-          "inhibit times " + std::to_string(factor) + " times as long for " + names_of(longer);
-      ladder.levels.push_back({.text = text, .changes = {.pdos = std::move(longer)}});
-    }
-    return ladder;
-  }
-
-  Ladder turns() const {
-    Ladder ladder{.cost = 2};
-    for (const std::size_t count : turns_by_level) {
-      auto changes = by_turns(plan_, count);
-      if (changes.pdos.empty()) break;
-      const std::string text =
-          "every second SYNC, alternately (SYNC with counter), for " + names_of(changes.pdos);
-      ladder.levels.push_back({.text = text, .changes = std::move(changes)});
+  /// Returns a ladder of changes of PDOs, up to the first level that changes none.
+  Ladder ladder_of(unsigned cost, std::span<const unsigned> levels,
+                   Suggestion (*make)(const BusPlan&, unsigned)) const {
+    Ladder ladder{.cost = cost};
+    for (const unsigned level : levels) {
+      Suggestion change = make(plan_, level);
+      if (change.changes.pdos.empty()) break;
+      ladder.levels.push_back(std::move(change));
     }
     return ladder;
   }
@@ -81,17 +71,7 @@ class Combinations {
     const auto now = static_cast<std::uint64_t>(plan_.cycle.period / std::chrono::microseconds{1});
     for (const unsigned percent : percents_by_level) {
       const auto us = round_period(static_cast<std::uint32_t>(now * percent / 100));
-      ladder.levels.push_back({.text = period_text(plan_, us), .changes = {.sync_period_us = us}});
-    }
-    return ladder;
-  }
-
-  Ladder bitrates() const {
-    Ladder ladder{.cost = 3};
-    for (const auto rate : known_bitrates) {
-      if (rate * 1000U <= plan_.bitrate) continue;
-      ladder.levels.push_back(
-          {.text = bitrate_text(plan_, rate), .changes = {.bitrate_kbit = rate}});
+      ladder.levels.push_back(other_period(plan_, us));
     }
     return ladder;
   }

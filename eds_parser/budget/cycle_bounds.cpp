@@ -40,12 +40,11 @@ class CycleAnalysis : BusyChains {
 
   void bound_inputs() {
     for (std::size_t i = 0; i < frames_.size(); ++i) {
-      if (!is_input(frames_[i])) continue;
+      if (!frames_[i].is_input()) continue;
       std::optional<Time> worst{Time{0}};
       for (std::size_t cycle = 0; cycle < turns() && worst; ++cycle) {
         if (!has_turn(frames_[i], cycle)) continue;
-        const auto end = input_end(i, cycle);
-        worst = end ? std::optional{std::max(*worst, *end)} : std::nullopt;
+        worst = later(worst, input_end(i, cycle));
       }
       bounds_[i] = worst;
     }
@@ -53,14 +52,21 @@ class CycleAnalysis : BusyChains {
 
   /// Bounds one TPDO. TPDOs follow SYNC, so each TPDO of higher priority goes before it once.
   std::optional<Time> input_end(std::size_t at, std::size_t cycle) const {
-    return end_of_input(at, cycle, input_work(at, cycle));
-  }
-
-  Time input_work(std::size_t at, std::size_t cycle) const {
     const auto& own = frames_[at];
+    const auto chains = busy_before(at);
+    if (!chains) return std::nullopt;
     Time others = (own.burst - 1) * own.frame + begun_before_input(at, cycle);
     if (!own.awaited) others += by_master(at);
-    return others + inputs_before(at, cycle);
+    others += inputs_before(at, cycle);
+    std::optional<Time> end{Time{0}};
+    for (auto busy : *chains) {
+      busy.work += others;
+      busy.own = own.frame;
+      busy.since -= origin();
+      busy.input = cycle;
+      end = later(end, end_of(busy));
+    }
+    return end;
   }
 
   /// Bus time of the frame that may have begun before the TPDO is ready. It is either a frame of
@@ -69,28 +75,14 @@ class CycleAnalysis : BusyChains {
   Time begun_before_input(std::size_t at, std::size_t cycle) const {
     Time begun{};
     for (std::size_t k = 0; k < at; ++k) {
-      if (is_service(frames_[k])) begun = std::max(begun, frames_[k].frame);
+      if (frames_[k].is_service()) begun = std::max(begun, frames_[k].frame);
     }
     if (options_.device_time == Time{0}) return begun;
     const Time lower = blocking(at, [&](const TrafficFrame& other) {
-      if (is_input(other)) return has_turn(other, cycle);
+      if (other.is_input()) return has_turn(other, cycle);
       return comes_by_itself(other) || other.kind == Traffic::sdo;
     });
     return std::max(begun, lower);
-  }
-
-  std::optional<Time> end_of_input(std::size_t at, std::size_t cycle, Time others) const {
-    const auto chains = busy_before(at);
-    if (!chains) return std::nullopt;
-    std::optional<Time> end{Time{0}};
-    for (auto busy : *chains) {
-      busy.work += others;
-      busy.own = frames_[at].frame;
-      busy.since -= origin();
-      busy.input = cycle;
-      end = later(end, end_of(busy));
-    }
-    return end;
   }
 
   /// Finds the jitter of another device's SYNC. The analysis cannot distinguish a SYNC that waits
@@ -221,8 +213,8 @@ class CycleAnalysis : BusyChains {
   void find_late_inputs() {
     late_inputs_.assign(frames_.size(), false);
     for (std::size_t i = 0; i < frames_.size(); ++i) {
-      if (!is_input(frames_[i])) continue;
-      const auto end = end_of_input(i, any_cycle, input_work(i, any_cycle));
+      if (!frames_[i].is_input()) continue;
+      const auto end = input_end(i, any_cycle);
       late_inputs_[i] = !end || *end > plan_.cycle.output_deadline;
       if (!end || *end > plan_.cycle.period) late_input_ = std::max(late_input_, frames_[i].frame);
     }
@@ -238,13 +230,9 @@ class CycleAnalysis : BusyChains {
 
   /// Bus time of the TPDOs of the same cycle that an output may meet.
   Time inputs_around(std::size_t lowest) const {
-    Time inputs = blocking(lowest, [this](const TrafficFrame& other) {
-      return comes_by_itself(other) || is_input(other);
-    });
-    for (std::size_t k = 0; k < lowest; ++k) {
-      if (is_input(frames_[k])) inputs += frames_[k].burst * frames_[k].frame;
-    }
-    return inputs;
+    return inputs_before(lowest, any_cycle) + blocking(lowest, [this](const TrafficFrame& other) {
+             return comes_by_itself(other) || other.is_input();
+           });
   }
 
   std::vector<std::optional<Time>> bounds_;

@@ -25,17 +25,21 @@ CycleFrames::CycleFrames(const BusTraffic& traffic, const BusPlan& plan,
 
 void CycleFrames::find_ends_of_cycle() {
   for (std::size_t i = 0; i < frames_.size(); ++i) {
-    if (frames_[i].kind == Traffic::sync) sync_ = i;
-    if (is_output(frames_[i])) queue_.push_back(i);
-    if (is_input(frames_[i])) inputs_work_ += frames_[i].burst * frames_[i].frame;
-    if (is_output(frames_[i])) outputs_work_ += frames_[i].burst * frames_[i].frame;
-    if (!is_service(frames_[i])) continue;
-    services_work_ += frames_[i].burst * frames_[i].frame;
-    longest_service_ = std::max(longest_service_, frames_[i].frame);
+    const auto& frame = frames_[i];
+    const Time work = frame.burst * frame.frame;
+    if (frame.kind == Traffic::sync) sync_ = i;
+    if (frame.is_input()) inputs_work_ += work;
+    if (frame.is_output()) {
+      outputs_work_ += work;
+      queue_.push_back(i);
+      lowest_output_ = i;
+    }
+    if (!frame.is_service()) continue;
+    services_work_ += work;
+    longest_service_ = std::max(longest_service_, frame.frame);
     lowest_service_ = i;
   }
   std::ranges::stable_sort(queue_, {}, [this](std::size_t i) { return frames_[i].cob_id; });
-  for (const std::size_t i : queue_) lowest_output_ = std::max(lowest_output_, i);
   const auto by_itself = [this](const TrafficFrame& other) { return comes_by_itself(other); };
   // The SYNC of another device may come while late frames of the cycle before are still being sent.
   const auto meets_sync = [&](const TrafficFrame& other) {
@@ -85,15 +89,6 @@ Time CycleFrames::by_themselves(std::size_t first, std::size_t end, Time within)
   return sum;
 }
 
-Time CycleFrames::by_master(std::size_t at) const {
-  Time sum{};
-  for (std::size_t k = 0; k < at; ++k) {
-    const auto& other = frames_[k];
-    if (other.from_master && !other.in_cycle) sum += other.burst * other.frame;
-  }
-  return sum;
-}
-
 Time CycleFrames::room_for_services() const noexcept {
   const Time inputs = sync_frame() + inputs_work_;
   const Time from = std::min(inputs, plan_.cycle.receive_window);
@@ -110,7 +105,7 @@ Time CycleFrames::services_in(int cycles) const noexcept {
 Time CycleFrames::services_due(int cycles) const noexcept {
   Time sum{};
   for (const auto& frame : frames_) {
-    if (!is_service(frame)) continue;
+    if (!frame.is_service()) continue;
     const auto periods = 2 + (cycles - 1) * plan_.cycle.period / frame.period;
     const bool often = frame.period < plan_.cycle.period;
     const auto times =
@@ -125,41 +120,18 @@ Time CycleFrames::services_behind_window() const noexcept {
   return std::min(services_in(1), std::max(room, Time{0}));
 }
 
-Time CycleFrames::answers_in(int rounds) const noexcept {
-  Time sum{};
-  for (const auto& frame : frames_) {
-    if (is_answer(frame)) sum += rounds * (frame.burst * frame.frame);
-  }
-  return sum;
-}
-
 Time CycleFrames::late_answers() const noexcept {
   Time sum{};
   for (const auto& frame : frames_) {
     const auto nodes = std::min<std::size_t>(frame.burst, plan_.nodes.size());
-    if (is_answer(frame)) sum += static_cast<Time::rep>(nodes) * frame.frame;
-  }
-  return sum;
-}
-
-Time CycleFrames::inputs_before(std::size_t at, std::size_t cycle) const {
-  Time sum{};
-  for (std::size_t k = 0; k < at; ++k) {
-    const auto& other = frames_[k];
-    if (is_input(other) && has_turn(other, cycle)) sum += other.burst * other.frame;
+    if (frame.is_answer()) sum += static_cast<Time::rep>(nodes) * frame.frame;
   }
   return sum;
 }
 
 Time CycleFrames::outputs_before(std::size_t at, std::size_t cycles_later) const {
-  Time outputs{};
-  if (cycles_later == 0) {
-    outputs = blocking(at, [this](const TrafficFrame& other) { return is_output(other); });
-  }
-  for (std::size_t k = 0; k < at; ++k) {
-    if (is_output(frames_[k])) outputs += frames_[k].burst * frames_[k].frame;
-  }
-  return outputs;
+  constexpr auto output = &TrafficFrame::is_output;
+  return work_before(at, output) + (cycles_later == 0 ? blocking(at, output) : Time{0});
 }
 
 }  // namespace takt

@@ -1,5 +1,7 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -19,19 +21,19 @@ class CycleFrames {
   CycleFrames(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options,
               Company company);
 
-  bool is_input(const TrafficFrame& frame) const noexcept {
-    return frame.in_cycle && frame.kind == Traffic::tpdo;
-  }
-  bool is_output(const TrafficFrame& frame) const noexcept {
-    return frame.in_cycle && frame.kind == Traffic::rpdo;
-  }
-  /// Whether the master sends this frame outside the cycle.
-  bool is_service(const TrafficFrame& frame) const noexcept {
-    return frame.from_master && !frame.in_cycle;
-  }
   bool comes_by_itself(const TrafficFrame& frame) const noexcept {
     return frame.by_itself() &&
            (frame.kind != Traffic::emcy || company_.emcys == Emcys::one_of_each);
+  }
+
+  /// Bus time of the frames before position `end` that `counts` selects.
+  template <class Counts>
+  Time work_before(std::size_t end, Counts counts) const {
+    Time sum{};
+    for (std::size_t k = 0; k < end; ++k) {
+      if (std::invoke(counts, frames_[k])) sum += frames_[k].burst * frames_[k].frame;
+    }
+    return sum;
   }
 
   /// Bus time of the longest frame of lower priority than `at` that may just have begun.
@@ -39,7 +41,7 @@ class CycleFrames {
   Time blocking(std::size_t at, MayBlock may_block) const {
     Time longest{};
     for (std::size_t k = at + 1; k < frames_.size(); ++k) {
-      if (may_block(frames_[k])) longest = std::max(longest, frames_[k].frame);
+      if (std::invoke(may_block, frames_[k])) longest = std::max(longest, frames_[k].frame);
     }
     return longest;
   }
@@ -50,8 +52,11 @@ class CycleFrames {
   Time by_themselves(std::size_t first, std::size_t end, Time within) const;
   /// Bus time of the master's frames outside the cycle that go before `at`. They come when the
   /// master no longer waits for a late TPDO.
-  Time by_master(std::size_t at) const;
-  Time inputs_before(std::size_t at, std::size_t cycle) const;
+  Time by_master(std::size_t at) const { return work_before(at, &TrafficFrame::is_service); }
+  Time inputs_before(std::size_t at, std::size_t cycle) const {
+    return work_before(
+        at, [&](const TrafficFrame& frame) { return frame.is_input() && has_turn(frame, cycle); });
+  }
   /// Bus time of the outputs that go before a TPDO that is still waiting when they are sent. In the
   /// TPDO's own cycle an output of lower priority may have begun, too.
   Time outputs_before(std::size_t at, std::size_t cycles_later) const;
@@ -64,11 +69,10 @@ class CycleFrames {
   Time services_behind_window() const noexcept;
   /// Whether a cycle has room for a request with its answer.
   bool has_room_for_services() const noexcept { return room_for_services() >= longest_service_; }
-  bool is_answer(const TrafficFrame& frame) const noexcept {
-    return frame.kind == Traffic::sdo && !frame.from_master;
-  }
   /// Bus time of the SDO answers to the requests of `rounds` rounds.
-  Time answers_in(int rounds) const noexcept;
+  Time answers_in(int rounds) const {
+    return rounds * work_before(frames_.size(), &TrafficFrame::is_answer);
+  }
   /// Bus time of the SDO answers to requests of an earlier round: at most one from each node.
   Time late_answers() const noexcept;
   bool services_in_queue() const noexcept {

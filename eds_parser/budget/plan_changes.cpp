@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "eds_parser/report/message.hpp"
+
 namespace takt {
 namespace {
 
@@ -35,8 +37,7 @@ Time least_distance(const PdoRow& row, Time cycle) {
 std::string names_of(const std::vector<PdoChange>& changes) {
   std::string names;
   for (const auto& change : changes) {
-    names += (names.empty() ? "" : ", ") + std::string{change.tpdo ? "TPDO" : "RPDO"} +
-             std::to_string(change.number) + ' ' + change.node;
+    append_item(names, change.tpdo ? "TPDO" : "RPDO", change.number, ' ', change.node);
   }
   return names;
 }
@@ -65,7 +66,12 @@ std::vector<PdoChange> lower_priorities(const BusPlan& plan) {
   return moved;
 }
 
-WhatIf by_turns(const BusPlan& plan, std::size_t count) {
+Suggestion lower_priority_of(std::vector<PdoChange> pdos) {
+  return {.text = "lower priority than all synchronous PDOs for " + names_of(pdos),
+          .changes = {.pdos = std::move(pdos)}};
+}
+
+Suggestion by_turns(const BusPlan& plan, unsigned count) {
   std::vector<const PdoRow*> rows;
   for (const auto& row : plan.pdos.tpdos) {
     if (row.transmission == 1 && !row.multiplexed()) rows.push_back(&row);
@@ -81,10 +87,12 @@ WhatIf by_turns(const BusPlan& plan, std::size_t count) {
   }
   const bool counted = plan.cycle.sync_overflow >= 2 && plan.cycle.sync_overflow % 2 == 0;
   if (!counted) changes.sync_overflow = even_counter;
-  return changes;
+  return {
+      .text = "every second SYNC, alternately (SYNC with counter), for " + names_of(changes.pdos),
+      .changes = std::move(changes)};
 }
 
-std::vector<PdoChange> longer_inhibits(const BusPlan& plan, unsigned factor) {
+Suggestion longer_inhibits(const BusPlan& plan, unsigned factor) {
   std::vector<PdoChange> longer;
   for (const auto& row : plan.pdos.tpdos) {
     if (!is_event_driven(row)) continue;
@@ -94,7 +102,8 @@ std::vector<PdoChange> longer_inhibits(const BusPlan& plan, unsigned factor) {
     change.inhibit_time = static_cast<std::uint16_t>(std::min(units, longest_inhibit));
     longer.push_back(std::move(change));
   }
-  return longer;
+  return {.text = concat("inhibit times ", factor, " times as long for ", names_of(longer)),
+          .changes = {.pdos = std::move(longer)}};
 }
 
 std::uint32_t round_period(std::uint32_t period_us) {
@@ -102,19 +111,25 @@ std::uint32_t round_period(std::uint32_t period_us) {
   return (period_us + step - 1) / step * step;
 }
 
-std::string period_text(const BusPlan& plan, std::uint32_t period_us) {
+Suggestion other_period(const BusPlan& plan, std::uint32_t period_us) {
   const auto now = std::chrono::ceil<std::chrono::microseconds>(plan.cycle.period).count();
-  return "SYNC every " + std::to_string(period_us) + " us instead of " + std::to_string(now) +
-         " us";
+  return {.text = concat("SYNC every ", period_us, " us instead of ", now, " us"),
+          .changes = {.sync_period_us = period_us}};
 }
 
-std::string services_text(const BusPlan& plan, std::uint16_t frames) {
-  return "`service_frames: " + std::to_string(frames) + "` instead of " +
-         std::to_string(plan.cycle.service_frames);
+Suggestion other_service_frames(const BusPlan& plan, std::uint16_t frames) {
+  return {.text = concat("`service_frames: ", frames, "` instead of ", plan.cycle.service_frames),
+          .changes = {.service_frames = frames}};
 }
 
-std::string bitrate_text(const BusPlan& plan, std::uint16_t kbit) {
-  return std::to_string(kbit) + " kbit/s instead of " + std::to_string(plan.bitrate / 1000);
+std::vector<Suggestion> higher_bitrates(const BusPlan& plan) {
+  std::vector<Suggestion> higher;
+  for (const std::uint16_t kbit : known_bitrates) {
+    if (kbit * 1000U <= plan.bitrate) continue;
+    higher.push_back({.text = concat(kbit, " kbit/s instead of ", plan.bitrate / 1000),
+                      .changes = {.bitrate_kbit = kbit}});
+  }
+  return higher;
 }
 
 }  // namespace takt

@@ -4,7 +4,7 @@
 
 #include "eds_parser/budget/combinations.hpp"
 #include "eds_parser/budget/fitting_services.hpp"
-#include "eds_parser/budget/plan_changes.hpp"
+#include "eds_parser/report/message.hpp"
 
 namespace takt {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 using std::chrono::microseconds;
 
 constexpr std::uint32_t longest_period_us = 60'000'000;
-constexpr std::size_t most_alternating = 16;
+constexpr unsigned most_alternating = 16;
 std::uint32_t us(Time time) {
   return static_cast<std::uint32_t>(std::chrono::ceil<microseconds>(time).count());
 }
@@ -43,18 +43,9 @@ class Search {
     return plan && bus_fits(*plan, options_);
   }
 
-  std::string label(const PdoRow& row, bool tpdo) const {
-    return (tpdo ? "TPDO" : "RPDO") + std::to_string(row.number) + ' ' +
-           plan_.nodes[row.node_index].name;
-  }
-
-  PdoChange change_of(const PdoRow& row) const {
-    return {.node = plan_.nodes[row.node_index].name, .tpdo = true, .number = row.number};
-  }
-
-  WhatIf with(const std::vector<PdoChange>& pdos) const {
+  WhatIf with(const WhatIf& more) const {
     WhatIf changes = base_;
-    merge(changes, {.pdos = pdos});
+    merge(changes, more);
     return changes;
   }
 
@@ -64,24 +55,27 @@ class Search {
     for (std::size_t i = pdos.size(); i-- > 0 && pdos.size() > 1;) {
       auto less = pdos;
       less.erase(less.begin() + static_cast<std::ptrdiff_t>(i));
-      if (fits(with(less))) pdos = std::move(less);
+      if (fits(with({.pdos = less}))) pdos = std::move(less);
     }
     return pdos;
   }
 
+  /// Adds the change if it is enough. Returns false otherwise.
+  bool try_one(const Suggestion& one) {
+    const bool enough = fits(with(one.changes));
+    if (enough) add(one);
+    return enough;
+  }
+
   void try_services() {
     const auto frames = fitting_service_frames(plan_, options_);
-    if (!frames || *frames == plan_.cycle.service_frames) return;
-    WhatIf changes = base_;
-    changes.service_frames = *frames;
-    add(services_text(plan_, *frames), std::move(changes));
+    if (frames && *frames != plan_.cycle.service_frames) add(other_service_frames(plan_, *frames));
   }
 
   void try_identifiers() {
     auto moved = lower_priorities(plan_);
-    if (moved.empty() || !fits(with(moved))) return;
-    moved = fewest(std::move(moved));
-    add("lower priority than all synchronous PDOs for " + names_of(moved), with(moved));
+    if (moved.empty() || !fits(with({.pdos = moved}))) return;
+    add(lower_priority_of(fewest(std::move(moved))));
   }
 
   /// Tries inhibit times of twice the worst-case time of the frame, at most the longest possible
@@ -90,46 +84,42 @@ class Search {
     const auto budget = bus_budget(plan_, options_);
     std::vector<PdoChange> longer;
     for (const auto& row : plan_.pdos.tpdos) {
+      const auto& node = plan_.nodes[row.node_index].name;
+      const auto name = concat("TPDO", row.number, ' ', node);
       const auto found = std::ranges::find_if(budget.rows, [&](const BudgetRow& other) {
-        return other.frame.name == label(row, true) && !other.frame.in_cycle;
+        return other.frame.name == name && !other.frame.in_cycle;
       });
       if (found == budget.rows.end() || found->fits() || !found->worst) continue;
-      auto change = change_of(row);
       constexpr Time::rep longest_ms = 6553;  // 0xFFFF * 100 us
       const auto ms = std::chrono::ceil<std::chrono::milliseconds>(2 * *found->worst).count();
-      change.inhibit_time = static_cast<std::uint16_t>(std::min(ms, longest_ms) * 10);
-      longer.push_back(std::move(change));
+      longer.push_back({.node = node,
+                        .number = row.number,
+                        .inhibit_time = static_cast<std::uint16_t>(std::min(ms, longest_ms) * 10)});
     }
-    if (longer.empty() || !fits(with(longer))) return;
-    add("longer inhibit times for " + names_of(longer), with(longer));
+    if (longer.empty()) return;
+    const std::string text = "longer inhibit times for " + names_of(longer);
+    try_one({.text = text, .changes = {.pdos = std::move(longer)}});
   }
 
   /// Tries synchronous TPDOs that take turns, beginning with those of the lowest priority.
   void try_alternating() {
-    for (std::size_t count = 2; count <= most_alternating; count += 2) {
+    for (unsigned count = 2; count <= most_alternating; count += 2) {
       const auto turns = by_turns(plan_, count);
-      if (turns.pdos.empty()) return;
-      auto changes = base_;
-      merge(changes, turns);
-      if (!fits(changes)) continue;
-      return add("every second SYNC, alternately (SYNC with counter), for " + names_of(turns.pdos),
-                 std::move(changes));
+      if (turns.changes.pdos.empty() || try_one(turns)) return;
     }
   }
 
   void try_period() {
     if (!plan_.cycle.sync) return;
-    const auto with_period = [this](std::uint32_t period) {
-      WhatIf changes = base_;
-      changes.sync_period_us = period;
-      return changes;
+    const auto is_enough = [this](std::uint32_t period) {
+      return fits(with({.sync_period_us = period}));
     };
     const std::uint32_t now = us(plan_.cycle.period);
     std::uint32_t too_short = now;
     std::uint32_t enough = 0;
     for (std::uint32_t period = round_period(now + 1);
          period <= std::min(64 * now, longest_period_us); period = round_period(period * 3 / 2)) {
-      if (fits(with_period(period))) {
+      if (is_enough(period)) {
         enough = period;
         break;
       }
@@ -139,24 +129,18 @@ class Search {
     while (round_period(too_short + 1) < enough) {
       const auto middle = round_period(too_short + (enough - too_short) / 2);
       if (middle >= enough) break;
-      (fits(with_period(middle)) ? enough : too_short) = middle;
+      (is_enough(middle) ? enough : too_short) = middle;
     }
-    add(period_text(plan_, enough), with_period(enough));
+    add(other_period(plan_, enough));
   }
 
   void try_bitrate() {
-    for (const auto rate : known_bitrates) {
-      if (rate * 1000U <= plan_.bitrate) continue;
-      WhatIf changes = base_;
-      changes.bitrate_kbit = rate;
-      if (!fits(changes)) continue;
-      return add(bitrate_text(plan_, rate), std::move(changes));
+    for (const Suggestion& rate : higher_bitrates(plan_)) {
+      if (try_one(rate)) return;
     }
   }
 
-  void add(std::string text, WhatIf changes) {
-    found_.push_back({std::move(text), std::move(changes)});
-  }
+  void add(const Suggestion& one) { found_.push_back({one.text, with(one.changes)}); }
 
   const BusPlan& plan_;
   const WhatIf& base_;

@@ -4,23 +4,17 @@
 #include <vector>
 
 #include "eds_parser/budget/budget.hpp"
-#include "eds_parser/budget/what_if.hpp"
+#include "eds_parser/budget/plan_changes.hpp"
 
 namespace takt {
-
-/// A change of a network file that makes the network fit. The change was tried.
-struct Suggestion {
-  std::string text;  ///< "SYNC every 2300 us instead of 2000 us"
-  WhatIf changes;
-};
 
 /// Returns the plan of the changed network, or std::nullopt if that cannot be compiled.
 using TryNetwork = std::function<std::optional<BusPlan>(const WhatIf&)>;
 
 /// Returns the changes that make an overloaded network fit, the cheapest first: other identifiers,
-/// longer inhibit times, TPDOs at every second SYNC, a longer period, a higher bit rate. `changes`
-/// are in force already. If no single change is enough, the result holds combinations of them. It
-/// is empty if these are not enough either.
+/// longer inhibit times, TPDOs at every second SYNC, a longer period, a higher bit rate. Each was
+/// tried. `changes` are in force already. If no single change is enough, the result holds
+/// combinations of them. It is empty if these are not enough either.
 std::vector<Suggestion> cheapest_changes(const BusPlan& plan, const WhatIf& changes,
                                          const BudgetOptions& options,
                                          const TryNetwork& try_network);

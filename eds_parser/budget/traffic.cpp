@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "eds_parser/budget/load.hpp"
 #include "eds_parser/budget/service_traffic.hpp"
 #include "eds_parser/plan/frame_time.hpp"
+#include "eds_parser/report/message.hpp"
 
 namespace takt {
 namespace {
@@ -22,16 +22,23 @@ std::uint64_t rank(const TrafficFrame& frame) noexcept {
   return (id >> 18) << 21 | 3ULL << 19 | (id & 0x3FFFF) << 1 | remote;
 }
 
-void append(std::string& names, const std::string& name) {
-  names += (names.empty() ? "" : ", ") + name;
-}
-
 bool is_polled(const PdoRow& pdo) noexcept { return pdo.poll > Time{0} || pdo.poll_syncs != 0; }
 
 /// Whether the device sends the PDO only on request (types 252 and 253), never on an event.
 bool only_on_request(const PdoRow& pdo) noexcept {
   return pdo.transmission == 252 || pdo.transmission == 253;
 }
+
+CobId error_control_id(NodeId node) noexcept { return CobId::base(0x700U + node.value()); }
+
+/// Typical PDOs of n bytes, with small values and many zeros, have about 2 + 0.9 n stuff bits.
+double typical_bits(const TrafficFrame& frame) noexcept {
+  return shortest_frame_bits(frame.bytes, frame.cob_id.is_extended()) + 2.0 + 0.9 * frame.bytes;
+}
+
+double seconds(Time time) noexcept { return std::chrono::duration<double>(time).count(); }
+
+enum class Sender : std::uint8_t { master, device };
 
 class TrafficCollector {
  public:
@@ -53,45 +60,39 @@ class TrafficCollector {
   }
 
  private:
-  TrafficFrame& add(TrafficFrame frame) {
-    frame.frame =
-        wire_time(worst_frame_bits(frame.bytes, frame.cob_id.is_extended()), plan_.bitrate);
-    return out_.frames.emplace_back(std::move(frame));
+  TrafficFrame& add(Sender sender, Traffic kind, std::string name, CobId id, unsigned bytes,
+                    Time period = {}) {
+    return out_.frames.emplace_back(
+        TrafficFrame{.name = std::move(name),
+                     .kind = kind,
+                     .cob_id = id,
+                     .from_master = sender == Sender::master,
+                     .bytes = static_cast<std::uint8_t>(bytes),
+                     .frame = wire_time(worst_frame_bits(bytes, id.is_extended()), plan_.bitrate),
+                     .period = period});
+  }
+
+  TrafficFrame& add_request(std::string name, CobId id, Time period) {
+    auto& request = add(Sender::master, Traffic::remote, std::move(name), id, 0, period);
+    request.remote_request = true;
+    return request;
   }
 
   void collect_master() {
-    add({.name = "NMT",
-         .kind = Traffic::nmt,
-         .cob_id = CobId::base(0),
-         .from_master = true,
-         .bytes = 2,
-         .period = nmt_interval});
+    add(Sender::master, Traffic::nmt, "NMT", CobId::base(0), 2, nmt_interval);
     if (plan_.time.period > Time{0}) {
-      add({.name = "TIME",
-           .kind = Traffic::time,
-           .cob_id = plan_.time.cob_id,
-           .from_master = true,
-           .bytes = 6,
-           .period = plan_.time.period});
+      add(Sender::master, Traffic::time, "TIME", plan_.time.cob_id, 6, plan_.time.period);
     }
     if (plan_.cycle.sync) {
-      add({.name = "SYNC",
-           .kind = Traffic::sync,
-           .cob_id = plan_.cycle.sync_cob_id,
-           .from_master = plan_.cycle.makes_sync(),
-           .in_cycle = true,
-           .bytes = static_cast<std::uint8_t>(plan_.cycle.sync_overflow != 0 ? 1 : 0),
-           .period = plan_.cycle.period,
-           .limit = plan_.cycle.period,
-           .why = BudgetLimit::own_period});
+      auto& sync =
+          add(plan_.cycle.makes_sync() ? Sender::master : Sender::device, Traffic::sync, "SYNC",
+              plan_.cycle.sync_cob_id, plan_.cycle.sync_overflow != 0 ? 1 : 0, plan_.cycle.period);
+      sync.in_cycle = true;
+      limit_by_period(sync);
     }
     if (plan_.master_heartbeat > Time{0}) {
-      auto& frame = add({.name = "heartbeat master",
-                         .kind = Traffic::error_control,
-                         .cob_id = CobId::base(0x700U + plan_.master_id.value()),
-                         .from_master = true,
-                         .bytes = 1,
-                         .period = plan_.master_heartbeat});
+      auto& frame = add(Sender::master, Traffic::error_control, "heartbeat master",
+                        error_control_id(plan_.master_id), 1, plan_.master_heartbeat);
       limit_by_consumers(frame, plan_.master_id);
     }
   }
@@ -118,7 +119,7 @@ class TrafficCollector {
   }
 
   std::string name_of(const PdoRow& pdo, std::string_view kind) const {
-    return std::string{kind} + std::to_string(pdo.number) + ' ' + plan_.nodes[pdo.node_index].name;
+    return concat(kind, pdo.number, ' ', plan_.nodes[pdo.node_index].name);
   }
 
   /// An MPDO has one row for each object. The frames of these rows share one identifier.
@@ -135,43 +136,27 @@ class TrafficCollector {
   void add_tpdo(const PdoRow& pdo) {
     if (joins_frame_of_its_mpdo(pdo, Traffic::tpdo)) return;
     const bool in_cycle = plan_.cycle.sync && pdo.synchronous();
-    auto& frame = add({.name = name_of(pdo, "TPDO"),
-                       .kind = Traffic::tpdo,
-                       .cob_id = pdo.cob_id,
-                       .in_cycle = in_cycle,
-                       .awaited = in_cycle && pdo.cyclic(),
-                       .bytes = pdo.length});
+    auto& frame = add(Sender::device, Traffic::tpdo, name_of(pdo, "TPDO"), pdo.cob_id, pdo.length);
+    frame.in_cycle = in_cycle;
+    frame.awaited = in_cycle && pdo.cyclic();
     set_rate(frame, pdo);
     if (is_polled(pdo)) add_poll(pdo);
   }
 
   void add_rpdo(const PdoRow& pdo) {
     if (joins_frame_of_its_mpdo(pdo, Traffic::rpdo)) return;
-    auto& frame = add({.name = name_of(pdo, "RPDO"),
-                       .kind = Traffic::rpdo,
-                       .cob_id = pdo.cob_id,
-                       .from_master = true,
-                       .in_cycle = plan_.cycle.sync && !pdo.on_request,
-                       .bytes = pdo.length});
+    auto& frame = add(Sender::master, Traffic::rpdo, name_of(pdo, "RPDO"), pdo.cob_id, pdo.length);
+    frame.in_cycle = plan_.cycle.sync && !pdo.on_request;
     set_rate(frame, pdo);
     // The master's own cyclic PDOs are all due at the same SYNC.
     if (frame.every > 1) frame.turn.reset();
   }
 
   void add_poll(const PdoRow& pdo) {
-    add({.name = name_of(pdo, "request of TPDO"),
-         .kind = Traffic::remote,
-         .cob_id = pdo.cob_id,
-         .remote_request = true,
-         .from_master = true,
-         .period = poll_period(pdo)});
+    add_request(name_of(pdo, "request of TPDO"), pdo.cob_id, poll_period(pdo));
     if (pdo.synchronous() || only_on_request(pdo)) return;
-    auto& answer = add({.name = name_of(pdo, "answer of TPDO"),
-                        .kind = Traffic::tpdo,
-                        .cob_id = pdo.cob_id,
-                        .bytes = pdo.length,
-                        .period = poll_period(pdo)});
-    limit_by_period(answer);
+    limit_by_period(add(Sender::device, Traffic::tpdo, name_of(pdo, "answer of TPDO"), pdo.cob_id,
+                        pdo.length, poll_period(pdo)));
   }
 
   Time poll_period(const PdoRow& pdo) const {
@@ -203,7 +188,7 @@ class TrafficCollector {
       frame.period = pdo.inhibit;
     } else if (pdo.event_timer > Time{0} && pdo.event_timer <= plan_.cycle.period) {
       frame.period = pdo.event_timer;
-      append(by_timer_, frame.name);
+      append_item(by_timer_, frame.name);
     } else {
       frame.period_assumed = true;
       return;
@@ -225,11 +210,9 @@ class TrafficCollector {
   }
 
   void collect_node(const NodePlan& node) {
-    add({.name = "EMCY " + node.name,
-         .kind = Traffic::emcy,
-         .cob_id = node.emcy_cob_id.value_or(CobId::base(0x080U + node.id.value())),
-         .bytes = longest_data,
-         .period = options_.emcy_interval});
+    add(Sender::device, Traffic::emcy, "EMCY " + node.name,
+        node.emcy_cob_id.value_or(CobId::base(0x080U + node.id.value())), longest_data,
+        options_.emcy_interval);
     if (node.heartbeat_period > Time{0}) {
       add_heartbeat(node);
     } else if (node.guard.period > Time{0}) {
@@ -238,11 +221,8 @@ class TrafficCollector {
   }
 
   void add_heartbeat(const NodePlan& node) {
-    auto& frame = add({.name = "heartbeat " + node.name,
-                       .kind = Traffic::error_control,
-                       .cob_id = CobId::base(0x700U + node.id.value()),
-                       .bytes = 1,
-                       .period = node.heartbeat_period});
+    auto& frame = add(Sender::device, Traffic::error_control, "heartbeat " + node.name,
+                      error_control_id(node.id), 1, node.heartbeat_period);
     limit_by_wait(frame, node.heartbeat_timeout, "the master");
     limit_by_consumers(frame, node.id);
   }
@@ -250,20 +230,12 @@ class TrafficCollector {
   /// The device detects missing requests by its life guarding, and the master detects missing
   /// answers.
   void add_guarding(const NodePlan& node) {
-    const auto id = CobId::base(0x700U + node.id.value());
-    auto& request = add({.name = "guard request " + node.name,
-                         .kind = Traffic::remote,
-                         .cob_id = id,
-                         .remote_request = true,
-                         .from_master = true,
-                         .period = node.guard.period});
-    limit_by_wait(request, node.life_guarding, node.name + " (0x100D)");
-    auto& answer = add({.name = "guarding " + node.name,
-                        .kind = Traffic::error_control,
-                        .cob_id = id,
-                        .bytes = 1,
-                        .period = node.guard.period,
-                        .answers = true});
+    const CobId id = error_control_id(node.id);
+    limit_by_wait(add_request("guard request " + node.name, id, node.guard.period),
+                  node.life_guarding, node.name + " (0x100D)");
+    auto& answer = add(Sender::device, Traffic::error_control, "guarding " + node.name, id, 1,
+                       node.guard.period);
+    answer.answers = true;
     limit_by_wait(answer, node.guard.life_time(), "the master");
   }
 
@@ -272,16 +244,14 @@ class TrafficCollector {
     if (plan_.nodes.empty()) return;
     const unsigned first = plan_.nodes.front().id.value();
     for (const bool request : {false, true}) {
-      add({.name = request ? "SDO requests" : "SDO answers",
-           .kind = Traffic::sdo,
-           .cob_id = CobId::base((request ? 0x600U : 0x580U) + first),
-           .from_master = request,
-           .bytes = longest_data,
-           .burst = services_.dialogues,
-           .period = services_.round,
-           .jitter = services_.round,
-           .answers = !request});
-      limit_by_timeouts(out_.frames.back());
+      auto& frame =
+          add(request ? Sender::master : Sender::device, Traffic::sdo,
+              request ? "SDO requests" : "SDO answers",
+              CobId::base((request ? 0x600U : 0x580U) + first), longest_data, services_.round);
+      frame.burst = services_.dialogues;
+      frame.jitter = services_.round;
+      frame.answers = !request;
+      limit_by_timeouts(frame);
     }
   }
 
@@ -297,11 +267,11 @@ class TrafficCollector {
 
   void report_assumptions() {
     const auto us = std::chrono::duration_cast<std::chrono::microseconds>(options_.device_time);
-    out_.assumptions.push_back("devices have their TPDOs ready " + std::to_string(us.count()) +
-                               " us after SYNC (--device-time)");
+    out_.assumptions.push_back(
+        concat("devices have their TPDOs ready ", us.count(), " us after SYNC (--device-time)"));
     std::string free;
     for (const auto& frame : out_.frames) {
-      if (frame.period_assumed) append(free, frame.name);
+      if (frame.period_assumed) append_item(free, frame.name);
     }
     assume(
         "no inhibit time: counted once per cycle, although the device may send at every change of "
@@ -328,6 +298,20 @@ class TrafficCollector {
 
 BusTraffic bus_traffic(const BusPlan& plan, const BudgetOptions& options) {
   return TrafficCollector{plan, options}.run();
+}
+
+BusLoad bus_load(const BusTraffic& traffic, std::uint32_t bitrate) noexcept {
+  BusLoad load;
+  for (const auto& frame : traffic.frames) {
+    const double worst = seconds(frame.frame) * frame.burst / seconds(frame.period);
+    if (frame.kind == Traffic::sdo) {
+      load.services += worst;
+    } else if (frame.kind != Traffic::nmt && frame.kind != Traffic::emcy) {
+      load.worst += worst;
+      load.typical += typical_bits(frame) * frame.burst / bitrate / seconds(frame.period);
+    }
+  }
+  return load;
 }
 
 }  // namespace takt

@@ -65,6 +65,11 @@ struct TrafficFrame {
   bool answers = false;  ///< the limit counts from the moment its request was queued
 
   bool by_itself() const noexcept { return !from_master && !in_cycle; }
+  bool is_input() const noexcept { return in_cycle && kind == Traffic::tpdo; }
+  bool is_output() const noexcept { return in_cycle && kind == Traffic::rpdo; }
+  /// Whether the master sends this frame outside the cycle.
+  bool is_service() const noexcept { return from_master && !in_cycle; }
+  bool is_answer() const noexcept { return kind == Traffic::sdo && !from_master; }
 };
 
 /// The frames of a bus in order of priority, the highest first.
@@ -75,6 +80,15 @@ struct BusTraffic {
   std::vector<std::string> assumptions{};  ///< one sentence each
 };
 
+/// Shares of the bus capacity; 1 is the whole capacity.
+struct BusLoad {
+  double typical = 0;   ///< SYNC, PDOs, error control and TIME, with a usual number of stuff bits
+  double worst = 0;     ///< the same with worst stuffing
+  double services = 0;  ///< greatest share of SDO, in addition to `worst`
+};
+
 BusTraffic bus_traffic(const BusPlan& plan, const BudgetOptions& options);
+
+BusLoad bus_load(const BusTraffic& traffic, std::uint32_t bitrate) noexcept;
 
 }  // namespace takt

@@ -4,17 +4,13 @@
 #include <charconv>
 #include <iterator>
 
+#include "eds_parser/report/message.hpp"
+
 namespace takt {
 namespace {
 
 constexpr std::uint32_t shortest_period_us = 200;
 constexpr std::uint32_t longest_period_us = 60'000'000;
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(' ');
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
 
 template <class T>
 std::optional<T> number(std::string_view text, T least, T most) {
@@ -25,6 +21,13 @@ std::optional<T> number(std::string_view text, T least, T most) {
   const auto [stop, error] = std::from_chars(text.data(), end, value, hex ? 16 : 10);
   const bool good = error == std::errc{} && stop == end && value >= least && value <= most;
   return good ? std::optional{value} : std::nullopt;
+}
+
+/// Reads a number. Returns false if it is not within the bounds.
+template <class T>
+bool read(std::string_view text, T least, T most, std::optional<T>& out) {
+  out = number(text, least, most);
+  return out.has_value();
 }
 
 /// Reads a time such as "1500us", "2ms" or "1s".
@@ -56,17 +59,11 @@ bool set_pdo(std::string_view what, std::string_view value, PdoChange& pdo) {
     return true;
   }
   if (what.empty()) {
-    pdo.transmission = number<std::uint8_t>(value, 0, 255);
-    return pdo.transmission && !is_reserved(*pdo.transmission, pdo.tpdo);
+    return read<std::uint8_t>(value, 0, 255, pdo.transmission) &&
+           !is_reserved(*pdo.transmission, pdo.tpdo);
   }
-  if (what == "start") {
-    pdo.sync_start = number<std::uint8_t>(value, 0, 240);
-    return pdo.sync_start.has_value();
-  }
-  if (what == "cob_id") {
-    pdo.cob_id = number<std::uint32_t>(value, 1, 0x1FFF'FFFF);
-    return pdo.cob_id.has_value();
-  }
+  if (what == "start") return read<std::uint8_t>(value, 0, 240, pdo.sync_start);
+  if (what == "cob_id") return read<std::uint32_t>(value, 1, 0x1FFF'FFFF, pdo.cob_id);
   const auto us = what == "inhibit" ? microseconds(value) : std::nullopt;
   if (!us || *us % 100 != 0 || *us / 100 > 0xFFFF) return false;
   pdo.inhibit_time = static_cast<std::uint16_t>(*us / 100);
@@ -92,26 +89,23 @@ bool add_pdo_change(std::string_view key, std::string_view value, WhatIf& change
 }
 
 std::string time_text(std::uint64_t us) {
-  return us % 1000 == 0 ? std::to_string(us / 1000) + "ms" : std::to_string(us) + "us";
+  return us % 1000 == 0 ? concat(us / 1000, "ms") : concat(us, "us");
 }
 
-void append(std::string& text, const std::string& change) {
-  if (!text.empty()) text += ',';
-  text += change;
+/// Adds a change to the list, if the value is given.
+template <class Value>
+void append_change(std::string& list, std::string_view name, const std::optional<Value>& value) {
+  if (value) append(list, list.empty() ? "" : ",", name, '=', *value);
 }
 
-void append(std::string& text, const PdoChange& pdo) {
-  const std::string name = pdo.node + (pdo.tpdo ? ".tpdo" : ".rpdo") + std::to_string(pdo.number);
-  if (pdo.off) append(text, name + "=off");
-  if (pdo.transmission) append(text, name + '=' + std::to_string(*pdo.transmission));
-  if (pdo.sync_start) append(text, name + ".start=" + std::to_string(*pdo.sync_start));
-  if (pdo.inhibit_time) append(text, name + ".inhibit=" + time_text(*pdo.inhibit_time * 100U));
-  if (pdo.cob_id) {
-    constexpr char digits[] = "0123456789ABCDEF";
-    std::string hex;
-    for (std::uint32_t id = *pdo.cob_id; id != 0; id >>= 4) hex.insert(0, 1, digits[id & 0xF]);
-    append(text, name + ".cob_id=0x" + hex);
-  }
+void append_pdo(std::string& list, const PdoChange& pdo) {
+  const std::string name = concat(pdo.node, pdo.tpdo ? ".tpdo" : ".rpdo", pdo.number);
+  if (pdo.off) append_change(list, name, std::optional{"off"});
+  append_change(list, name, pdo.transmission);
+  append_change(list, name + ".start", pdo.sync_start);
+  append_change(list, name + ".inhibit",
+                pdo.inhibit_time.transform([](auto units) { return time_text(units * 100U); }));
+  append_change(list, name + ".cob_id", pdo.cob_id.transform([](auto id) { return Hex{id, 1}; }));
 }
 
 }  // namespace
@@ -119,24 +113,19 @@ void append(std::string& text, const PdoChange& pdo) {
 bool add_change(std::string_view text, WhatIf& changes) {
   const auto equals = text.find('=');
   if (equals == std::string_view::npos) return false;
-  const auto key = trimmed(text.substr(0, equals));
-  const auto value = trimmed(text.substr(equals + 1));
+  const auto key = trim(text.substr(0, equals));
+  const auto value = trim(text.substr(equals + 1));
   if (key == "period") {
     changes.sync_period_us = microseconds(value);
     return changes.sync_period_us && *changes.sync_period_us >= shortest_period_us;
   }
   if (key == "bitrate") {
-    changes.bitrate_kbit = number<std::uint16_t>(value, 10, 1000);
-    return changes.bitrate_kbit &&
+    return read<std::uint16_t>(value, 10, 1000, changes.bitrate_kbit) &&
            std::ranges::find(known_bitrates, *changes.bitrate_kbit) != std::end(known_bitrates);
   }
-  if (key == "services") {
-    changes.service_frames = number<std::uint16_t>(value, 1, 250);
-    return changes.service_frames.has_value();
-  }
+  if (key == "services") return read<std::uint16_t>(value, 1, 250, changes.service_frames);
   if (key == "counter") {
-    changes.sync_overflow = number<std::uint8_t>(value, 0, 240);
-    return changes.sync_overflow && *changes.sync_overflow != 1;
+    return read<std::uint8_t>(value, 0, 240, changes.sync_overflow) && changes.sync_overflow != 1;
   }
   return add_pdo_change(key, value, changes);
 }
@@ -162,11 +151,11 @@ void merge(WhatIf& changes, const WhatIf& more) {
 
 std::string to_string(const WhatIf& changes) {
   std::string text;
-  if (changes.sync_period_us) append(text, "period=" + time_text(*changes.sync_period_us));
-  if (changes.bitrate_kbit) append(text, "bitrate=" + std::to_string(*changes.bitrate_kbit));
-  if (changes.service_frames) append(text, "services=" + std::to_string(*changes.service_frames));
-  if (changes.sync_overflow) append(text, "counter=" + std::to_string(*changes.sync_overflow));
-  for (const auto& pdo : changes.pdos) append(text, pdo);
+  append_change(text, "period", changes.sync_period_us.transform(time_text));
+  append_change(text, "bitrate", changes.bitrate_kbit);
+  append_change(text, "services", changes.service_frames);
+  append_change(text, "counter", changes.sync_overflow);
+  for (const auto& pdo : changes.pdos) append_pdo(text, pdo);
   return text;
 }
 
