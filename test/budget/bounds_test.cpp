@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// TAKT_BUDGET_NETWORKS=5000: so many random networks instead of a few.
+/// TAKT_BUDGET_NETWORKS=5000 tests this number of random networks instead of a few.
 unsigned networks() {
   const char* text = std::getenv("TAKT_BUDGET_NETWORKS");
   return text == nullptr ? 100 : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
@@ -19,7 +19,8 @@ unsigned networks() {
 
 using Bound = std::optional<Time> BudgetRow::*;
 
-/// Nothing is left for a later cycle, and the outputs delay SYNC by no more than is tolerated.
+/// Returns true if no frame remains for a later cycle, and if the outputs delay SYNC by no more
+/// than the tolerance.
 bool has_all_bounds(const BusBudget& budget) {
   return std::ranges::all_of(budget.rows, [](const BudgetRow& row) {
     return row.worst && (row.cycle == Time{0} || *row.worst <= row.cycle + row.tolerance);
@@ -31,7 +32,8 @@ bool cycle_fits(const BusBudget& budget) {
       budget.rows, [](const BudgetRow& row) { return !row.frame.in_cycle || row.fits(); });
 }
 
-/// Bound against sight of the latest synchronous frame, of that direction where it is wider.
+/// Returns the bound of the latest synchronous frame divided by its measured end, for TPDOs or for
+/// RPDOs, whichever is greater.
 double widest(const BusBudget& budget, const SeenBus& seen) {
   double widest = 0;
   for (const auto kind : {Traffic::tpdo, Traffic::rpdo}) {
@@ -48,7 +50,7 @@ double widest(const BusBudget& budget, const SeenBus& seen) {
   return widest;
 }
 
-/// The same of SYNC and each synchronous frame.
+/// Returns the greatest such quotient of SYNC and all synchronous frames.
 double widest_of_each(const BusBudget& budget, const SeenBus& seen) {
   double widest = 0;
   for (std::size_t i = 0; i < seen.rows.size(); ++i) {
@@ -76,7 +78,7 @@ void expect_within_bounds(const BusBudget& budget, const SeenBus& seen, Bound bo
   }
 }
 
-/// TAKT_BUDGET_FIRST=10000: others than those from 0 on.
+/// TAKT_BUDGET_FIRST=10000 begins with network 10000 instead of 0.
 unsigned first_network() {
   const char* text = std::getenv("TAKT_BUDGET_FIRST");
   return text == nullptr ? 0 : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
@@ -122,7 +124,7 @@ TEST(Budget, NoFrameIsLaterThanItsBoundBehindServiceFramesInOneQueue) {
   std::printf("%u of %u networks have all bounds\n", bounded, networks());
 }
 
-/// Turns and chances that meet the longest frames are rare: those are looked for longer.
+/// The turns in which the longest frames meet are rare, so these networks run for more cycles.
 SeenBus seen_on(const BusPlan& plan, const BusBudget& budget, sim::Random& random, double most) {
   auto seen = run_worst_phase(plan, budget, {.device_time = 30us, .cycles = 600}, random);
   for (std::uint64_t more = 1; more <= 30 && widest_of_each(budget, seen) > most; ++more) {

@@ -13,7 +13,7 @@ inline void apply(const PdoChange& change, PdoRow& row) {
   if (change.inhibit_time) row.inhibit = *change.inhibit_time * std::chrono::microseconds{100};
 }
 
-/// The plan as a network file with these values would give it.
+/// Returns the plan that a network file with these values would give.
 inline std::optional<BusPlan> changed(BusPlan plan, const WhatIf& changes) {
   if (changes.sync_period_us) {
     plan.cycle.period = std::chrono::microseconds{*changes.sync_period_us};

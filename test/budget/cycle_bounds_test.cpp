@@ -10,7 +10,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::ElementsAre;
 
-/// Of SYNC and the PDOs, by priority.
+/// Returns the ends of SYNC and the PDOs in order of priority.
 std::vector<std::int64_t> latest_us(const BusBudget& budget) {
   std::vector<std::int64_t> out;
   for (const auto& row : budget.rows) {
@@ -19,7 +19,8 @@ std::vector<std::int64_t> latest_us(const BusBudget& budget) {
   return out;
 }
 
-// SYNC takes 55 bits, a PDO and an SDO answer 135 each; outputs go out at 2000 - 135 - 40 - 270.
+// SYNC takes 55 bits, a PDO and an SDO answer 135 each; the outputs are sent at 2000 - 135 - 40 -
+// 270.
 
 TEST(CycleBounds, ASdoAnswerMayHaveBegunBeforeSyncBeforeTheInputsAndBeforeTheOutputs) {
   const auto budget = bus_budget(hand_made_bus(2, 2ms), {.device_time = 30us});
@@ -76,7 +77,7 @@ TEST(CycleBounds, EmcysOfAllNodesAtOnceAreAColumnOfTheirOwn) {
   EXPECT_FALSE(budget.fits_in_burst());  // the last RPDO at 2230 us delays SYNC by more than 200
 }
 
-/// Each node with a second TPDO and a second RPDO, both on change.
+/// Gives each node a second TPDO and a second RPDO, both sent on change.
 BusPlan with_events(std::uint8_t nodes, Time period) {
   auto plan = hand_made_bus(nodes, period);
   for (auto* rows : {&plan.pdos.tpdos, &plan.pdos.rpdos}) {
@@ -96,8 +97,8 @@ BusPlan with_events(std::uint8_t nodes, Time period) {
 TEST(CycleBounds, OutputsThatAreLateOnlyWhileAllEventDrivenOnesChangeFitWithAWarning) {
   const auto budget = bus_budget(with_events(2, 2ms), {.device_time = 30us});
 
-  // From 1285 us on a frame that has begun, four outputs, and two TPDOs that go before the last
-  // two of them. SYNC may be 200 us late.
+  // From 1285 us: a frame that has begun, four outputs, and two TPDOs that go before the last two
+  // outputs. SYNC may be 200 us late.
   const auto& last = budget.rows[11];
   EXPECT_EQ(last.frame.name, "RPDO2 n2");
   EXPECT_EQ(last.worst, 1285us + 135us + 2 * 135us + 4 * 135us);
@@ -121,8 +122,9 @@ TEST(CycleBounds, LateAnswersHoldUpServiceFramesAndTheOutputsBehindThem) {
   plan.cycle.service_frames = 3;
   const auto budget = bus_budget(plan, {.device_time = 30us});
 
-  // NMT (75) and three requests (405) are handed over so that on a free wire they end with as long
-  // for answers before 3380. Of each of three nodes an answer is late (405), a heartbeat has begun.
+  // NMT (75) and three requests (405) are queued so that on a free bus they end before 3380, with
+  // the same time for their answers. Each of three nodes has a late answer (405), and a heartbeat
+  // has begun.
   const auto services = 3380us - 480us + 2 * 405us + 65us;
   EXPECT_EQ(budget.rows[10].frame.name, "RPDO1 n3");
   EXPECT_EQ(budget.rows[10].worst, 3380us + 135us + 3 * 135us);

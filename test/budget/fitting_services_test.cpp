@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A bus whose heartbeats come in time only if SDO leaves them room.
+/// Makes a bus whose heartbeats come in time only if SDO leaves time for them.
 BusPlan with_urgent_heartbeats() {
   auto plan = hand_made_bus(120, 80ms);
   for (NodePlan& node : plan.nodes) node.heartbeat_timeout = 300ms;

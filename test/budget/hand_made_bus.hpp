@@ -13,8 +13,8 @@ inline void compile(BusPlan& plan) {
   compile_cycle(NetworkSpec{}, {}, plan, report);
 }
 
-/// So many nodes at 1 Mbit/s, each with a TPDO and an RPDO of eight bytes every SYNC and a
-/// heartbeat every 100 ms.
+/// Makes a bus of this number of nodes at 1 Mbit/s. Each node has a TPDO and an RPDO of eight bytes
+/// at every SYNC, and a heartbeat every 100 ms.
 inline BusPlan hand_made_bus(std::uint8_t nodes, Time period) {
   BusPlan plan{.name = "test"};
   plan.cycle.period = period;

@@ -84,8 +84,8 @@ TEST(BudgetLimits, ADevicesHeartbeatIsAwaitedByTheMasterAndByDevices) {
   EXPECT_THAT(json.str(), HasSubstr("\"limit_by\": \"n2 (0x1016)\""));
 }
 
-/// One node without PDOs that is guarded every 100 ms, at 1 Mbit/s without SYNC; one SDO dialogue
-/// in 10 ms.
+/// Makes a bus at 1 Mbit/s without SYNC, with one node without PDOs that is guarded every 100 ms,
+/// and with one SDO dialogue in 10 ms.
 BusPlan guarded() {
   BusPlan plan{.name = "guarded"};
   plan.cycle.sync = false;
@@ -121,15 +121,15 @@ TEST(BudgetLimits, LifeGuardingOfTheDeviceLimitsTheRequest) {
 TEST(BudgetLimits, AnSdoAnswerHasWhatItsRequestLeavesOfTheTimeOut) {
   const auto budget = bus_budget(guarded());
 
-  // Behind a guarding answer that has begun (65), NMT (75), and two answers (135 each); a round
-  // may be as late as the next (10 ms).
+  // Waits for a guarding answer that has begun (65), NMT (75), and two answers (135 each). A round
+  // may be late by one round (10 ms).
   EXPECT_EQ(row_of(budget, "SDO requests").worst, 10ms + 65us + 75us + 270us + 135us);
   EXPECT_EQ(row_of(budget, "SDO requests").limit, 500ms);
   EXPECT_EQ(row_of(budget, "SDO answers").limit, 500ms - 10ms - 545us);
 }
 
 TEST(BudgetLimits, WhatTaktdRefusesIsDeclaredInTextAndJson) {
-  // SYNC 55, four TPDOs 540, four RPDOs 540, and 135 + 20 of quiet: 1290 us.
+  // SYNC 55, four TPDOs 540, four RPDOs 540, and the quiet time of 135 + 20: 1290 us.
   const auto plan = hand_made_bus(4, 1ms);
   const auto budget = bus_budget(plan);
 

@@ -47,7 +47,7 @@ class PlanTraffic {
         .cob_id = id, .bytes = bytes, .kind = kind, .sent = Sent::in_slack, .distance = distance});
   }
 
-  /// A remote request of the master, and what the device sends then.
+  /// Adds a remote request of the master and the answer of the device.
   void add_asked(Traffic kind, CobId id, std::uint8_t bytes, Time distance) {
     auto& request = in_slack(Traffic::remote, id, 0, distance);
     request.remote_request = true;
@@ -72,7 +72,7 @@ class PlanTraffic {
     out_.push_back(frame);
   }
 
-  /// Without inhibit time values change once a cycle here; the event timer goes on besides.
+  /// Without an inhibit time, values change once per cycle. An event timer sends in addition.
   Time least_distance(const PdoRow& pdo) const {
     if (pdo.inhibit > Time{0}) return pdo.inhibit;
     const Time timer = pdo.event_timer > Time{0} ? pdo.event_timer : plan_.cycle.period;
@@ -114,7 +114,7 @@ class PlanTraffic {
     }
   }
 
-  /// A server answers when it has done what it was asked for.
+  /// Adds SDO requests and answers. A server answers when it has done what was requested.
   void add_dialogues(Dialogues dialogues) {
     if (plan_.nodes.empty() || dialogues.count == 0) return;
     const unsigned id = plan_.nodes.front().id.value();

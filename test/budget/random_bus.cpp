@@ -13,13 +13,13 @@ constexpr std::uint32_t rates[] = {125'000, 250'000, 500'000, 800'000, 1'000'000
 constexpr std::uint32_t first_cob_ids[2][4] = {{0x180, 0x280, 0x380, 0x480},
                                                {0x200, 0x300, 0x400, 0x500}};
 
-/// Those of 29 bits lie between those of 11 bits.
+/// Returns a COB-ID. The priorities of 29-bit identifiers are between those of 11-bit identifiers.
 CobId random_id(sim::Random& random, std::uint32_t base) {
   if (!random.chance(0.1)) return CobId::base(base);
   return CobId::extended(base << 18 | random.below(1U << 18));
 }
 
-/// By events, by a timer, or only when the master asks.
+/// Sends a PDO by events, by a timer, or only on request of the master.
 void set_events(sim::Random& random, PdoRow& row, bool tpdo) {
   row.transmission = 255;
   if (random.chance(0.6)) row.inhibit = 1ms * (1 + random.below(40));
@@ -47,7 +47,7 @@ PdoRow random_pdo(sim::Random& random, const NodePlan& node, std::uint8_t index,
   return row;
 }
 
-/// Heartbeats, guarding, or neither.
+/// Gives a node heartbeats, guarding, or neither.
 void set_error_control(sim::Random& random, NodePlan& node) {
   if (random.chance(0.8)) {
     node.heartbeat_period = 1ms * (20 + random.below(200));

@@ -22,7 +22,7 @@ std::vector<std::int64_t> in_us(const std::vector<std::optional<Time>>& times) {
 }
 
 TEST(ResponseTime, TheWorstInstanceNeedNotBeTheFirst) {
-  // example of Davis, Burns, Bril and Lukkien: C is late in its second instance
+  // This is the example of Davis, Burns, Bril and Lukkien: C is late in its second instance.
   const FrameStream streams[] = {{1, milliseconds{1}, microseconds{2500}, {}},
                                  {2, milliseconds{1}, microseconds{3500}, {}},
                                  {3, milliseconds{1}, microseconds{3500}, {}}};
@@ -56,7 +56,7 @@ std::vector<FrameStream> four_drives(Time tpdo_jitter = {}) {
   return drives({.tpdo_jitter = tpdo_jitter});
 }
 
-/// Response of an RPDO of `drives`.
+/// Returns the response time of an RPDO of one of `drives` drives.
 std::int64_t rpdo_us(const Bus& bus, int number) {
   const auto all = in_us(worst_responses(drives(bus), bus.bit_us * bit));
   return all[static_cast<std::size_t>(3 + bus.drives + number - 1)];
@@ -109,7 +109,8 @@ std::vector<FrameStream> sync_and_pdos(int drives, Time period, Time one_bit) {
   return streams;
 }
 
-/// The most drives whose last PDO is through before the next SYNC, behind a frame that has begun.
+/// Returns the greatest number of drives whose last PDO ends before the next SYNC, if it waits for
+/// a frame that has begun.
 int most_in_time(Time period, Time one_bit) {
   for (int count = 0;; ++count) {
     auto streams = sync_and_pdos(count + 1, period, one_bit);
@@ -119,7 +120,7 @@ int most_in_time(Time period, Time one_bit) {
   }
 }
 
-/// The most that need no more than 80 % of the bus.
+/// Returns the greatest number of drives that need no more than 80 % of the bus.
 int most_at_80_percent(Time period, Time one_bit) {
   int count = 0;
   while (load(sync_and_pdos(count + 1, period, one_bit)) <= 0.8) ++count;

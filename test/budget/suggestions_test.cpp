@@ -24,7 +24,7 @@ TEST(Suggestions, ThePeriodIsTheShortestOnWhichItFits) {
 
   const auto found = suggestions_for(plan);
 
-  // At 1750 us the window ends at 885 us, at 1800 us at 909 us; the last TPDO is in after 895 us.
+  // At 1750 us the window ends at 885 us, at 1800 us at 909 us; the last TPDO ends after 895 us.
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].text, "SYNC every 1800 us instead of 1000 us");
   EXPECT_EQ(to_string(found[0].changes), "period=1800us");
@@ -42,7 +42,8 @@ TEST(Suggestions, ABitRateIsTheLowestOnWhichItFits) {
   EXPECT_EQ(found[1].text, "500 kbit/s instead of 250");
 }
 
-/// Four drives, and so many event-driven TPDOs of the first that go before all theirs.
+/// Makes a bus of four drives. The first drive has `events` event-driven TPDOs that have priority
+/// over all other TPDOs.
 BusPlan with_urgent_events(Time period, std::uint16_t events, std::uint8_t bytes) {
   auto plan = hand_made_bus(4, period);
   for (auto& row : plan.pdos.tpdos) row.cob_id = CobId::base(row.cob_id.id() + 0x100U);
@@ -60,7 +61,7 @@ BusPlan with_urgent_events(Time period, std::uint16_t events, std::uint8_t bytes
 }
 
 TEST(Suggestions, AnotherIdentifierIsWhatMakesItFit) {
-  // Without it the last TPDO is in after 895 of 909 us.
+  // Without this TPDO the last TPDO ends after 895 of 909 us.
   const auto plan = with_urgent_events(1800us, 1, 8);
   ASSERT_FALSE(bus_budget(plan).fits());
 
@@ -73,7 +74,7 @@ TEST(Suggestions, AnotherIdentifierIsWhatMakesItFit) {
 }
 
 TEST(Suggestions, NoMoreIdentifiersAreChangedThanMustBe) {
-  // One of 65 us has room before the window ends, two have not.
+  // There is time for one frame of 65 us before the window ends, but not for two.
   const auto plan = with_urgent_events(2ms, 2, 1);
   ASSERT_FALSE(bus_budget(plan).fits());
 
@@ -84,7 +85,7 @@ TEST(Suggestions, NoMoreIdentifiersAreChangedThanMustBe) {
   EXPECT_TRUE(bus_budget(*changed(plan, found[0].changes)).fits());
 }
 
-/// Of a device that sends four TPDOs each millisecond, beside those of two drives, at 1 Mbit/s.
+/// Makes a bus at 1 Mbit/s of two drives and a device that sends four TPDOs each millisecond.
 BusPlan with_a_talker(Time inhibit) {
   auto plan = hand_made_bus(3, 2ms);
   for (std::uint16_t number = 2; number <= 9; ++number) {
@@ -150,7 +151,7 @@ TEST(Suggestions, AFrameThatNeedsMoreThanTheLongestInhibitTimeDoesNotHideThoseOf
   EXPECT_TRUE(bus_budget(*changed(plan, found[0].changes)).fits());
 }
 
-/// As typed on the command line.
+/// Reads changes as typed on the command line.
 WhatIf read_back(const WhatIf& changes) {
   WhatIf out;
   std::istringstream in{to_string(changes)};

@@ -21,7 +21,7 @@ TrafficFrame frame_of(const BusTraffic& traffic, std::string_view name) {
   return found == traffic.frames.end() ? TrafficFrame{} : *found;
 }
 
-/// One node with a TPDO of type 255, with SYNC every 10 ms.
+/// Makes a bus with SYNC every 10 ms and one node with a TPDO of type 255.
 BusPlan by_event(Time inhibit, Time event_timer) {
   auto plan = hand_made_bus(1, 10ms);
   auto& tpdo = plan.pdos.tpdos[0];

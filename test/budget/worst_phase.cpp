@@ -7,34 +7,12 @@
 #include "master/sim/bus/frame_bits.hpp"
 #include "master/sim/bus/virtual_bus.hpp"
 #include "test/budget/plan_traffic.hpp"
+#include "test/budget/stuffed_frame.hpp"
 
 namespace takt {
 namespace {
 
 constexpr Time moment{1};
-
-/// Of many data the one with the most stuff bits.
-Frame stuffed(const PlanFrame& what, sim::Random& random) {
-  Frame best{.id = what.cob_id, .length = what.bytes, .rtr = what.remote_request};
-  std::uint16_t most = sim::frame_bits(best).total;
-  Frame frame = best;
-  for (unsigned attempt = 0; attempt < 400 && what.bytes != 0 && !what.remote_request; ++attempt) {
-    // Runs of four behind one of five make the next stuff bit each; the rest is for the CRC.
-    const auto pattern = static_cast<std::uint8_t>(0x0F0F >> (attempt % 8));
-    const bool again = attempt >= 100 && attempt % 2 == 1;  // from the best so far
-    if (again) frame.data = best.data;
-    if (!again) frame.data.fill(pattern);
-    for (unsigned i = 0; i < attempt / 8 % 4 + (again ? 1U : 0U); ++i) {
-      frame.data[random.below(what.bytes)] = static_cast<std::uint8_t>(random.next());
-    }
-    for (std::size_t i = what.bytes; i < 8; ++i) frame.data[i] = 0;
-    const std::uint16_t total = sim::frame_bits(frame).total;
-    if (total <= most) continue;
-    most = total;
-    best = frame;
-  }
-  return best;
-}
 
 class WorstPhase {
  public:
@@ -77,12 +55,13 @@ class WorstPhase {
     Frame frame;
     sim::BusNodeIndex sender = 0;
     std::optional<std::size_t> row;
-    unsigned left = 0;        ///< of a burst
-    Time next{};              ///< may come again from here on
-    std::deque<Time> queued;  ///< when those were that are not through
+    unsigned left = 0;        ///< number of frames of the present burst that are not queued yet
+    Time next{};              ///< earliest time of the next frame
+    std::deque<Time> queued;  ///< times from which the frames that are not sent yet count
   };
 
-  /// Of the devices one for each identifier: what counts is the bus.
+  /// Returns the sender of a frame. All devices that use one identifier are one sender, because
+  /// only the order of the frames on the bus matters.
   sim::BusNodeIndex sender_of(std::size_t i) {
     const PlanFrame& what = traffic_[i];
     if (what.sent == Sent::in_slack) return options_.one_queue ? master_ : services_;
@@ -95,7 +74,8 @@ class WorstPhase {
     return bus_.attach({.capacity = 64});
   }
 
-  /// Of two rows with one identifier the second is what is sent on request.
+  /// Returns the row of the budget for a frame. If two rows have the same identifier, the second
+  /// one is the answer to a remote request.
   static std::optional<std::size_t> row_of(const PlanFrame& what,
                                            const std::vector<BudgetRow>& rows) {
     std::optional<std::size_t> found;
@@ -114,19 +94,19 @@ class WorstPhase {
   }
 
   void begin_cycle() {
-    served_ = put_out_ = !plan_.cycle.makes_sync();
+    served_ = outputs_queued_ = !plan_.cycle.makes_sync();
     awaited_ = 0;
     calm_ = random_.chance(0.4);
     for (std::size_t i = 0; i < traffic_.size(); ++i) {
       if (traffic_[i].sent == Sent::sync) queue(i, sync_, sync_);
     }
-    if (options_.one_queue) answer_at_last();
-    hurt_at(sync_);
+    if (options_.one_queue) queue_late_answers();
+    queue_by_themselves(sync_);
   }
 
-  /// SocketCAN sends in the order of the calls: that of the identifiers.
+  /// Queues the outputs in the order of their identifiers, as the master gives them to SocketCAN.
   void queue_outputs() {
-    put_out_ = true;
+    outputs_queued_ = true;
     std::vector<std::size_t> due;
     for (std::size_t i = 0; i < traffic_.size(); ++i) {
       const auto& frame = traffic_[i];
@@ -137,20 +117,20 @@ class WorstPhase {
     }
     std::ranges::sort(due, {}, [this](std::size_t i) { return traffic_[i].cob_id; });
     for (const std::size_t i : due) queue(i, sync_ + plan_.cycle.output_deadline, sync_);
-    if (random_.chance(0.5)) hurt_at(sync_ + plan_.cycle.output_deadline);
+    if (random_.chance(0.5)) queue_by_themselves(sync_ + plan_.cycle.output_deadline);
   }
 
-  /// Where another device makes SYNC the master counts from here on.
+  /// If another device makes SYNC, the times of the cycle count from the end of SYNC.
   void sync_arrived(Time end) {
     if (!plan_.cycle.makes_sync()) {
       sync_ = end;
-      served_ = put_out_ = false;
+      served_ = outputs_queued_ = false;
     }
     if (starved_ >= patience) relieve(end);
     queue_inputs(end);
   }
 
-  /// Where cycles are too full for it one frame goes out right behind SYNC.
+  /// Sends one service frame right behind SYNC, because several cycles had no room for one.
   void relieve(Time sync_end) {
     std::vector<std::size_t> due;
     for (std::size_t i = 0; i < traffic_.size(); ++i) {
@@ -171,7 +151,7 @@ class WorstPhase {
       if (frame.sent == Sent::after_sync && cycle_ % frame.every == frame.turn) due.push_back(i);
     }
     const bool all_late = random_.chance(0.6);
-    const auto first = all_late && random_.chance(0.8) ? hurting_first(due) : std::nullopt;
+    const auto first = all_late && random_.chance(0.8) ? blocking_input(due) : std::nullopt;
     for (const std::size_t i : due) {
       const auto limit = static_cast<std::uint32_t>(options_.device_time.count()) + 1;
       Time own = all_late ? options_.device_time : Time{random_.below(limit)};
@@ -179,11 +159,12 @@ class WorstPhase {
       queue(i, sync_end + own, sync_);
       awaited_ += traffic_[i].awaited;
     }
-    hurt_at(sync_end + options_.device_time);
+    queue_by_themselves(sync_end + options_.device_time);
   }
 
-  /// The longest below some priority: it has begun when the others are ready.
-  std::optional<std::size_t> hurting_first(std::vector<std::size_t> due) {
+  /// Returns the longest TPDO below a random priority. It has already begun when the others are
+  /// ready.
+  std::optional<std::size_t> blocking_input(std::vector<std::size_t> due) {
     if (due.empty()) return std::nullopt;
     const auto rank = [this](std::size_t i) { return sim::arbitration_rank(streams_[i].frame); };
     const auto length = [this](std::size_t i) { return sim::frame_bits(streams_[i].frame).total; };
@@ -192,7 +173,7 @@ class WorstPhase {
     return *std::ranges::max_element(due.begin() + from, due.end(), {}, length);
   }
 
-  /// What the master has to send beside the cycle, as much as ends before the outputs.
+  /// Sends as many service frames of the master as end before the outputs.
   void serve(Time now) {
     served_ = true;
     const Time dialogue = wire_time(2 * worst_frame_bits(8), plan_.bitrate);
@@ -216,9 +197,10 @@ class WorstPhase {
     }
   }
 
-  /// What comes by itself comes now, if it may: of higher priority at once, the others one moment
-  /// before, so that one of them has begun. In a flood it goes on as often as it may.
-  void hurt_at(Time when) {
+  /// Queues the frames that come by themselves, if their distances permit it: some at `when`,
+  /// others one moment earlier, so that one of them has already begun. In a flood they repeat as
+  /// often as their distances permit.
+  void queue_by_themselves(Time when) {
     if (calm_ || random_.chance(0.1)) return;
     const bool flood = random_.chance(0.3);
     for (std::size_t i = 0; i < traffic_.size(); ++i) {
@@ -230,13 +212,13 @@ class WorstPhase {
         continue;
       }
       if (frame.burst > 1 && !flood) {
-        dribble(i, when);
+        queue_part_of_burst(i, when);
         continue;
       }
       if (when < stream.next) continue;
       stream.left = 0;
       Time ready = std::max(when - (random_.chance(0.7) ? moment : Time{}), stream.next);
-      // A server is as late as it likes, and on time with the next.
+      // A server may answer late, and then answer the next request in time.
       const Time jitter = frame.kind == Traffic::sdo ? frame.distance : Time{};
       stream.next = std::max(stream.next, ready - jitter);
       do {
@@ -247,7 +229,7 @@ class WorstPhase {
     }
   }
 
-  /// Servers are as late as they like, but not by more than a round.
+  /// Queues some of the SDO answers that are due. A server may be late by one round at most.
   void answer(Time when) {
     const unsigned most = random_.chance(0.6) ? 1000 : random_.below(4);
     for (unsigned n = 0; n < most && !owed_.empty(); ++n) {
@@ -256,8 +238,8 @@ class WorstPhase {
     }
   }
 
-  /// What is due in this cycle. Of a long one a round is but a part.
-  void answer_at_last() {
+  /// Queues the SDO answers that must come in this cycle. A long cycle has several rounds.
+  void queue_late_answers() {
     while (!owed_.empty()) {
       const Time latest = owed_.front() + traffic_[*answers_].distance;
       if (latest > sync_ + plan_.cycle.period) return;
@@ -265,7 +247,7 @@ class WorstPhase {
     }
   }
 
-  /// A server that has not answered gets no other request.
+  /// Notes an SDO request. A server that has not answered gets no other request.
   void requested(Time end) {
     owed_.push_back(end);
     ++unanswered_;
@@ -280,8 +262,8 @@ class WorstPhase {
     queue(*answers_, ready, ready);
   }
 
-  /// Some of what comes at once, and the others later in its period.
-  void dribble(std::size_t i, Time when) {
+  /// Queues some frames of a burst now, and leaves the others for later in the period.
+  void queue_part_of_burst(std::size_t i, Time when) {
     auto& stream = streams_[i];
     if (when >= stream.next) {
       stream.left = traffic_[i].burst;
@@ -309,7 +291,7 @@ class WorstPhase {
       const Time next = std::min(now, end);
       if (!served_ && sync_ + plan_.cycle.receive_window < next) {
         serve(sync_ + plan_.cycle.receive_window);
-      } else if (!put_out_ && sync_ + plan_.cycle.output_deadline < next) {
+      } else if (!outputs_queued_ && sync_ + plan_.cycle.output_deadline < next) {
         queue_outputs();
       } else if (now >= end) {
         return;
@@ -325,8 +307,8 @@ class WorstPhase {
     if (wire.result == sim::WireResult::sent) return arrived(wire);
     ++seen_.errors;
     next_error_ = wire.end + options_.error_distance;
-    if (random_.chance(0.3)) next_error_ = std::max(next_error_, hurting_moment());
-    // No controller becomes passive: what is tried are the errors, not who they are blamed on.
+    if (random_.chance(0.3)) next_error_ = std::max(next_error_, next_busy_moment());
+    // No controller becomes error passive, because the test is about the time that errors cost.
     for (sim::BusNodeIndex i = 0; i < bus_.size(); ++i) bus_.node(i).reset_errors();
   }
 
@@ -334,8 +316,9 @@ class WorstPhase {
     for (sim::BusNodeIndex i = 0; i < bus_.size(); ++i) bus_.node(i).faults.error = share;
   }
 
-  /// SYNC, an input or an output of the cycle in which there may be errors again.
-  Time hurting_moment() {
+  /// Returns the time of SYNC, of the TPDOs or of the outputs in the first cycle in which an error
+  /// is permitted again.
+  Time next_busy_moment() {
     const Time period = plan_.cycle.period;
     const auto cycles = (next_error_ - sync_) / period;
     const Time moments[] = {Time{0}, Time{random_.below(1'000'000)}, plan_.cycle.output_deadline};
@@ -363,7 +346,7 @@ class WorstPhase {
     ++row.frames;
   }
 
-  /// What a frame makes others send.
+  /// Queues the frames that follow from this one.
   void follow(std::size_t i, Time end) {
     const auto& frame = traffic_[i];
     if (frame.sent == Sent::sync) sync_arrived(end);
@@ -387,18 +370,18 @@ class WorstPhase {
   sim::BusNodeIndex master_ = 0;    ///< SYNC and outputs
   sim::BusNodeIndex services_ = 0;  ///< the master's other frames
   std::vector<Stream> streams_;
-  std::optional<std::size_t> answers_{};  ///< SDO
-  std::size_t unanswered_ = 0;            ///< or answers that are not through
-  std::deque<Time> owed_;                 ///< SDO requests without an answer; when they ended
+  std::optional<std::size_t> answers_{};  ///< the SDO answers
+  std::size_t unanswered_ = 0;            ///< SDO requests whose answers are not sent yet
+  std::deque<Time> owed_;                 ///< ends of the SDO requests whose answers are not queued
   SeenBus seen_;
   unsigned cycle_ = 0;
   Time sync_{};
-  Time next_error_{};     ///< at the earliest
-  int awaited_ = 0;       ///< inputs of this cycle that are not there
-  unsigned starved_ = 0;  ///< cycles
-  bool served_ = false;
-  bool put_out_ = false;
-  bool calm_ = false;  ///< what may come by itself waits for another cycle
+  Time next_error_{};     ///< earliest time of the next error
+  int awaited_ = 0;       ///< TPDOs of this cycle that have not arrived
+  unsigned starved_ = 0;  ///< number of cycles without room for service frames
+  bool served_ = false;   ///< the service frames of this cycle are queued
+  bool outputs_queued_ = false;
+  bool calm_ = false;  ///< no frames come by themselves in this cycle
 };
 
 }  // namespace
