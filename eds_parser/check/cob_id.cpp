@@ -11,6 +11,8 @@
 namespace takt {
 namespace {
 
+using enum Severity;
+
 constexpr std::uint32_t off_flag = 0x8000'0000;
 constexpr std::uint32_t no_remote_flag = 0x4000'0000;
 constexpr std::uint32_t extended_flag = 0x2000'0000;
@@ -55,8 +57,7 @@ const Range* restriction_of(std::uint32_t id) noexcept {
 std::optional<CobIdEntry> entry_of(const ObjectDictionary& dictionary, ObjectKey key) {
   const auto* sub = dictionary.find(key);
   if (sub == nullptr) return std::nullopt;
-  const auto& text = sub->parameter_text.empty() ? sub->default_text : sub->parameter_text;
-  const auto number = parse_number(text);
+  const auto number = parse_number(sub->text());
   if (!number || number->negative || number->magnitude > 0xFFFF'FFFF) return std::nullopt;
   return CobIdEntry{.key = key,
                     .pos = sub->parameter_text.empty() ? sub->default_pos : sub->parameter_pos,
@@ -64,15 +65,15 @@ std::optional<CobIdEntry> entry_of(const ObjectDictionary& dictionary, ObjectKey
                     .relative = number->relative()};
 }
 
-std::string start(const CobIdEntry& entry) { return section_name(entry.key) + ": COB-ID "; }
+std::string start(const CobIdEntry& entry) { return concat(section_name(entry.key), ": COB-ID "); }
 
-std::string id_text(const CobIdEntry& entry) {
-  return (entry.relative ? "$NODEID+" : "") + hex(entry.id(), entry.extended() ? 8 : 3);
+/// Returns a COB-ID as the entry writes it: `0x385`, or `$NODEID+0x180`.
+std::string sum_text(const CobIdEntry& entry, std::uint32_t constant, int digits = 3) {
+  return concat(entry.relative ? "$NODEID+" : "", Hex{constant, digits});
 }
 
-/// Returns the entry as text, including the bits above the identifier.
-std::string written(const CobIdEntry& entry) {
-  return (entry.relative ? "$NODEID+" : "") + hex(entry.constant, 8);
+std::string id_text(const CobIdEntry& entry) {
+  return sum_text(entry, entry.id(), entry.extended() ? 8 : 3);
 }
 
 /// Returns true if a client uses the default channel of another device, which has a restricted
@@ -108,7 +109,7 @@ std::string objection(const CobIdEntry& entry, std::uint32_t id, unsigned own) {
   const auto* range = restriction_of(id);
   if (range == nullptr || is_default_channel(entry, id)) return "";
   if (is_channel_of_another(entry, id, own)) return "";
-  return "is restricted (" + std::string{range->use} + ")";
+  return concat("is restricted (", range->use, ")");
 }
 
 /// Returns true if an SDO server uses an identifier that is merely reserved. No other service sends
@@ -126,9 +127,8 @@ void check_restricted(const CobIdEntry& entry, std::optional<NodeId> node, Repor
     const auto id = entry.id_of(node);
     const auto why = objection(entry, id, node ? node->value() : 0U);
     if (why.empty()) return;
-    const auto text = start(entry) + hex(id, 3) + ' ' + why;
-    if (harmless(entry, id)) return report.warning(entry.pos, "cob-id-restricted", text);
-    return report.error(entry.pos, "cob-id-restricted", text);
+    return report.add(harmless(entry, id) ? warning : error, entry.pos, "cob-id-restricted",
+                      start(entry), Hex{id, 3}, ' ', why);
   }
   std::uint32_t first = 0;
   std::uint32_t last = 0;
@@ -138,13 +138,9 @@ void check_restricted(const CobIdEntry& entry, std::optional<NodeId> node, Repor
     last = any;
   }
   if (first == 0) return;
-  const auto text = start(entry) + "$NODEID+" + hex(entry.id(), 3) + ' ' +
-                    objection(entry, entry.id() + first, first) + " for nodes of " +
-                    std::to_string(first) + ".." + std::to_string(last);
-  if (first == 1 && !harmless(entry, entry.id() + first)) {
-    return report.error(entry.pos, "cob-id-restricted", text);
-  }
-  report.warning(entry.pos, "cob-id-restricted", text);
+  const bool clear = first == 1 && !harmless(entry, entry.id() + first);
+  report.add(clear ? error : warning, entry.pos, "cob-id-restricted", start(entry), id_text(entry),
+             ' ', objection(entry, entry.id() + first, first), " for nodes of ", first, "..", last);
 }
 
 /// The nodes `first` to `last` with this entry use the default channel of the node whose node-ID is
@@ -174,15 +170,13 @@ std::string channels_met(const CobIdEntry& entry, std::optional<NodeId> node) {
     const auto id = entry.id_of(node);
     if (!is_channel_of_another(entry, id, node ? node->value() : 0U)) return "";
     const auto channel = *default_channel_at(id);
-    return hex(id, 3) + " is the SDO " + std::string{channel.direction} + " of node " +
-           std::to_string(channel.node);
+    return concat(Hex{id, 3}, " is the SDO ", channel.direction, " of node ", channel.node);
   }
   std::string text;
   for (const Meeting& meeting : meetings_of(entry)) {
-    text += (text.empty() ? id_text(entry) + " is the SDO " : ", and the SDO ") +
-            std::string{meeting.direction} + " of node $NODEID" + (meeting.away < 0 ? "-" : "+") +
-            std::to_string(std::abs(meeting.away)) + " for nodes of " +
-            std::to_string(meeting.first) + ".." + std::to_string(meeting.last);
+    text += text.empty() ? id_text(entry) + " is the SDO " : ", and the SDO ";
+    text += concat(meeting.direction, " of node $NODEID", meeting.away < 0 ? "-" : "+",
+                   std::abs(meeting.away), " for nodes of ", meeting.first, "..", meeting.last);
   }
   return text;
 }
@@ -191,43 +185,39 @@ void check_further_server(const CobIdEntry& entry, std::optional<NodeId> node, R
   if (!entry.is_sdo_server() || entry.extended()) return;
   const auto met = channels_met(entry, node);
   if (met.empty()) return;
-  report.warning(entry.pos, "cob-id-restricted",
-                 start(entry) + met + "; it works while no such node is on the bus");
+  report.warning(entry.pos, "cob-id-restricted", start(entry), met,
+                 "; it works while no such node is on the bus");
 }
 
 void check_bits(const CobIdEntry& entry, Report& report) {
   if (!entry.extended() && (entry.constant & 0x1FFF'F800) != 0) {
-    report.warning(entry.pos, "cob-id-bits",
-                   start(entry) + hex(entry.constant, 8) +
-                       " has bits 11 to 28 in use, but bit 29 (extended frame) is clear");
+    report.warning(entry.pos, "cob-id-bits", start(entry), Hex{entry.constant, 8},
+                   " has bits 11 to 28 in use, but bit 29 (extended frame) is clear");
   }
   if (entry.extended() && entry.id() <= 0x7FF) {
-    report.warning(entry.pos, "cob-id-extended",
-                   start(entry) + written(entry) +
-                       " has bit 29 set: this is the 29-bit identifier " + id_text(entry) +
-                       ", although 11 bits are enough; clear bit 29 for a base frame");
+    report.warning(entry.pos, "cob-id-extended", start(entry), sum_text(entry, entry.constant, 8),
+                   " has bit 29 set: this is the 29-bit identifier ", id_text(entry),
+                   ", although 11 bits are enough; clear bit 29 for a base frame");
   }
 }
 
 void check_remote_of_rpdo(const CobIdEntry& entry, Report& report) {
   if (!entry.is_rpdo() || (entry.constant & no_remote_flag) == 0) return;
-  report.note(entry.pos, "pdo-rtr-of-rpdo",
-              start(entry) + written(entry) +
-                  " has bit 30 set (no remote requests), which has no meaning for an RPDO");
+  report.note(entry.pos, "pdo-rtr-of-rpdo", start(entry), sum_text(entry, entry.constant, 8),
+              " has bit 30 set (no remote requests), which has no meaning for an RPDO");
 }
 
 /// Warns of bit 30 of EMCY, which is reserved. CiA 301, 7.5.2.17.
 void check_reserved_bit(const CobIdEntry& entry, Report& report) {
   if ((entry.constant & no_remote_flag) == 0) return;
-  report.warning(entry.pos, "cob-id-bits",
-                 start(entry) + written(entry) + " has bit 30 set, which is reserved (0) for EMCY");
+  report.warning(entry.pos, "cob-id-bits", start(entry), sum_text(entry, entry.constant, 8),
+                 " has bit 30 set, which is reserved (0) for EMCY");
 }
 
 void check_absolute(const CobIdEntry& entry, bool is_dcf, Report& report) {
   if (entry.relative || is_dcf) return;
-  report.note(entry.pos, "cob-id-absolute",
-              start(entry) + id_text(entry) +
-                  " is the same for every node id; $NODEID+... would let two devices share a bus");
+  report.note(entry.pos, "cob-id-absolute", start(entry), id_text(entry),
+              " is the same for every node id; $NODEID+... would let two devices share a bus");
 }
 
 /// Returns true if two entries may have the same COB-ID. CiA 301 does not forbid two RPDOs with one
@@ -245,13 +235,9 @@ void check_twice(std::vector<CobIdEntry> entries, std::optional<NodeId> node, Re
     const auto& entry = entries[at];
     const auto& other = entries[at - 1];
     if (order(entry) != order(other)) continue;
-    const auto text = start(entry) + (entry.relative && !node ? "$NODEID+" : "") +
-                      hex(entry.id_of(node), 3) + " is used by " + section_name(other.key) + " too";
-    if (may_share(entry, other)) {
-      report.warning(entry.pos, "cob-id-twice", text);
-    } else {
-      report.error(entry.pos, "cob-id-twice", text);
-    }
+    report.add(may_share(entry, other) ? warning : error, entry.pos, "cob-id-twice", start(entry),
+               entry.relative && !node ? "$NODEID+" : "", Hex{entry.id_of(node), 3}, " is used by ",
+               section_name(other.key), " too");
   }
 }
 
@@ -264,10 +250,8 @@ void check_default_channel(const ObjectDictionary& dictionary, const CobIdEntry&
   const std::uint32_t first = entry.relative ? base : base + (node ? node->value() : 1U);
   const std::uint32_t last = entry.relative || node ? first : base + 127;
   if (entry.constant >= first && entry.constant <= last) return;
-  report.warning(entry.pos, "sdo-default-channel",
-                 start(entry) + (entry.relative ? "$NODEID+" : "") + hex(entry.constant, 3) +
-                     " differs from the COB-ID of the default SDO channel, $NODEID+" +
-                     hex(base, 3));
+  report.warning(entry.pos, "sdo-default-channel", start(entry), sum_text(entry, entry.constant),
+                 " differs from the COB-ID of the default SDO channel, $NODEID+", Hex{base, 3});
 }
 
 /// Checks the SDO servers 0x1200..0x127F and the clients 0x1280..0x12FF.

@@ -81,7 +81,8 @@ class ProfileCheck {
       : dictionary_{dictionary}, base_{base}, device_type_{device_type}, report_{report} {}
 
   void run() {
-    const auto type = static_cast<std::uint32_t>(number_of(dictionary_, device_type_).value_or(0));
+    const auto type =
+        static_cast<std::uint32_t>(unsigned_of(dictionary_, device_type_).value_or(0));
     switch (type & 0xFFFF) {
       case 401:
         return check_io(type);
@@ -95,19 +96,21 @@ class ProfileCheck {
   }
 
  private:
+  std::uint16_t index_of(std::uint16_t index) const noexcept {
+    return static_cast<std::uint16_t>(index + base_);
+  }
   bool has(std::uint16_t index) const noexcept {
-    return dictionary_.find(static_cast<std::uint16_t>(index + base_)) != nullptr;
+    return dictionary_.find(index_of(index)) != nullptr;
   }
   SourcePos place(ObjectKey key) const { return dictionary_.find(key)->value_pos(); }
   std::string name_of(const Needed& object) const {
-    return hex(static_cast<std::uint16_t>(object.index + base_)) + ' ' + std::string{object.name};
+    return concat(Hex{index_of(object.index)}, ' ', object.name);
   }
 
   void need(std::string_view who, const Needed& object) {
     if (has(object.index)) return;
-    report_.warning(place(device_type_), "profile-object-missing",
-                    std::string{who} + " requires object " + name_of(object) +
-                        "; the file does not describe it");
+    report_.warning(place(device_type_), "profile-object-missing", who, " requires object ",
+                    name_of(object), "; the file does not describe it");
   }
 
   void check_io(std::uint32_t type) {
@@ -121,8 +124,8 @@ class ProfileCheck {
 
   void check_drive() {
     for (const auto& object : of_each_drive) need("CiA 402", object);
-    const ObjectKey key{static_cast<std::uint16_t>(0x6502 + base_), 0};
-    const auto claimed = number_of(dictionary_, key);
+    const ObjectKey key{index_of(0x6502), 0};
+    const auto claimed = unsigned_of(dictionary_, key);
     if (!has(0x6502)) {
       return advise(place(device_type_), {0x6502, "supported drive modes"},
                     "takt does not know the modes of the drive and does not check their objects");
@@ -143,17 +146,15 @@ class ProfileCheck {
       if (has(object.index) || std::ranges::find(reported_, object.index) != reported_.end())
         continue;
       reported_.push_back(object.index);
-      report_.warning(pos, "profile-object-missing",
-                      "CiA 402 requires object " + name_of(object) + " for the mode " +
-                          std::string{mode.name} + ", which " +
-                          hex(static_cast<std::uint16_t>(0x6502 + base_)) +
-                          " claims; the file does not describe it");
+      report_.warning(pos, "profile-object-missing", "CiA 402 requires object ", name_of(object),
+                      " for the mode ", mode.name, ", which ", Hex{index_of(0x6502)},
+                      " claims; the file does not describe it");
     }
   }
 
   void advise(SourcePos pos, const Needed& object, std::string_view why) {
-    report_.note(pos, "profile-object-advised",
-                 "object " + name_of(object) + " is not described: " + std::string{why});
+    report_.note(pos, "profile-object-advised", "object ", name_of(object),
+                 " is not described: ", why);
   }
 
   void check_encoder(std::uint32_t kind) {
@@ -174,14 +175,14 @@ class ProfileCheck {
 
 void check_profile(const ObjectDictionary& dictionary, Report& report) {
   constexpr std::uint16_t step = 0x800;  // CiA 301, 7.4.1: up to eight modules
-  const auto value = number_of(dictionary, {0x1000, 0});
+  const auto value = unsigned_of(dictionary, {0x1000, 0});
   if (!value) return;
   if (static_cast<std::uint32_t>(*value) >> 16 != 0xFFFF) {
     return ProfileCheck{dictionary, 0, {0x1000, 0}, report}.run();
   }
   for (std::uint16_t base = 0; base < 8 * step; base += step) {
     const ObjectKey type{static_cast<std::uint16_t>(0x67FF + base), 0};
-    if (number_of(dictionary, type)) ProfileCheck{dictionary, base, type, report}.run();
+    if (unsigned_of(dictionary, type)) ProfileCheck{dictionary, base, type, report}.run();
   }
 }
 

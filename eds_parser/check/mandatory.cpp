@@ -24,13 +24,11 @@ SourcePos place_of(const ObjectDictionary& dictionary, std::uint16_t index) {
 void report_different(const ObjectDictionary& dictionary, std::uint8_t sub, std::uint32_t declared,
                       std::string_view key, Report& report) {
   const auto* entry = dictionary.find(ObjectKey{0x1018, sub});
-  const auto value = number_of(dictionary, {0x1018, sub});
+  const auto value = unsigned_of(dictionary, {0x1018, sub});
   if (entry == nullptr || !value || *value == 0 || declared == 0 || *value == declared) return;
-  report.warning(entry->value_pos(), "identity-mismatch",
-                 section_name({0x1018, sub}) + " says " +
-                     hex(static_cast<std::uint32_t>(*value), 8) + ", " + std::string{key} +
-                     " of [DeviceInfo] says " + hex(declared, 8) +
-                     "; neither can be trusted as the expected identity");
+  report.warning(entry->value_pos(), "identity-mismatch", section_name({0x1018, sub}), " says ",
+                 Hex{static_cast<std::uint32_t>(*value), 8}, ", ", key, " of [DeviceInfo] says ",
+                 Hex{declared, 8}, "; neither can be trusted as the expected identity");
 }
 
 }  // namespace
@@ -39,8 +37,8 @@ void check_mandatory(const ObjectDictionary& dictionary, Report& report) {
   for (const auto& object : mandatory) {
     if (dictionary.find(object.index) != nullptr) continue;
     report.warning(place_of(dictionary, object.index), "mandatory-object-missing",
-                   "CiA 301 requires object " + hex(object.index) + ' ' + std::string{object.name} +
-                       "; the file does not describe it");
+                   "CiA 301 requires object ", Hex{object.index}, ' ', object.name,
+                   "; the file does not describe it");
   }
   const bool no_vendor = dictionary.find(std::uint16_t{0x1018}) != nullptr &&
                          dictionary.find(ObjectKey{0x1018, 1}) == nullptr;

@@ -5,100 +5,101 @@
 namespace takt {
 namespace {
 
-bool within(std::uint16_t index, unsigned first) noexcept {
-  return index >= first && index < first + 512;
-}
-
-SourcePos pos_of(const ObjectDictionary& dictionary, ObjectKey key) {
-  if (const auto* sub = dictionary.find(key)) return sub->value_pos();
-  const auto* object = dictionary.find(key.index);
-  return object == nullptr ? SourcePos{} : object->pos;
-}
-
-/// Checks the transmission type. CiA 301, tables 69 and 72.
-void check_transmission(const ObjectDictionary& dictionary, const PdoDescription& pdo,
-                        Report& report) {
-  const ObjectKey key{pdo.communication_index(), 2};
-  const unsigned type = pdo.transmission_type.value_or(0);
-  const unsigned first_event = pdo.is_tpdo ? 252 : 254;
-  if (type > 240 && type < first_event) {
-    report.error(pos_of(dictionary, key), "pdo-transmission-type",
-                 section_name(key) + ": transmission type " + std::to_string(type) +
-                     " is reserved for " +
-                     (pdo.is_tpdo ? "TPDOs (0..240, 252..255)" : "RPDOs (0..240, 254, 255)"));
-  }
-  if (pdo.sync_start.value_or(0) > 240) {
-    const ObjectKey start{pdo.communication_index(), 6};
-    report.error(pos_of(dictionary, start), "pdo-sync-start",
-                 section_name(start) + ": the SYNC start value is 0..240");
-  }
-  if (!pdo.is_tpdo && pdo.inhibit_time_us != 0) {
-    const ObjectKey inhibit{pdo.communication_index(), 3};
-    report.note(pos_of(dictionary, inhibit), "pdo-inhibit-of-rpdo",
-                section_name(inhibit) + ": the inhibit time of an RPDO has no effect");
-  }
-}
+using enum Severity;
 
 bool is_on_request(unsigned type) noexcept { return type == 252 || type == 253; }
 
-std::string what_sends(unsigned type) {
+std::string_view what_sends(unsigned type) {
   return is_on_request(type) ? ", which is sent on remote request only"
                              : ", which follows the SYNC";
 }
 
-void check_inhibit_use(const ObjectDictionary& dictionary, const PdoDescription& pdo,
-                       ObjectKey inhibit, Report& report) {
-  if (!pdo.transmission_type || pdo.inhibit_time_us == 0) return;
-  const unsigned type = *pdo.transmission_type;
-  if (type > 240 && !is_on_request(type)) return;
-  report.note(pos_of(dictionary, inhibit), "pdo-inhibit-unused",
-              section_name(inhibit) + ": the inhibit time has no effect with transmission type " +
-                  std::to_string(type) + what_sends(type));
-}
+/// Checks the communication record of one PDO.
+class CommunicationCheck {
+ public:
+  CommunicationCheck(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report)
+      : dictionary_{dictionary},
+        pdo_{pdo},
+        report_{report},
+        type_{pdo.transmission_type.value_or(0)} {}
 
-/// Checks the inhibit time and the event timer of a TPDO. CiA 301, 7.5.2.37.
-void check_times(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report) {
-  if (!pdo.is_tpdo) return;
-  const ObjectKey inhibit{pdo.communication_index(), 3};
-  check_inhibit_use(dictionary, pdo, inhibit, report);
-  if (pdo.event_timer_ms == 0) return;
-  const ObjectKey timer{pdo.communication_index(), 5};
-  const unsigned type = pdo.transmission_type.value_or(0);
-  if ((type >= 1 && type <= 240) || is_on_request(type)) {
-    report.note(pos_of(dictionary, timer), "pdo-event-timer-unused",
-                section_name(timer) + ": the event timer has no effect with transmission type " +
-                    std::to_string(type) + what_sends(type));
-  } else if (pdo.inhibit_time_us > pdo.event_timer_ms * 1000U) {
-    report.warning(pos_of(dictionary, inhibit), "pdo-inhibit-too-long",
-                   section_name(inhibit) + ": the inhibit time of " +
-                       std::to_string(pdo.inhibit_time_us / 100) + " x 100 us is longer than " +
-                       "the event timer of " + std::to_string(pdo.event_timer_ms) +
-                       " ms, so the device can't keep the event timer");
+  void run() {
+    check_transmission();
+    if (!pdo_.is_tpdo) return;
+    check_inhibit_use();
+    check_event_timer();
+    check_remote();
   }
-}
 
-/// Checks the types that are sent only on remote request. CiA 301, 7.5.2.37.
-void check_remote(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report) {
-  const unsigned type = pdo.transmission_type.value_or(0);
-  const bool on_request = pdo.is_tpdo && is_on_request(type);
-  if (!on_request || !pdo.valid || pdo.rtr_allowed) return;
-  const ObjectKey key{pdo.communication_index(), 2};
-  report.warning(pos_of(dictionary, key), "pdo-rtr",
-                 section_name(key) + ": transmission type " + std::to_string(type) +
-                     " sends on remote request only, which bit 30 of " +
-                     section_name({key.index, 1}) + " does not allow; the PDO is never sent");
-}
+ private:
+  /// Reports a finding at a sub-object of the record.
+  template <class... Parts>
+  void add(Severity severity, std::string_view rule, std::uint8_t sub_index,
+           const Parts&... parts) {
+    const ObjectKey key{pdo_.communication_index(), sub_index};
+    const auto* sub = dictionary_.find(key);
+    const SourcePos pos = sub != nullptr ? sub->value_pos() : dictionary_.find(key.index)->pos;
+    report_.add(severity, pos, rule, section_name(key), parts...);
+  }
+
+  /// Checks the transmission type. CiA 301, tables 69 and 72.
+  void check_transmission() {
+    const unsigned first_event = pdo_.is_tpdo ? 252 : 254;
+    if (type_ > 240 && type_ < first_event) {
+      add(error, "pdo-transmission-type", 2, ": transmission type ", type_, " is reserved for ",
+          pdo_.is_tpdo ? "TPDOs (0..240, 252..255)" : "RPDOs (0..240, 254, 255)");
+    }
+    if (pdo_.sync_start.value_or(0) > 240) {
+      add(error, "pdo-sync-start", 6, ": the SYNC start value is 0..240");
+    }
+    if (!pdo_.is_tpdo && pdo_.inhibit_time_us != 0) {
+      add(note, "pdo-inhibit-of-rpdo", 3, ": the inhibit time of an RPDO has no effect");
+    }
+  }
+
+  void check_inhibit_use() {
+    if (!pdo_.transmission_type || pdo_.inhibit_time_us == 0) return;
+    if (type_ > 240 && !is_on_request(type_)) return;
+    add(note, "pdo-inhibit-unused", 3, ": the inhibit time has no effect with transmission type ",
+        type_, what_sends(type_));
+  }
+
+  /// Checks the event timer of a TPDO. CiA 301, 7.5.2.37.
+  void check_event_timer() {
+    if (pdo_.event_timer_ms == 0) return;
+    if ((type_ >= 1 && type_ <= 240) || is_on_request(type_)) {
+      add(note, "pdo-event-timer-unused", 5,
+          ": the event timer has no effect with transmission type ", type_, what_sends(type_));
+    } else if (pdo_.inhibit_time_us > pdo_.event_timer_ms * 1000U) {
+      add(warning, "pdo-inhibit-too-long", 3, ": the inhibit time of ", pdo_.inhibit_time_us / 100,
+          " x 100 us is longer than the event timer of ", pdo_.event_timer_ms,
+          " ms, so the device can't keep the event timer");
+    }
+  }
+
+  /// Checks the types that are sent only on remote request. CiA 301, 7.5.2.37.
+  void check_remote() {
+    if (!is_on_request(type_) || !pdo_.valid || pdo_.rtr_allowed) return;
+    add(warning, "pdo-rtr", 2, ": transmission type ", type_,
+        " sends on remote request only, which bit 30 of ",
+        section_name({pdo_.communication_index(), 1}), " does not allow; the PDO is never sent");
+  }
+
+  const ObjectDictionary& dictionary_;
+  const PdoDescription& pdo_;
+  Report& report_;
+  unsigned type_;  ///< transmission type; 0 if it has no value
+};
 
 void check_partners(const ObjectDictionary& dictionary, Report& report) {
   for (const auto& object : dictionary.objects) {
-    const bool mapping = within(object.index, 0x1600) || within(object.index, 0x1A00);
-    const bool communication = within(object.index, 0x1400) || within(object.index, 0x1800);
-    if (!mapping && !communication) continue;
+    const bool mapping = is_pdo_mapping(object.index);
+    if (!mapping && !is_pdo_communication(object.index)) continue;
     const auto partner = static_cast<std::uint16_t>(object.index + (mapping ? -0x200 : 0x200));
     if (dictionary.find(partner) != nullptr) continue;
-    report.warning(object.pos, "pdo-half",
-                   hex(object.index) + " has no " + (mapping ? "communication" : "mapping") +
-                       " record " + hex(partner) + ", so the PDO is incomplete");
+    report.warning(object.pos, "pdo-half", Hex{object.index}, " has no ",
+                   mapping ? "communication" : "mapping", " record ", Hex{partner},
+                   ", so the PDO is incomplete");
   }
 }
 
@@ -110,11 +111,9 @@ void check_number(const ObjectDictionary& dictionary, bool is_tpdo, std::size_t 
   const std::size_t declared = is_tpdo ? device.nr_tx_pdo : device.nr_rx_pdo;
   if (declared == found || device.pos.line == 0) return;
   const SourcePos pos = is_tpdo ? device.nr_tx_pdo_pos : device.nr_rx_pdo_pos;
-  report.warning(pos, "pdo-count",
-                 std::string{is_tpdo ? "NrOfTXPDO" : "NrOfRXPDO"} +
-                     (pos == device.pos ? " is missing" : " is " + std::to_string(declared)) +
-                     ", but " + std::to_string(found) +
-                     " are described; takt uses the described PDOs");
+  report.warning(pos, "pdo-count", is_tpdo ? "NrOfTXPDO" : "NrOfRXPDO",
+                 pos == device.pos ? " is missing" : concat(" is ", declared), ", but ", found,
+                 " are described; takt uses the described PDOs");
 }
 
 void check_granularity(const ObjectDictionary& dictionary, Report& report) {
@@ -122,9 +121,8 @@ void check_granularity(const ObjectDictionary& dictionary, Report& report) {
   const Object* record = mappable_record(dictionary);
   if (record == nullptr) return;
   report.warning(dictionary.device.granularity_pos, "granularity",
-                 "Granularity 0 says that the mapping of PDOs is fixed, but " +
-                     to_string(ObjectKey{record->index, 0}) +
-                     " can be written; takt follows the record");
+                 "Granularity 0 says that the mapping of PDOs is fixed, but ",
+                 ObjectKey{record->index, 0}, " can be written; takt follows the record");
 }
 
 }  // namespace
@@ -132,9 +130,7 @@ void check_granularity(const ObjectDictionary& dictionary, Report& report) {
 void check_pdos(const ObjectDictionary& dictionary, Report& report) {
   const auto pdos = describe_pdos(dictionary);
   for (const auto& pdo : pdos) {
-    check_transmission(dictionary, pdo, report);
-    check_times(dictionary, pdo, report);
-    check_remote(dictionary, pdo, report);
+    CommunicationCheck{dictionary, pdo, report}.run();
     check_mapping(dictionary, pdo, report);
   }
   check_partners(dictionary, report);

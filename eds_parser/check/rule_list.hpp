@@ -9,9 +9,9 @@ namespace takt {
 /// The description of a rule for people.
 struct RuleInfo {
   std::string_view name;
-  Severity severity;  ///< usual severity
   std::string_view meaning;
   std::string_view example;
+  Severity severity = Severity::warning;  ///< usual severity
 };
 
 /// Returns all rules of the EDS reader and of check(), sorted by name.

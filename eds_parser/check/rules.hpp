@@ -1,11 +1,12 @@
 #pragma once
+#include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/dictionary/object_dictionary.hpp"
 #include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/report/report.hpp"
 
 namespace takt {
 
-/// The families of rules that check() runs. Each family has a file of its own.
+/// The families of rules that check() runs. Each family is in a separate file.
 void check_values(const ObjectDictionary& dictionary, Report& report);
 void check_widths(const ObjectDictionary& dictionary, Report& report);
 void check_mandatory(const ObjectDictionary& dictionary, Report& report);
@@ -19,8 +20,5 @@ void check_cob_ids(const ObjectDictionary& dictionary, Report& report);
 std::string pdo_name(const PdoDescription& pdo);
 /// Returns the name of the section of an object, such as "1A00sub2".
 std::string section_name(ObjectKey key);
-/// Returns the value of an object as an unsigned number, or std::nullopt if the object has no
-/// integer value.
-std::optional<std::uint64_t> number_of(const ObjectDictionary& dictionary, ObjectKey key);
 
 }  // namespace takt

@@ -2,7 +2,6 @@
 #include <string>
 
 #include "eds_parser/check/rules.hpp"
-#include "eds_parser/dictionary/integer_of.hpp"
 
 namespace takt {
 namespace {
@@ -10,9 +9,6 @@ namespace {
 /// Returns what an object of the communication profile can't do without its bits 16 to 31. The
 /// result is empty if it can do everything, or if this is unknown. CiA 301, 7.5.2.
 std::string_view function_of_high_bits(ObjectKey key) noexcept {
-  const auto in = [&](unsigned low, unsigned high) {
-    return key.index >= low && key.index <= high;
-  };
   const bool is_entry = key.sub != 0;
   switch (key.index) {
     case 0x1005:
@@ -35,13 +31,13 @@ std::string_view function_of_high_bits(ObjectKey key) noexcept {
       break;
   }
   const bool of_channel = key.sub == 1 || key.sub == 2;
-  if (in(0x1200, 0x12FF) && of_channel) {
+  if (key.index >= 0x1200 && key.index <= 0x12FF && of_channel) {
     return "bit 31, which switches the SDO channel off while its COB-IDs change";
   }
-  if ((in(0x1400, 0x15FF) || in(0x1800, 0x19FF)) && key.sub == 1) {
+  if (is_pdo_communication(key.index) && key.sub == 1) {
     return "bit 31, which switches the PDO off for a new mapping";
   }
-  const bool maps = (in(0x1600, 0x17FF) || in(0x1A00, 0x1BFF)) && is_entry;
+  const bool maps = is_pdo_mapping(key.index) && is_entry;
   return maps ? "the index of the object in bits 16 to 31: nothing can be mapped" : "";
 }
 
@@ -55,8 +51,8 @@ bool has_limits_of_16_bits(const SubObject& sub) {
 /// LowLimit.
 std::string range_text(ObjectKey key, const SubObject& sub) {
   const auto low = integer_of(sub.low_limit);
-  return section_name(key) + " (" + (low ? std::to_string(*low) + ".." : "up to ") +
-         std::to_string(integer_of(sub.high_limit).value_or(0)) + ")";
+  return concat(section_name(key), " (", low ? concat(*low, "..") : "up to ",
+                integer_of(sub.high_limit).value_or(0), ")");
 }
 
 /// Finds a mistake of the tool that wrote the file: 32-bit objects with the limits of 16 bits.
@@ -71,7 +67,7 @@ class WidthOfLimits {
     if (!lost.empty() && sub.type == DataType::unsigned32) return report_lost(key, sub, lost);
     if (count_++ == 0) first_ = sub.pos;
     if (count_ > most_named) return;
-    names_ += (names_.empty() ? "" : ", ") + range_text(key, sub);
+    append_item(names_, range_text(key, sub));
   }
 
   void report_others() {
@@ -81,18 +77,16 @@ class WidthOfLimits {
         count_ > most_named ? " and " + std::to_string(count_ - most_named) + " more" : "";
     report_.note(
         first_, "range-of-16-bits",
-        (one ? "a 32-bit object has" : std::to_string(count_) + " 32-bit objects have") +
-            " the limits of 16 bits: " + names_ + more +
-            "; takt refuses values outside them. Correct the limits if the device accepts more");
+        one ? "a 32-bit object has" : std::to_string(count_) + " 32-bit objects have",
+        " the limits of 16 bits: ", names_, more,
+        "; takt refuses values outside them. Correct the limits if the device accepts more");
   }
 
  private:
   void report_lost(ObjectKey key, const SubObject& sub, std::string_view lost) {
-    report_.warning(sub.pos, "limits-of-16-bits",
-                    section_name(key) + ": UNSIGNED32 with HighLimit " +
-                        std::to_string(integer_of(sub.high_limit).value_or(0)) +
-                        ", the limit of 16 bits; it excludes " + std::string{lost} +
-                        ". Correct HighLimit to 0xFFFFFFFF if the device accepts more");
+    report_.warning(sub.pos, "limits-of-16-bits", section_name(key), ": UNSIGNED32 with HighLimit ",
+                    integer_of(sub.high_limit).value_or(0), ", the limit of 16 bits; it excludes ",
+                    lost, ". Correct HighLimit to 0xFFFFFFFF if the device accepts more");
   }
 
   static constexpr std::size_t most_named = 4;

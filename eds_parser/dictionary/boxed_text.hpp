@@ -5,8 +5,8 @@
 
 namespace takt {
 
-/// A string that takes the space of one pointer, for a variant that rarely holds a string. A copy
-/// owns a string of its own.
+/// A string that takes the space of one pointer, for a variant that rarely holds a string. Each
+/// copy owns its string.
 class BoxedText {
  public:
   BoxedText(std::string text) : text_{std::make_unique<std::string>(std::move(text))} {}

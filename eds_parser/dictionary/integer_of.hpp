@@ -18,4 +18,10 @@ inline std::optional<std::int64_t> integer_of(const ObjectDictionary& dictionary
   return sub == nullptr ? std::nullopt : integer_of(sub->value());
 }
 
+/// Returns the same as an unsigned number.
+inline std::optional<std::uint64_t> unsigned_of(const ObjectDictionary& dictionary,
+                                                ObjectKey key) noexcept {
+  return integer_of(dictionary, key);
+}
+
 }  // namespace takt

@@ -22,8 +22,7 @@ std::uint64_t pattern_of(const Value& value, DataType type) noexcept {
   if (const auto* integer = std::get_if<std::int64_t>(&value)) {
     return std::bit_cast<std::uint64_t>(*integer);
   }
-  const auto* number = std::get_if<std::uint64_t>(&value);
-  return number == nullptr ? 0 : *number;
+  return std::get<std::uint64_t>(value);
 }
 
 }  // namespace
@@ -48,6 +47,14 @@ std::optional<std::int64_t> as_integer(const Value& value) noexcept {
   return std::nullopt;
 }
 
+bool outside_limits(const Value& value, const SubObject& sub) noexcept {
+  const auto comparable = [&value](const std::optional<Value>& limit) {
+    return limit && limit->index() == value.index() && !std::holds_alternative<BoxedText>(value);
+  };
+  if (comparable(sub.low_limit) && value < *sub.low_limit) return true;
+  return comparable(sub.high_limit) && value > *sub.high_limit;
+}
+
 std::vector<std::byte> to_bytes(const Value& value, DataType type) {
   if (const auto* boxed = std::get_if<BoxedText>(&value)) {
     const auto& text = boxed->text();
@@ -60,6 +67,17 @@ std::vector<std::byte> to_bytes(const Value& value, DataType type) {
     pattern >>= 8;
   }
   return bytes;
+}
+
+std::string eds_value_text(const Value& value, DataType type) {
+  if (const auto* number = std::get_if<std::int64_t>(&value)) return std::to_string(*number);
+  if (const auto* number = std::get_if<std::uint64_t>(&value)) return std::to_string(*number);
+  if (const auto* number = std::get_if<double>(&value)) return real_text(*number);
+  const auto& bytes = std::get<BoxedText>(value).text();
+  if (type == DataType::visible_string || type == DataType::unicode_string) return bytes;
+  std::string digits;
+  for (const char byte : bytes) digits += hex(static_cast<unsigned char>(byte), 2).substr(2);
+  return digits;
 }
 
 }  // namespace takt

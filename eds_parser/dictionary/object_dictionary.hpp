@@ -58,13 +58,16 @@ struct SubObject {
   const std::optional<Value>& value() const noexcept {
     return parameter_value ? parameter_value : default_value;
   }
+  /// Returns the text of value() as written.
+  const std::string& text() const noexcept {
+    return parameter_text.empty() ? default_text : parameter_text;
+  }
   /// Returns the place of value().
   SourcePos value_pos() const noexcept { return parameter_value ? parameter_pos : default_pos; }
+  bool is_writable() const noexcept { return access != Access::ro && access != Access::constant; }
   /// Returns true if a master writes the object: it is writable, and ObjFlags do not forbid the
   /// write.
-  bool is_configurable() const noexcept {
-    return access != Access::ro && access != Access::constant && (flags & 1) == 0;
-  }
+  bool is_configurable() const noexcept { return is_writable() && (flags & 1) == 0; }
 };
 
 struct Object {
@@ -216,8 +219,13 @@ struct ObjectDictionary {
 /// Returns the value as an integer, or std::nullopt for reals and strings. An unsigned value above
 /// 2^63 - 1 gives the negative number with the same bits.
 std::optional<std::int64_t> as_integer(const Value& value) noexcept;
+/// Returns true if `value` is below the low limit or above the high limit. Texts have no order and
+/// are never outside.
+bool outside_limits(const Value& value, const SubObject& sub) noexcept;
 /// Returns the bytes of a value on the wire: little endian, with the width of `type`. Strings keep
 /// their bytes, except for UNICODE_STRING, which becomes UTF-16.
 std::vector<std::byte> to_bytes(const Value& value, DataType type);
+/// Formats a value of `type` as CiA 306 writes it, so that it reads back as the same value.
+std::string eds_value_text(const Value& value, DataType type);
 
 }  // namespace takt

@@ -12,22 +12,17 @@ namespace {
 constexpr std::uint16_t pdos_per_direction = 512;
 constexpr std::uint8_t most_entries = 64;  // CiA 301, 7.5.2.36; higher numbers mark MPDOs
 
-std::optional<std::uint64_t> unsigned_value(const ObjectDictionary& dictionary, ObjectKey key) {
-  const auto integer = integer_of(dictionary, key);
-  if (!integer) return std::nullopt;
-  return static_cast<std::uint64_t>(*integer);
-}
-
+/// Returns the value of an object, or std::nullopt if it has none that a `T` can hold.
 template <class T>
-std::optional<T> narrow(std::optional<std::uint64_t> value) noexcept {
+std::optional<T> value_of(const ObjectDictionary& dictionary, ObjectKey key) noexcept {
+  const auto value = unsigned_of(dictionary, key);
   if (!value || *value > std::numeric_limits<T>::max()) return std::nullopt;
   return static_cast<T>(*value);
 }
 
 /// Returns the COB-ID without an unknown node-ID. The constant term contains its flags.
 std::optional<std::uint64_t> constant_term(const SubObject& sub) noexcept {
-  const auto number =
-      parse_number(sub.parameter_text.empty() ? sub.default_text : sub.parameter_text);
+  const auto number = parse_number(sub.text());
   if (!number || number->negative) return std::nullopt;
   return number->magnitude;
 }
@@ -36,7 +31,7 @@ void read_cob_id(PdoDescription& pdo, const ObjectDictionary& dictionary) {
   const ObjectKey key{pdo.communication_index(), 1};
   const auto* sub = dictionary.find(key);
   if (sub == nullptr) return;
-  pdo.cob_id_raw = narrow<std::uint32_t>(unsigned_value(dictionary, key));
+  pdo.cob_id_raw = value_of<std::uint32_t>(dictionary, key);
   const auto flags = pdo.cob_id_raw ? *pdo.cob_id_raw : constant_term(*sub);
   if (!flags) return;
   if (!pdo.cob_id_raw) pdo.cob_id_offset = static_cast<std::uint32_t>(*flags & 0x1FFF'FFFF);
@@ -45,9 +40,11 @@ void read_cob_id(PdoDescription& pdo, const ObjectDictionary& dictionary) {
   pdo.extended = (*flags & 0x2000'0000) != 0;
 }
 
-MappedObject entry_of(std::uint32_t raw, const ObjectDictionary& dictionary) {
+MappedObject entry_of(std::uint32_t raw, std::uint8_t sub_index,
+                      const ObjectDictionary& dictionary) {
   MappedObject entry;
   entry.key = {static_cast<std::uint16_t>(raw >> 16), static_cast<std::uint8_t>(raw >> 8)};
+  entry.sub = sub_index;
   entry.bits = static_cast<std::uint8_t>(raw);
   if (entry.is_dummy()) {
     entry.name = "dummy";
@@ -60,14 +57,14 @@ MappedObject entry_of(std::uint32_t raw, const ObjectDictionary& dictionary) {
 void read_mapping(PdoDescription& pdo, const ObjectDictionary& dictionary) {
   const auto* record = dictionary.find(pdo.mapping_index());
   if (record == nullptr) return;
-  pdo.mapping_count = narrow<std::uint8_t>(unsigned_value(dictionary, {record->index, 0}));
+  pdo.mapping_count = value_of<std::uint8_t>(dictionary, {record->index, 0});
   const auto count = pdo.mapping_count.value_or(most_entries);
   if (count > most_entries) return;
   for (const auto& sub : record->subs) {
     if (sub.sub == 0 || sub.sub > count) continue;
-    const auto raw = narrow<std::uint32_t>(unsigned_value(dictionary, {record->index, sub.sub}));
-    if (raw.value_or(0) == 0) continue;
-    auto entry = entry_of(*raw, dictionary);
+    const auto raw = value_of<std::uint32_t>(dictionary, {record->index, sub.sub}).value_or(0);
+    if (raw == 0) continue;
+    auto entry = entry_of(raw, sub.sub, dictionary);
     entry.bit_offset = static_cast<std::uint16_t>(pdo.bits);
     pdo.bits += entry.bits;
     pdo.mapping.push_back(std::move(entry));
@@ -80,11 +77,10 @@ PdoDescription describe(const ObjectDictionary& dictionary, bool is_tpdo, std::u
   pdo.is_tpdo = is_tpdo;
   const auto index = pdo.communication_index();
   read_cob_id(pdo, dictionary);
-  pdo.transmission_type = narrow<std::uint8_t>(unsigned_value(dictionary, {index, 2}));
-  const auto inhibit = narrow<std::uint16_t>(unsigned_value(dictionary, {index, 3}));
-  pdo.inhibit_time_us = std::uint32_t{inhibit.value_or(0)} * 100;
-  pdo.event_timer_ms = narrow<std::uint16_t>(unsigned_value(dictionary, {index, 5})).value_or(0);
-  if (is_tpdo) pdo.sync_start = narrow<std::uint8_t>(unsigned_value(dictionary, {index, 6}));
+  pdo.transmission_type = value_of<std::uint8_t>(dictionary, {index, 2});
+  pdo.inhibit_time_us = value_of<std::uint16_t>(dictionary, {index, 3}).value_or(0) * 100U;
+  pdo.event_timer_ms = value_of<std::uint16_t>(dictionary, {index, 5}).value_or(0);
+  if (is_tpdo) pdo.sync_start = value_of<std::uint8_t>(dictionary, {index, 6});
   read_mapping(pdo, dictionary);
   return pdo;
 }
@@ -93,10 +89,9 @@ PdoDescription describe(const ObjectDictionary& dictionary, bool is_tpdo, std::u
 
 const Object* mappable_record(const ObjectDictionary& dictionary) noexcept {
   const auto it = std::ranges::find_if(dictionary.objects, [](const Object& object) {
-    const bool is_mapping = (object.index & 0xFE00) == 0x1600 || (object.index & 0xFE00) == 0x1A00;
-    if (!is_mapping || object.subs.empty()) return false;
+    if (!is_pdo_mapping(object.index) || object.subs.empty()) return false;
     const SubObject& count = object.subs.front();
-    return count.sub == 0 && count.access != Access::ro && count.access != Access::constant;
+    return count.sub == 0 && count.is_writable();
   });
   return it == dictionary.objects.end() ? nullptr : &*it;
 }

@@ -11,6 +11,7 @@ namespace takt {
 /// One entry of a PDO mapping. CiA 301, 7.5.2.36.
 struct MappedObject {
   ObjectKey key;                 ///< an index below 0x0020 is a dummy
+  std::uint8_t sub = 0;          ///< sub-index of the entry in the mapping record
   std::uint8_t bits = 0;         ///< width in the entry; the dictionary may state another width
   std::uint16_t bit_offset = 0;  ///< position in the PDO, counted from bit 0 of byte 0
   std::string name;  ///< name of the mapped object; empty if the file does not describe it
@@ -52,9 +53,18 @@ struct PdoDescription {
   }
 };
 
-/// Returns true for an index of the communication and mapping records of RPDOs and TPDOs.
+/// Returns true for the communication record of an RPDO or TPDO.
+constexpr bool is_pdo_communication(std::uint16_t index) noexcept {
+  return (index & 0xFE00) == 0x1400 || (index & 0xFE00) == 0x1800;
+}
+
+/// Returns true for the mapping record of an RPDO or TPDO.
+constexpr bool is_pdo_mapping(std::uint16_t index) noexcept {
+  return (index & 0xFE00) == 0x1600 || (index & 0xFE00) == 0x1A00;
+}
+
 constexpr bool is_pdo_parameter(std::uint16_t index) noexcept {
-  return index >= 0x1400 && index <= 0x1BFF;
+  return is_pdo_communication(index) || is_pdo_mapping(index);
 }
 
 /// Returns the first mapping record whose number of entries is writable, or nullptr if every

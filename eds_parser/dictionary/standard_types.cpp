@@ -1,75 +1,52 @@
 #include "eds_parser/dictionary/standard_types.hpp"
 
+#include <algorithm>
+#include <iterator>
+
+#include "eds_parser/dictionary/pdo_description.hpp"
+
 namespace takt {
 namespace {
 
-DataType single(std::uint16_t index) noexcept {
-  switch (index) {
-    case 0x1000:
-    case 0x1002:
-    case 0x1005:
-    case 0x1006:
-    case 0x1007:
-    case 0x1012:
-    case 0x1013:
-    case 0x1014:
-      return DataType::unsigned32;
-    case 0x1008:
-    case 0x1009:
-    case 0x100A:
-      return DataType::visible_string;
-    case 0x100C:
-    case 0x1015:
-    case 0x1017:
-      return DataType::unsigned16;
-    case 0x1001:
-    case 0x100D:
-    case 0x1019:
-      return DataType::unsigned8;
-    default:
-      return DataType::unknown;
-  }
-}
+using enum DataType;
 
-DataType pdo_communication(std::uint8_t sub) noexcept {
-  switch (sub) {
-    case 1:
-      return DataType::unsigned32;
-    case 3:
-    case 5:
-      return DataType::unsigned16;
-    case 0:
-    case 2:
-    case 4:
-    case 6:
-      return DataType::unsigned8;
-    default:
-      return DataType::unknown;
-  }
-}
+struct StandardObject {
+  std::uint16_t index;
+  DataType type;  ///< of sub-index 0
+};
 
-bool within(std::uint16_t index, std::uint16_t first, std::uint16_t last) noexcept {
-  return index >= first && index <= last;
-}
+constexpr StandardObject single_values[] = {
+    {0x1000, unsigned32},     {0x1001, unsigned8},      {0x1002, unsigned32},
+    {0x1005, unsigned32},     {0x1006, unsigned32},     {0x1007, unsigned32},
+    {0x1008, visible_string}, {0x1009, visible_string}, {0x100A, visible_string},
+    {0x100C, unsigned16},     {0x100D, unsigned8},      {0x1012, unsigned32},
+    {0x1013, unsigned32},     {0x1014, unsigned32},     {0x1015, unsigned16},
+    {0x1017, unsigned16},     {0x1019, unsigned8}};
+
+/// Sub 0 to sub 6 of the communication record of a PDO.
+constexpr DataType of_pdo[] = {unsigned8, unsigned32, unsigned8, unsigned16,
+                               unsigned8, unsigned16, unsigned8};
 
 bool is_array_of_u32(std::uint16_t index) noexcept {
   return index == 0x1003 || index == 0x1010 || index == 0x1011 || index == 0x1016 ||
-         index == 0x1018 || within(index, 0x1600, 0x17FF) || within(index, 0x1A00, 0x1BFF);
+         index == 0x1018 || is_pdo_mapping(index);
 }
 
 }  // namespace
 
 DataType standard_type(ObjectKey key) noexcept {
-  if (within(key.index, 0x1400, 0x15FF) || within(key.index, 0x1800, 0x19FF)) {
-    return pdo_communication(key.sub);
+  if (key.index > 0x1BFF) return unknown;
+  if (is_pdo_communication(key.index)) {
+    return key.sub < std::size(of_pdo) ? of_pdo[key.sub] : unknown;
   }
-  if (is_array_of_u32(key.index)) return key.sub == 0 ? DataType::unsigned8 : DataType::unsigned32;
-  return key.sub == 0 ? single(key.index) : DataType::unknown;
+  if (is_array_of_u32(key.index)) return key.sub == 0 ? unsigned8 : unsigned32;
+  const auto* found = std::ranges::find(single_values, key.index, &StandardObject::index);
+  return key.sub == 0 && found != std::end(single_values) ? found->type : unknown;
 }
 
 DataType data_type_of(std::uint32_t code) noexcept {
   const auto type = static_cast<DataType>(code);
-  return code <= 0x1B && name(type) != "unknown" ? type : DataType::unknown;
+  return code <= 0x1B && name(type) != "unknown" ? type : unknown;
 }
 
 }  // namespace takt

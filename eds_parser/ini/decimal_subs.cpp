@@ -18,10 +18,8 @@ constexpr std::uint32_t last_sub = 254;
 
 /// Returns the text after `xxxxsub`. The result is empty if the name has another form.
 std::string_view sub_text(std::string_view name) noexcept {
-  if (name.size() <= sub_at || !same_word(name.substr(index_digits, 3), "sub")) return {};
-  const auto index = name.substr(0, index_digits);
-  const bool is_index = std::ranges::all_of(index, [](char c) { return hex_digit(c) >= 0; });
-  return is_index ? name.substr(sub_at) : std::string_view{};
+  if (name.size() <= sub_at || !has_prefix(name.substr(index_digits), "sub")) return {};
+  return hex_digits(name.substr(0, index_digits)) ? name.substr(sub_at) : std::string_view{};
 }
 
 std::optional<std::uint32_t> decimal_sub(const IniSection& section) noexcept {
@@ -86,13 +84,10 @@ void mark_decimal_subs(IniFile& file, Report& report) {
   for (const auto& [index, subs] : objects) {
     if (!subs.is_decimal()) continue;
     for (auto* section : subs.sections) section->has_decimal_sub = true;
-    if (!report.wants("decimal-sub-index")) continue;
-    report.warning(
-        subs.sections.front()->pos, "decimal-sub-index",
-        "the sub-indices of [" + std::string{subs.sections.front()->name.substr(0, index_digits)} +
-            "] were read as decimal, " +
-            (subs.beyond_ff ? "because some exceed FF" : "as in other sections of the file") +
-            "; CiA 306 writes sub-indices in hexadecimal, other tools read sub10 as 16");
+    report.warning(subs.sections.front()->pos, "decimal-sub-index", "the sub-indices of [",
+                   subs.sections.front()->name.substr(0, index_digits), "] were read as decimal, ",
+                   subs.beyond_ff ? "because some exceed FF" : "as in other sections of the file",
+                   "; CiA 306 writes sub-indices in hexadecimal, other tools read sub10 as 16");
   }
 }
 

@@ -19,16 +19,19 @@ bool is_count_key(std::string_view key) noexcept;
 /// Returns the key of an entry of an object list or value list as a number. Such keys are always
 /// decimal, and leading zeros do not matter.
 std::optional<std::uint32_t> entry_number(std::string_view key) noexcept;
-/// Returns true if the key is the word followed by a decimal number: `Line12` with the word `line`.
-bool is_numbered(std::string_view key, std::string_view lower_word) noexcept;
-/// Counts the entries whose key is a number after `lower_word`. NrOfEntries, Lines ... state this
-/// count.
+/// Counts the entries whose key is a number after `lower_word`, such as `Line12` after `line`.
+/// NrOfEntries, Lines ... state this count.
 std::size_t numbered_entries(const IniEntries& entries, std::string_view lower_word = {}) noexcept;
+/// Returns the entries whose key is a number after `lower_word`. Reports other keys, and a wrong
+/// count in the entry `lower_count`, such as `nrofentries`.
+std::vector<IniEntry> read_numbered_list(const IniEntries& entries, std::string_view section,
+                                         std::string_view lower_count, Report& report,
+                                         std::string_view lower_word = {});
 /// Returns true if the object belongs to [MandatoryObjects]. CiA 306, 4.6.3.1.
 bool is_mandatory(std::uint16_t index) noexcept;
 
 /// Compares [MandatoryObjects], [OptionalObjects] and [ManufacturerObjects] with the sections of
-/// the file. The sections decide which objects exist; the lists only tell where an object belongs.
+/// the file. The sections decide which objects exist; the lists only say where an object belongs.
 /// CiA 306, 4.6.3.1.
 class ObjectLists {
  public:

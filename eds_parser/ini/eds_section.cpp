@@ -32,21 +32,6 @@ constexpr KnownSection known_sections[] = {
     {"connectedmodules", SectionKind::connected_modules},
 };
 
-/// Reads up to `most` hexadecimal digits from the start of `text` and returns their number.
-std::size_t take_hex(std::string_view text, std::size_t most, std::uint32_t& value) noexcept {
-  std::size_t count = 0;
-  for (value = 0; count < most && count < text.size(); ++count) {
-    const int digit = hex_digit(text[count]);
-    if (digit < 0) break;
-    value = value << 4 | static_cast<std::uint32_t>(digit);
-  }
-  return count;
-}
-
-bool has_prefix(std::string_view text, std::string_view lower) noexcept {
-  return text.size() >= lower.size() && same_word(text.substr(0, lower.size()), lower);
-}
-
 /// Classifies the text after the four digits of an index.
 SectionName classify_suffix(std::string_view written, std::uint16_t index) noexcept {
   const auto suffix = trim(written);
@@ -55,14 +40,12 @@ SectionName classify_suffix(std::string_view written, std::uint16_t index) noexc
   name.blank = is_blank(written.front());
   if (has_prefix(suffix, "sub")) {
     const auto digits = trim(suffix.substr(3));
-    std::uint32_t sub = 0;
-    const auto count = take_hex(digits, 4, sub);
-    const bool good = count > 0 && count == digits.size() && sub <= 0xFF;
-    if (!good) return {};
+    const auto sub = hex_digits(digits);
+    if (!sub || *sub > 0xFF || digits.size() > 4) return {};
     name.kind = SectionKind::sub_object;
-    name.sub = static_cast<std::uint8_t>(sub);
+    name.sub = static_cast<std::uint8_t>(*sub);
     name.blank = name.blank || is_blank(suffix[3]);
-    name.leading_zero = count > 1 && digits.front() == '0';
+    name.leading_zero = digits.size() > 1 && digits.front() == '0';
     return name;
   }
   name.kind = same_word(suffix, "name")          ? SectionKind::name_list
@@ -184,16 +167,14 @@ constexpr KeyTable key_table = make_key_table();
 }  // namespace
 
 SectionName classify_section(std::string_view name) noexcept {
-  std::uint32_t index = 0;
-  const bool prefixed = name.size() > 2 && name[0] == '0' && fold(name[1]) == 'x';
+  const bool prefixed = is_prefixed_hex(name);
   const auto digits = prefixed ? name.substr(2) : name;
-  const auto count = take_hex(digits, 4, index);
-  if (count == 4) {
-    auto found = classify_suffix(digits.substr(4), static_cast<std::uint16_t>(index));
+  if (const auto number = hex_digits(digits.substr(0, 4))) {
+    const auto index = static_cast<std::uint16_t>(*number);
+    if (digits.size() < 4) return {.kind = SectionKind::short_object, .index = index};
+    auto found = classify_suffix(digits.substr(4), index);
     found.prefixed = prefixed;
     if (found.kind != SectionKind::unknown) return found;
-  } else if (count > 0 && count == digits.size()) {
-    return {.kind = SectionKind::short_object, .index = static_cast<std::uint16_t>(index)};
   }
   for (const auto& known : known_sections) {
     if (same_word(name, known.name)) return {.kind = known.kind};
@@ -212,24 +193,18 @@ SectionName classify_section(const IniSection& section) noexcept {
 }
 
 void report_blank_in_name(const IniSection& section, Report& report) {
-  if (!report.wants("section-name-blank")) return;
-  report.warning(section.pos, "section-name-blank",
-                 "section " + quoted(section.name) +
-                     " has a blank in its name or around it; it was read, other tools lose it");
+  report.warning(section.pos, "section-name-blank", "section ", Quoted{section.name},
+                 " has a blank in its name or around it; it was read, other tools lose it");
 }
 
 void report_lonely_list(const IniSection& list, Report& report) {
-  if (!report.wants("object-section-missing")) return;
-  report.warning(list.pos, "object-section-missing",
-                 "section " + quoted(list.name) +
-                     " belongs to an object that has no section; it was left out");
+  report.warning(list.pos, "object-section-missing", "section ", Quoted{list.name},
+                 " belongs to an object that has no section; it was left out");
 }
 
 void report_unknown_key(const IniEntry& entry, std::string_view section, Report& report) {
-  if (!report.wants("unknown-key")) return;
-  report.warning(entry.key_pos(), "unknown-key",
-                 "key " + quoted(entry.key) + " of [" + to_utf8(section) +
-                     "] is not one of CiA 306; it was left out");
+  report.warning(entry.key_pos(), "unknown-key", "key ", Quoted{entry.key}, " of [", Utf8{section},
+                 "] is not one of CiA 306; it was left out");
 }
 
 void check_entry_count(const IniEntry& count, std::size_t found, std::string_view section,
@@ -237,12 +212,11 @@ void check_entry_count(const IniEntry& count, std::size_t found, std::string_vie
   const auto declared = parse_number(count.value);
   if (declared && declared->magnitude == found && !declared->negative) return;
   if (!declared && declared.error() == NumberFault::empty && found == 0) return;
-  report.warning(count.pos(), "entry-count-wrong",
-                 to_utf8(count.key) + " of [" + to_utf8(section) + "] is " + quoted(count.value) +
-                     ", but " +
-                     (found == 0   ? "there are no entries"
-                      : found == 1 ? "1 entry exists; it was read"
-                                   : std::to_string(found) + " entries exist; all were read"));
+  report.warning(count.pos(), "entry-count-wrong", Utf8{count.key}, " of [", Utf8{section}, "] is ",
+                 Quoted{count.value}, ", but ",
+                 found == 0   ? "there are no entries"
+                 : found == 1 ? "1 entry exists; it was read"
+                              : std::to_string(found) + " entries exist; all were read");
 }
 
 Keyword classify_key(std::string_view key) noexcept {
@@ -252,24 +226,24 @@ Keyword classify_key(std::string_view key) noexcept {
   return place.word == word ? place.keyword : Keyword::unknown;
 }
 
-ObjectFields::ObjectFields(const IniEntries& entries, std::string_view section, Report& report)
-    : text_{entries.text()} {
-  for (const auto& spot : entries.spots()) {
+ObjectFields::ObjectFields(const IniFile& file, const IniSection& section, Report& report)
+    : section_{section}, text_{file.text} {
+  for (const auto& spot : file.entries(section).spots()) {
     const auto keyword = classify_key(spot.key_in(text_));
     if (keyword == Keyword::other_known) continue;
     if (keyword == Keyword::unknown) {
-      report_unknown_key(spot.entry_in(text_), section, report);
+      report_unknown_key(spot.entry_in(text_), section.name, report);
       continue;
     }
     auto& first = slots_[static_cast<std::size_t>(keyword)];
     if (first == nullptr) {
       first = &spot;
-    } else if (first->value_in(text_) != spot.value_in(text_) && report.wants("duplicate-key")) {
+    } else if (first->value_in(text_) != spot.value_in(text_)) {
       const auto entry = spot.entry_in(text_);
-      report.warning(entry.pos(), "duplicate-key",
-                     "key " + quoted(entry.key) + " of [" + to_utf8(section) +
-                         "] is repeated with another value; the first one applies, " +
-                         quoted(first->value_in(text_)));
+      report.warning(entry.pos(), "duplicate-key", "key ", Quoted{entry.key}, " of [",
+                     Utf8{section.name},
+                     "] is repeated with another value; the first one applies, ",
+                     Quoted{first->value_in(text_)});
     }
   }
 }

@@ -35,6 +35,11 @@ enum class SectionKind : std::uint8_t {
   unknown,
 };
 
+/// Returns true if the section belongs to an object: [2000], [2000sub1], [2000Value] ...
+constexpr bool is_of_object(SectionKind kind) noexcept {
+  return kind <= SectionKind::denotation_list;
+}
+
 /// The parts of a section name.
 struct SectionName {
   SectionKind kind = SectionKind::unknown;
@@ -91,7 +96,9 @@ Keyword classify_key(std::string_view key) noexcept;
 /// The entries of one object's section by keyword. If a key is repeated, the first entry counts.
 class ObjectFields {
  public:
-  ObjectFields(const IniEntries& entries, std::string_view section, Report& report);
+  ObjectFields(const IniFile& file, const IniSection& section, Report& report);
+
+  const IniSection& section() const noexcept { return section_; }
 
   bool has(Keyword keyword) const noexcept { return slot(keyword) != nullptr; }
   std::optional<IniEntry> get(Keyword keyword) const noexcept {
@@ -104,10 +111,10 @@ class ObjectFields {
     const auto* spot = slot(keyword);
     return spot == nullptr ? std::string_view{} : spot->value_in(text_);
   }
-  /// Returns the place of a value, or `otherwise` if the key is missing.
-  SourcePos pos(Keyword keyword, SourcePos otherwise) const noexcept {
+  /// Returns the place of a value, or that of the section if the key is missing.
+  SourcePos pos(Keyword keyword) const noexcept {
     const auto* spot = slot(keyword);
-    return spot == nullptr ? otherwise : spot->pos_in(text_);
+    return spot == nullptr ? section_.pos : spot->pos_in(text_);
   }
 
  private:
@@ -115,6 +122,7 @@ class ObjectFields {
     return slots_[static_cast<std::size_t>(keyword)];
   }
 
+  const IniSection& section_;
   const char* text_;
   std::array<const IniSpot*, static_cast<std::size_t>(Keyword::other_known)> slots_{};
 };

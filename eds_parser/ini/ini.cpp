@@ -153,19 +153,17 @@ class Reader {
   }
 
   void report_long(const IniLine& line) {
-    if (!report_.wants("long-line")) return;
-    report_.warning({number_, 1}, "long-line",
-                    "line of " + std::to_string(line.last - line.first) +
-                        " characters; CiA 306 allows 255, other tools may cut it");
+    report_.warning({number_, 1}, "long-line", "line of ", line.last - line.first,
+                    " characters; CiA 306 allows 255, other tools may cut it");
   }
 
   void read_header(std::string_view rest) {
     const auto close = rest.find(']');
     if (close == std::string_view::npos) return read_open_header(rest);
     const auto behind = trim(rest.substr(close + 1));
-    if (!behind.empty() && behind.front() != ';' && report_.wants("text-after-section")) {
+    if (!behind.empty() && behind.front() != ';') {
       report_.note(here(behind), "text-after-section",
-                   "text behind ']' is left out: " + quoted(behind));
+                   "text behind ']' is left out: ", Quoted{behind});
     }
     close_section();
     file_.sections.push_back({trim(rest.substr(1, close - 1)), here(rest),
@@ -176,10 +174,8 @@ class Reader {
   /// before.
   void read_open_header(std::string_view rest) {
     rest = trim(rest.substr(0, rest.find(';')));
-    if (report_.wants("section-not-closed")) {
-      report_.warning(here(rest), "section-not-closed",
-                      "']' is missing behind " + quoted(rest) + "; read as if it were there");
-    }
+    report_.warning(here(rest), "section-not-closed", "']' is missing behind ", Quoted{rest},
+                    "; read as if it were there");
     close_section();
     file_.sections.push_back({.name = trim(rest.substr(1)),
                               .pos = here(rest),
@@ -188,8 +184,7 @@ class Reader {
   }
 
   void leave_out(std::string_view rule, std::string_view why, std::string_view line) {
-    if (!report_.wants(rule)) return;
-    report_.warning(here(line), rule, std::string{why} + "; the line is left out: " + quoted(line));
+    report_.warning(here(line), rule, why, "; the line is left out: ", Quoted{line});
   }
 
   void close_section() noexcept {
@@ -251,9 +246,8 @@ void report_assumed_encoding(std::string_view text, Report& report) {
     start = at + 1;
   }
   pos.column = static_cast<std::uint32_t>(at - start) + 1;
-  report.note(pos, "encoding-assumed",
-              "byte " + hex(static_cast<unsigned char>(text[at]), 2) +
-                  " is not UTF-8; texts with such bytes were read as Windows-1252");
+  report.note(pos, "encoding-assumed", "byte ", Hex{static_cast<unsigned char>(text[at]), 2},
+              " is not UTF-8; texts with such bytes were read as Windows-1252");
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ struct IniEntry {
 };
 
 /// The place of an entry as offsets into the text. A large file has so many entries that each byte
-/// here counts. The rest of an IniEntry is derived from the text on demand.
+/// here counts. The other members of an IniEntry are derived from the text on demand.
 struct IniSpot {
   std::uint32_t key = 0;
   std::uint32_t equals = 0;
@@ -89,7 +89,6 @@ class IniEntries {
   Iterator end() const noexcept { return {text_, spots_.data() + spots_.size()}; }
   std::size_t size() const noexcept { return spots_.size(); }
   bool empty() const noexcept { return spots_.empty(); }
-  const char* text() const noexcept { return text_; }
   std::span<const IniSpot> spots() const noexcept { return spots_; }
   IniEntry operator[](std::size_t at) const noexcept { return spots_[at].entry_in(text_); }
   IniEntry back() const noexcept { return spots_.back().entry_in(text_); }
@@ -112,6 +111,11 @@ struct IniSection {
     return name.data()[-1] != '[' || (closed && name.data()[name.size()] != ']');
   }
 };
+
+/// Returns the name of a section in brackets.
+inline std::string to_string(const IniSection& section) {
+  return concat('[', Utf8{section.name}, ']');
+}
 
 /// A file of sections, such as an EDS, DCF or CPJ. The views point into the text given to read_ini,
 /// or into `recoded` if that text was UTF-16. CiA 306, 4.2.

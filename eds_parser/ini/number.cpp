@@ -11,8 +11,6 @@ namespace {
 
 using Parsed = std::expected<ParsedNumber, NumberFault>;
 
-std::uint16_t bit(NumberQuirk quirk) noexcept { return static_cast<std::uint16_t>(quirk); }
-
 /// The result of reading digits. `bad` means another character; `too_big` means more than 64 bits.
 enum class Digits : std::uint8_t { good, bad, too_big };
 
@@ -37,7 +35,7 @@ std::optional<ParsedNumber> integral_real(std::string_view text) noexcept {
   ParsedNumber number;
   number.magnitude = static_cast<std::uint64_t>(std::abs(*real));
   number.negative = *real < 0;
-  number.quirks = bit(NumberQuirk::fraction);
+  number.quirks = quirk_bit(NumberQuirk::fraction);
   return number;
 }
 
@@ -48,7 +46,7 @@ Parsed read_unusual(std::string_view text) noexcept {
   const auto last_digit = text.find_last_not_of("uUlL");
   if (last_digit != std::string_view::npos && last_digit + 1 < text.size()) {
     auto number = parse_number(text.substr(0, last_digit + 1));
-    if (number) number->quirks |= bit(NumberQuirk::suffix);
+    if (number) number->quirks |= quirk_bit(NumberQuirk::suffix);
     if (number) return number;
   }
   ParsedNumber number;
@@ -56,12 +54,11 @@ Parsed read_unusual(std::string_view text) noexcept {
   // could be 5 or 0xB101.
   const bool has_digit = text.find_first_of("0123456789") != std::string_view::npos;
   const bool real = all_of(text, "0123456789eE") && parse_real(text);
-  const bool binary =
-      text.size() > 2 && text[0] == '0' && fold(text[1]) == 'b' && all_of(text.substr(2), "01");
+  const bool binary = text.size() > 2 && has_prefix(text, "0b") && all_of(text.substr(2), "01");
   const bool clear = has_digit && !real && !binary;
   if (clear && read_digits(text, 16, number.magnitude) == Digits::good) {
     number.hex = true;
-    number.quirks = bit(NumberQuirk::hex_without_prefix);
+    number.quirks = quirk_bit(NumberQuirk::hex_without_prefix);
     return number;
   }
   return std::unexpected{NumberFault::not_a_number};
@@ -82,7 +79,7 @@ Parsed read_hex(std::string_view text) noexcept {
   if (last == std::string_view::npos || last + 1 == text.size() || last < 2) {
     return std::unexpected{NumberFault::not_a_number};
   }
-  number.quirks = bit(NumberQuirk::suffix);
+  number.quirks = quirk_bit(NumberQuirk::suffix);
   digits = read_digits(text.substr(2, last - 1), 16, number.magnitude);
   return finish(digits, number);
 }
@@ -90,15 +87,15 @@ Parsed read_hex(std::string_view text) noexcept {
 /// Reads one term without a sign.
 Parsed read_unsigned(std::string_view text) noexcept {
   if (text.empty()) return std::unexpected{NumberFault::not_a_number};
-  if (text.size() > 2 && text[0] == '0' && fold(text[1]) == 'x') return read_hex(text);
+  if (is_prefixed_hex(text)) return read_hex(text);
   if (!all_of(text, "0123456789")) return read_unusual(text);
   ParsedNumber number;
   const bool zero_first = text.size() > 1 && text[0] == '0';
   const bool is_octal = zero_first && all_of(text, "01234567");
   const auto digits = read_digits(text, is_octal ? 8 : 10, number.magnitude);
   // "00" and "007" have the same value in octal and in decimal.
-  if (is_octal && number.magnitude > 7) number.quirks = bit(NumberQuirk::octal);
-  if (zero_first && !is_octal) number.quirks = bit(NumberQuirk::decimal_zero);
+  if (is_octal && number.magnitude > 7) number.quirks = quirk_bit(NumberQuirk::octal);
+  if (zero_first && !is_octal) number.quirks = quirk_bit(NumberQuirk::decimal_zero);
   return finish(digits, number);
 }
 
@@ -106,7 +103,7 @@ Parsed read_unsigned(std::string_view text) noexcept {
 /// it is wrong.
 bool starts_with_node_id(std::string_view text) noexcept {
   constexpr std::string_view name = "$nodeid";
-  if (!same_word(text.substr(0, name.size()), name)) return false;
+  if (!has_prefix(text, name)) return false;
   const char next = text.size() > name.size() ? fold(text[name.size()]) : ' ';
   return next != '_' && (next < '0' || next > '9') && (next < 'a' || next > 'z');
 }
@@ -116,7 +113,7 @@ Parsed read_term(std::string_view text) noexcept {
   if (same_word(dollar ? text.substr(1) : text, "nodeid")) {
     ParsedNumber number;
     number.node_ids = 1;
-    if (!dollar) number.quirks = bit(NumberQuirk::node_id_no_dollar);
+    if (!dollar) number.quirks = quirk_bit(NumberQuirk::node_id_no_dollar);
     return number;
   }
   if (dollar) {
@@ -165,7 +162,7 @@ std::optional<ParsedNumber> plain_number(std::string_view text) noexcept {
   ParsedNumber number;
   const bool minus = text.starts_with('-');
   if (minus) text.remove_prefix(1);
-  if (text.size() > 2 && text[0] == '0' && fold(text[1]) == 'x') {
+  if (is_prefixed_hex(text)) {
     if (text.size() > 2 + 16) return std::nullopt;
     number.hex = true;
     for (const char c : text.substr(2)) {
@@ -195,7 +192,7 @@ Parsed read_sum(std::string_view text) noexcept {
     const auto term = read_term(trim(text.substr(0, plus)));
     if (!term) return term;
     if (!first && term->node_ids > 0 && sum.node_ids == 0) {
-      sum.quirks |= bit(NumberQuirk::node_id_not_first);
+      sum.quirks |= quirk_bit(NumberQuirk::node_id_not_first);
     }
     if (!add(sum, *term)) return std::unexpected{NumberFault::too_big};
     if (plus == std::string_view::npos) return sum;
@@ -211,7 +208,7 @@ std::expected<ParsedNumber, NumberFault> parse_number(std::string_view text) noe
   const auto bare = without_comment(trim(text));
   if (bare.empty()) return std::unexpected{NumberFault::empty};
   auto number = read_sum(bare);
-  if (number && bare.size() != trim(text).size()) number->quirks |= bit(NumberQuirk::comment);
+  if (number && bare.size() != trim(text).size()) number->quirks |= quirk_bit(NumberQuirk::comment);
   return number;
 }
 
@@ -222,11 +219,15 @@ std::optional<double> parse_real(std::string_view text) noexcept {
   double value = 0;
   const auto [end, error] = std::from_chars(bare.data(), bare.data() + bare.size(), value);
   const auto rest = bare.substr(static_cast<std::size_t>(end - bare.data()));
-  if (error == std::errc::invalid_argument || !(rest.empty() || same_word(rest, "f"))) {
-    return std::nullopt;
-  }
-  if (error == std::errc::result_out_of_range) return std::nullopt;
+  if (error != std::errc{} || !(rest.empty() || same_word(rest, "f"))) return std::nullopt;
   return value;
+}
+
+std::optional<bool> boolean_word(std::string_view text) noexcept {
+  const auto is_word = [text](std::string_view word) { return same_word(text, word); };
+  if (is_word("true") || is_word("yes") || is_word("on")) return true;
+  if (is_word("false") || is_word("no") || is_word("off")) return false;
+  return std::nullopt;
 }
 
 }  // namespace takt

@@ -19,6 +19,10 @@ enum class NumberQuirk : std::uint16_t {
   word = 0x100,     ///< `true`, `yes` ...
 };
 
+constexpr std::uint16_t quirk_bit(NumberQuirk quirk) noexcept {
+  return static_cast<std::uint16_t>(quirk);
+}
+
 /// An integer with a sign, or a sum that contains the node-ID.
 struct ParsedNumber {
   std::uint64_t magnitude = 0;
@@ -27,10 +31,12 @@ struct ParsedNumber {
   bool hex = false;  ///< A term was written in hexadecimal, so the number may be a bit pattern.
   std::uint16_t quirks = 0;
 
-  bool has(NumberQuirk quirk) const noexcept {
-    return (quirks & static_cast<std::uint16_t>(quirk)) != 0;
-  }
+  bool has(NumberQuirk quirk) const noexcept { return (quirks & quirk_bit(quirk)) != 0; }
   bool relative() const noexcept { return node_ids != 0; }
+  /// Returns true for a number of 0..`highest` without $NODEID.
+  bool is_within(std::uint64_t highest) const noexcept {
+    return !negative && !relative() && magnitude <= highest;
+  }
 };
 
 enum class NumberFault : std::uint8_t {
@@ -46,5 +52,8 @@ std::expected<ParsedNumber, NumberFault> parse_number(std::string_view text) noe
 
 /// Reads a decimal number with or without exponent, `nan` or `inf`.
 std::optional<double> parse_real(std::string_view text) noexcept;
+
+/// Reads `true`, `yes`, `on` and their opposites, which occur in files written by hand.
+std::optional<bool> boolean_word(std::string_view text) noexcept;
 
 }  // namespace takt

@@ -17,10 +17,9 @@ const IniEntry* SectionKeys::get(std::string_view key) const {
     if (found == nullptr) {
       found = &entry;
     } else if (found->value != entry.value) {
-      report_.warning(entry.pos(), "duplicate-key",
-                      "key " + quoted(entry.key) +
-                          " is repeated with another value; the first one applies, " +
-                          quoted(found->value));
+      report_.warning(entry.pos(), "duplicate-key", "key ", Quoted{entry.key},
+                      " is repeated with another value; the first one applies, ",
+                      Quoted{found->value});
     }
   }
   return found;
@@ -33,7 +32,7 @@ std::string SectionKeys::text(std::string_view key) const {
 
 void SectionKeys::flag(bool& out, std::string_view key, ValueReader& values) const {
   const auto* entry = get(key);
-  if (entry != nullptr) out = values.read_flag(entry->value, entry->key, entry->pos());
+  if (entry != nullptr) out = values.read_flag(*entry);
 }
 
 void SectionKeys::report_unknown(std::string_view section,

@@ -23,13 +23,14 @@ class SectionKeys {
   /// Reports the keys that no call has asked for, except for the `reserved` ones.
   void report_unknown(std::string_view section, bool (*reserved)(std::string_view)) const;
 
+  /// Returns the entry, or nullptr if the key is missing.
   template <class T>
-  void number(T& out, std::string_view key, ValueReader& values) const {
+  const IniEntry* number(T& out, std::string_view key, ValueReader& values) const {
     const auto* entry = get(key);
-    if (entry == nullptr) return;
-    constexpr auto highest = std::numeric_limits<T>::max();
-    const auto value = values.read_count(entry->value, highest, entry->key, entry->pos());
+    const auto value =
+        entry == nullptr ? std::nullopt : values.read_count(*entry, std::numeric_limits<T>::max());
     if (value) out = static_cast<T>(*value);
+    return entry;
   }
 
  private:

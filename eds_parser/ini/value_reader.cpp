@@ -1,8 +1,6 @@
 #include "eds_parser/ini/value_reader.hpp"
 
-#include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 
 #include "eds_parser/ini/fitted_number.hpp"
@@ -16,52 +14,38 @@ using Expected = std::expected<ParsedNumber, NumberFault>;
 
 struct QuirkText {
   NumberQuirk quirk;
-  Severity severity;
   std::string_view rule;
   std::string_view message;
 };
 
 constexpr QuirkText quirk_texts[] = {
-    {NumberQuirk::octal, Severity::warning, "octal-number",
+    {NumberQuirk::octal, "octal-number",
      "leading zero: read as octal, as CiA 306 says; write 0x... or no leading zero"},
-    {NumberQuirk::decimal_zero, Severity::warning, "leading-zero",
+    {NumberQuirk::decimal_zero, "leading-zero",
      "leading zero would mean octal, but has an 8 or 9: read as decimal; drop the zero"},
-    {NumberQuirk::suffix, Severity::warning, "number-suffix",
+    {NumberQuirk::suffix, "number-suffix",
      "suffix of a programming language was left out; remove the suffix"},
-    {NumberQuirk::node_id_not_first, Severity::warning, "nodeid-not-first",
+    {NumberQuirk::node_id_not_first, "nodeid-not-first",
      "CiA 306 requires $NODEID as the first term, other tools drop it here; write $NODEID+number"},
-    {NumberQuirk::node_id_no_dollar, Severity::warning, "nodeid-without-dollar",
+    {NumberQuirk::node_id_no_dollar, "nodeid-without-dollar",
      "NODEID was read as $NODEID; write $NODEID+number"},
-    {NumberQuirk::hex_without_prefix, Severity::warning, "hex-without-prefix",
+    {NumberQuirk::hex_without_prefix, "hex-without-prefix",
      "read as hexadecimal; write 0x in front"},
-    {NumberQuirk::fraction, Severity::warning, "integer-with-fraction",
+    {NumberQuirk::fraction, "integer-with-fraction",
      "decimal point in an integer value; remove the decimal point"},
-    {NumberQuirk::comment, Severity::warning, "inline-comment",
+    {NumberQuirk::comment, "inline-comment",
      "text behind ';' or '#' was read as a comment; CiA 306 has no comments behind values"},
-    {NumberQuirk::word, Severity::warning, "boolean-word", "read as a boolean; write 0 or 1"},
+    {NumberQuirk::word, "boolean-word", "read as a boolean; write 0 or 1"},
 };
 
-void say(Report& report, Severity severity, SourcePos pos, std::string_view rule,
-         std::string message) {
-  switch (severity) {
-    case Severity::note:
-      return report.note(pos, rule, std::move(message));
-    case Severity::warning:
-      return report.warning(pos, rule, std::move(message));
-    case Severity::error:
-      return report.error(pos, rule, std::move(message));
+/// Reports the quirks of a number. `place` is the key, or a ValuePlace.
+template <class Place>
+void report_quirks(Report& report, std::uint16_t quirks, std::string_view text, SourcePos pos,
+                   const Place& place) {
+  for (const auto& known : quirk_texts) {
+    if ((quirks & quirk_bit(known.quirk)) == 0) continue;
+    report.warning(pos, known.rule, place, ": ", Quoted{text}, ": ", known.message);
   }
-}
-
-/// Reads `true` and similar words, which occur in files written by hand.
-std::optional<bool> boolean_word(std::string_view text) noexcept {
-  for (const auto* word : {"true", "yes", "on"}) {
-    if (same_word(text, word)) return true;
-  }
-  for (const auto* word : {"false", "no", "off"}) {
-    if (same_word(text, word)) return false;
-  }
-  return std::nullopt;
 }
 
 /// Returns true for bit patterns of 0 and of normal numbers. 0xFFFF in a REAL32 would be 9.2e-41;
@@ -76,11 +60,6 @@ double real_of(std::uint64_t bits, DataType type) noexcept {
                                   : std::bit_cast<double>(bits);
 }
 
-std::string shortest(double value) {
-  std::array<char, 32> text;
-  return {text.data(), std::to_chars(text.begin(), text.end(), value).ptr};
-}
-
 }  // namespace
 
 std::string to_string(const ValuePlace& place) {
@@ -90,25 +69,13 @@ std::string to_string(const ValuePlace& place) {
 std::optional<Value> ValueReader::read(std::string_view text, DataType type,
                                        const ValuePlace& place) {
   if (text.empty()) return std::nullopt;
-  switch (type) {
-    case DataType::visible_string:
-      return std::string{text};
-    case DataType::unicode_string:
-      return to_utf8(text);
-    case DataType::octet_string:
-    case DataType::domain:
-      return read_bytes(text, place);
-    case DataType::real32:
-    case DataType::real64:
-      return read_real(text, type, place);
-    case DataType::time_of_day:
-    case DataType::time_difference:
-      return read_time(text, type, place);
-    case DataType::unknown:
-      return read_untyped(text);
-    default:
-      return read_integer(text, type, place);
-  }
+  if (type == DataType::unknown) return read_untyped(text);
+  if (type == DataType::visible_string) return std::string{text};
+  if (type == DataType::unicode_string) return to_utf8(text);
+  if (is_bytes(type)) return read_bytes(text, place);
+  if (is_real(type)) return read_real(text, type, place);
+  if (is_time(type)) return read_time(text, type, place);
+  return read_integer(text, type, place);
 }
 
 std::optional<Value> ValueReader::read_integer(std::string_view text, DataType type,
@@ -116,8 +83,7 @@ std::optional<Value> ValueReader::read_integer(std::string_view text, DataType t
   auto number = parse_number(text);
   if (!number && type == DataType::boolean) {
     if (const auto word = boolean_word(without_comment(text))) {
-      number = ParsedNumber{.magnitude = *word ? 1U : 0U};
-      number->quirks = static_cast<std::uint16_t>(NumberQuirk::word);
+      number = ParsedNumber{.magnitude = *word ? 1U : 0U, .quirks = quirk_bit(NumberQuirk::word)};
     }
   }
   if (!number) {
@@ -127,13 +93,12 @@ std::optional<Value> ValueReader::read_integer(std::string_view text, DataType t
     } else if (number.error() == NumberFault::too_big) {
       exceeds(text, type, place);
     } else {
-      report_.error(place.pos, "value-unreadable",
-                    to_string(place) + ": " + quoted(text) +
-                        " contains a name other than $NODEID; the value is dropped");
+      report_.error(place.pos, "value-unreadable", place, ": ", Quoted{text},
+                    " contains a name other than $NODEID; the value is dropped");
     }
     return std::nullopt;
   }
-  if (number->quirks != 0) report_quirks(number->quirks, text, place);
+  if (number->quirks != 0) report_quirks(report_, number->quirks, text, place.pos, place);
   if (number->relative() && !node_) return std::nullopt;
   if (!resolve(*number, node_)) {
     exceeds(text, type, place);
@@ -149,7 +114,7 @@ std::optional<Value> ValueReader::read_integer(std::string_view text, DataType t
 std::optional<Value> ValueReader::read_real(std::string_view text, DataType type,
                                             const ValuePlace& place) {
   const auto bare = without_reported_comment(text, place);
-  if (bare.size() > 2 && bare[0] == '0' && fold(bare[1]) == 'x') {
+  if (is_prefixed_hex(bare)) {
     const auto pattern = parse_number(bare);
     const bool fits =
         pattern && !pattern->relative() && pattern->magnitude <= highest_unsigned(bit_width(type));
@@ -161,10 +126,8 @@ std::optional<Value> ValueReader::read_real(std::string_view text, DataType type
     const bool as_bits = all_digits || is_pattern(pattern->magnitude, type);
     const double value =
         as_bits ? real_of(pattern->magnitude, type) : static_cast<double>(pattern->magnitude);
-    report_.warning(place.pos, "real-bit-pattern",
-                    to_string(place) + ": hexadecimal was read as " +
-                        (as_bits ? "the bit pattern of " : "") + shortest(value) +
-                        "; write a decimal number");
+    report_.warning(place.pos, "real-bit-pattern", place, ": hexadecimal was read as ",
+                    as_bits ? "the bit pattern of " : "", value, "; write a decimal number");
     return value;
   }
   if (bare.empty()) return std::nullopt;
@@ -172,7 +135,7 @@ std::optional<Value> ValueReader::read_real(std::string_view text, DataType type
   if (!value) unreadable(text, name(type), place);
   if (!value) return std::nullopt;
   if (fold(bare.back()) == 'f' && std::isfinite(*value)) {
-    report_quirks(static_cast<std::uint16_t>(NumberQuirk::suffix), text, place);
+    report_quirks(report_, quirk_bit(NumberQuirk::suffix), text, place.pos, place);
   }
   if (type == DataType::real64 || !std::isfinite(*value)) return *value;
   const auto fitted = fit_real32(*value);
@@ -184,11 +147,8 @@ std::optional<Value> ValueReader::read_bytes(std::string_view text, const ValueP
   auto digits = without_reported_comment(text, place);
   // Some tools write an empty value in this way.
   if (digits == "0" || digits == "0x0") return std::nullopt;
-  bool odd_form = false;
-  if (digits.size() >= 2 && digits[0] == '0' && fold(digits[1]) == 'x') {
-    digits.remove_prefix(2);
-    odd_form = true;
-  }
+  bool odd_form = has_prefix(digits, "0x");
+  if (odd_form) digits.remove_prefix(2);
   std::string bytes;
   bytes.reserve(digits.size() / 2);
   int high = -1;
@@ -210,8 +170,8 @@ std::optional<Value> ValueReader::read_bytes(std::string_view text, const ValueP
     return std::nullopt;
   }
   if (odd_form) {
-    report_.warning(place.pos, "octet-string-form",
-                    to_string(place) + ": 0x and blanks were left out; write bare hex byte pairs");
+    report_.warning(place.pos, "octet-string-form", place,
+                    ": 0x and blanks were left out; write bare hex byte pairs");
   }
   return bytes;
 }
@@ -228,7 +188,7 @@ std::optional<Value> ValueReader::read_time(std::string_view text, DataType type
   const auto first = parse_number(bare.substr(0, gap));
   const auto second = parse_number(bare.substr(gap));
   const auto in_bits = [](const Expected& number, unsigned bits) {
-    return number && !number->negative && !number->relative() && number->magnitude >> bits == 0;
+    return number && number->is_within(highest_unsigned(bits));
   };
   if (in_bits(first, 16) && in_bits(second, 28)) return second->magnitude | first->magnitude << 32;
   if (in_bits(first, 28) && in_bits(second, 16)) return first->magnitude | second->magnitude << 32;
@@ -244,108 +204,62 @@ std::optional<Value> ValueReader::read_untyped(std::string_view text) {
   return fit_signed(*number, 64).value;
 }
 
-std::optional<std::uint32_t> ValueReader::read_count(std::string_view text, std::uint32_t highest,
-                                                     std::string_view key, SourcePos pos) {
-  if (text.empty()) return std::nullopt;  // Most keys are missing.
-  auto number = parse_number(text);
+std::optional<std::uint32_t> ValueReader::read_count(const IniEntry& entry, std::uint32_t highest) {
+  const auto number = parse_number(entry.value);
   if (!number && number.error() == NumberFault::empty) return std::nullopt;
-  const bool good =
-      number && !number->negative && !number->relative() && number->magnitude <= highest;
-  if (!good) {
-    report_.warning(pos, "number-unreadable",
-                    std::string{key} + ": " + quoted(text) + " is not a number of 0.." +
-                        std::to_string(highest) + "; it was left out");
+  if (!number || !number->is_within(highest)) {
+    report_.warning(entry.pos(), "number-unreadable", entry.key, ": ", Quoted{entry.value},
+                    " is not a number of 0..", highest, "; it was left out");
     return std::nullopt;
   }
-  if (number->has(NumberQuirk::comment)) {
-    report_.warning(
-        pos, "inline-comment",
-        std::string{key} + ": text behind ';' or '#' was read as a comment: " + quoted(text));
-  }
-  if (number->has(NumberQuirk::octal)) {
-    report_.warning(pos, "octal-number",
-                    std::string{key} + ": " + quoted(text) + " was read as octal, " +
-                        std::to_string(number->magnitude) + ", as CiA 306 says; drop the zero");
-  }
-  for (const auto& known : quirk_texts) {
-    const bool reported = known.quirk == NumberQuirk::comment || known.quirk == NumberQuirk::octal;
-    if (reported || !number->has(known.quirk)) continue;
-    report_.warning(pos, known.rule,
-                    std::string{key} + ": " + quoted(text) + ": " + std::string{known.message});
-  }
+  report_quirks(report_, number->quirks, entry.value, entry.pos(), entry.key);
   return static_cast<std::uint32_t>(number->magnitude);
 }
 
-bool ValueReader::read_flag(std::string_view text, std::string_view key, SourcePos pos) {
-  if (const auto number = parse_number(text)) return flag_of(*number, text, key, pos);
-  const auto bare = without_comment(text);
-  if (bare.empty()) return false;
-  const auto word = boolean_word(bare);
-  report_.warning(pos, "boolean-word",
-                  std::string{key} + ": " + quoted(text) + " was read as " +
-                      (word.value_or(false) ? "1" : "0") + "; write 0 or 1");
-  return word.value_or(false);
-}
-
-bool ValueReader::flag_of(const ParsedNumber& number, std::string_view text, std::string_view key,
-                          SourcePos pos) {
-  const bool set = number.magnitude != 0 || number.relative();
-  if (number.magnitude > 1 || number.negative || number.relative()) {
-    report_.warning(pos, "boolean-word",
-                    std::string{key} + ": " + quoted(text) + " was read as " + (set ? "1" : "0") +
-                        "; write 0 or 1");
-  } else if (number.has(NumberQuirk::comment)) {
-    report_.warning(
-        pos, "inline-comment",
-        std::string{key} + ": text behind ';' or '#' was read as a comment: " + quoted(text));
+bool ValueReader::read_flag(const IniEntry& entry) {
+  const auto number = parse_number(entry.value);
+  const auto bare = without_comment(entry.value);
+  if (!number && bare.empty()) return false;
+  const bool set =
+      number ? number->magnitude != 0 || number->relative() : boolean_word(bare).value_or(false);
+  if (!number || !number->is_within(1)) {
+    report_.warning(entry.pos(), "boolean-word", entry.key, ": ", Quoted{entry.value},
+                    " was read as ", set ? "1" : "0", "; write 0 or 1");
+  } else if (number->has(NumberQuirk::comment)) {
+    report_quirks(report_, quirk_bit(NumberQuirk::comment), entry.value, entry.pos(), entry.key);
   }
   return set;
-}
-
-void ValueReader::report_quirks(std::uint16_t quirks, std::string_view text,
-                                const ValuePlace& place) {
-  for (const auto& known : quirk_texts) {
-    if ((quirks & static_cast<std::uint16_t>(known.quirk)) == 0) continue;
-    if (!report_.wants(known.rule)) continue;
-    say(report_, known.severity, place.pos, known.rule,
-        to_string(place) + ": " + quoted(text) + ": " + std::string{known.message});
-  }
 }
 
 std::string_view ValueReader::without_reported_comment(std::string_view text,
                                                        const ValuePlace& place) {
   const auto bare = without_comment(text);
   if (bare.size() != trim(text).size()) {
-    report_quirks(static_cast<std::uint16_t>(NumberQuirk::comment), text, place);
+    report_quirks(report_, quirk_bit(NumberQuirk::comment), text, place.pos, place);
   }
   return bare;
 }
 
 void ValueReader::exceeds(std::string_view text, DataType type, const ValuePlace& place) {
-  say(report_, place.misfit, place.pos, "value-exceeds-type",
-      to_string(place) + ": " + quoted(text) + " does not fit " + std::string{name(type)} +
-          "; the value is dropped, not cut to fit");
+  report_.add(place.misfit, place.pos, "value-exceeds-type", place, ": ", Quoted{text},
+              " does not fit ", type, "; the value is dropped, not cut to fit");
 }
 
 void ValueReader::report_wrapped(std::string_view text, DataType type, const Value& value,
                                  const ValuePlace& place) {
-  const auto start = to_string(place) + ": " + quoted(text);
   if (const auto* number = std::get_if<std::int64_t>(&value)) {
-    report_.note(place.pos, "bit-pattern",
-                 start + " is the bit pattern of " + std::to_string(*number) + " in " +
-                     std::string{name(type)});
+    report_.note(place.pos, "bit-pattern", place, ": ", Quoted{text}, " is the bit pattern of ",
+                 *number, " in ", type);
   } else {
-    report_.warning(place.pos, "negative-unsigned",
-                    start + " in " + std::string{name(type)} + " was read as the bit pattern " +
-                        std::to_string(std::get<std::uint64_t>(value)));
+    report_.warning(place.pos, "negative-unsigned", place, ": ", Quoted{text}, " in ", type,
+                    " was read as the bit pattern ", std::get<std::uint64_t>(value));
   }
 }
 
 void ValueReader::unreadable(std::string_view text, std::string_view wanted,
                              const ValuePlace& place) {
-  say(report_, place.unreadable, place.pos, "value-unreadable",
-      to_string(place) + ": " + quoted(text) + " is not " + std::string{wanted} +
-          "; the value is dropped");
+  report_.add(place.unreadable, place.pos, "value-unreadable", place, ": ", Quoted{text},
+              " is not ", wanted, "; the value is dropped");
 }
 
 }  // namespace takt

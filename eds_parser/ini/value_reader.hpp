@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "eds_parser/dictionary/object_dictionary.hpp"
+#include "eds_parser/ini/ini.hpp"
 #include "eds_parser/ini/number.hpp"
 #include "eds_parser/report/report.hpp"
 
@@ -29,9 +30,8 @@ class ValueReader {
   /// an unknown node-ID.
   std::optional<Value> read(std::string_view text, DataType type, const ValuePlace& place);
   /// Reads a number of the structure of the file (SubNumber, list entries ...), at most `highest`.
-  std::optional<std::uint32_t> read_count(std::string_view text, std::uint32_t highest,
-                                          std::string_view key, SourcePos pos);
-  bool read_flag(std::string_view text, std::string_view key, SourcePos pos);
+  std::optional<std::uint32_t> read_count(const IniEntry& entry, std::uint32_t highest);
+  bool read_flag(const IniEntry& entry);
 
  private:
   std::optional<Value> read_integer(std::string_view text, DataType type, const ValuePlace& place);
@@ -39,9 +39,6 @@ class ValueReader {
   std::optional<Value> read_bytes(std::string_view text, const ValuePlace& place);
   std::optional<Value> read_time(std::string_view text, DataType type, const ValuePlace& place);
   std::optional<Value> read_untyped(std::string_view text);
-  bool flag_of(const ParsedNumber& number, std::string_view text, std::string_view key,
-               SourcePos pos);
-  void report_quirks(std::uint16_t quirks, std::string_view text, const ValuePlace& place);
   /// Returns the text before a comment, and reports that there is a comment.
   std::string_view without_reported_comment(std::string_view text, const ValuePlace& place);
   void exceeds(std::string_view text, DataType type, const ValuePlace& place);

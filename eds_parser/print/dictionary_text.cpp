@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 #include <ostream>
 
 #include "eds_parser/dictionary/integer_of.hpp"
@@ -47,17 +46,10 @@ std::string right(std::string_view text, std::size_t columns) {
   return used < columns ? std::string(columns - used, ' ').append(text) : std::string{text};
 }
 
-std::string text_of(double value) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
-  return {buffer, result.ptr};
-}
-
 std::string text_of(const Value& value, DataType type) {
-  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
-  if (const auto* number = std::get_if<std::uint64_t>(&value)) return std::to_string(*number);
-  if (const auto* real = std::get_if<double>(&value)) return text_of(*real);
-  const auto& bytes = std::get<BoxedText>(value).text();
+  const auto* boxed = std::get_if<BoxedText>(&value);
+  if (boxed == nullptr) return eds_value_text(value, type);
+  const auto& bytes = boxed->text();
   const bool is_text = type == DataType::visible_string || type == DataType::unicode_string;
   return is_text ? '"' + to_utf8(bytes) + '"' : hex_bytes(bytes);
 }

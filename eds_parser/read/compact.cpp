@@ -99,17 +99,15 @@ void apply_compact_list(Object& object, CompactList list, const IniEntries& entr
     const auto number = entry_number(entry.key);
     auto* sub = number ? find_sub(object, *number) : nullptr;
     if (sub == nullptr) {
-      if (!report.wants("unknown-sub-object")) continue;
-      report.warning(entry.key_pos(), "unknown-sub-object",
-                     "object " + hex(object.index) + " has no sub-object " + quoted(entry.key) +
-                         " (decimal); the entry was left out");
+      report.warning(entry.key_pos(), "unknown-sub-object", "object ", Hex{object.index},
+                     " has no sub-object ", Quoted{entry.key},
+                     " (decimal); the entry was left out");
       continue;
     }
     if (applied[sub->sub]) {
-      if (!report.wants("duplicate-key")) continue;
-      report.warning(entry.key_pos(), "duplicate-key",
-                     "sub-object " + to_string(ObjectKey{object.index, sub->sub}) +
-                         " is listed again; the first entry applies");
+      report.warning(entry.key_pos(), "duplicate-key", "sub-object ",
+                     ObjectKey{object.index, sub->sub},
+                     " is listed again; the first entry applies");
       continue;
     }
     applied.set(sub->sub);

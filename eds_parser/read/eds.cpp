@@ -25,18 +25,21 @@ constexpr std::uintmax_t largest_file = 512ULL << 20;
 
 constexpr SourcePos file_start{1, 1};  // place of findings about parts that the file does not have
 
+constexpr std::pair<SectionKind, ObjectList> object_lists[] = {
+    {SectionKind::mandatory_objects, ObjectList::mandatory},
+    {SectionKind::optional_objects, ObjectList::optional},
+    {SectionKind::manufacturer_objects, ObjectList::manufacturer}};
+
 /// The sections of the file by kind.
 struct Outline {
-  const IniSection* file_info = nullptr;
-  const IniSection* comments = nullptr;
-  const IniSection* device_info = nullptr;
-  const IniSection* dummy_usage = nullptr;
-  const IniSection* commissioning = nullptr;
-  const IniSection* channels = nullptr;
-  std::array<const IniSection*, 3> lists{};  ///< indexed by ObjectList
+  /// The only section of a kind, or nullptr if the file has none.
+  const IniSection*& operator[](SectionKind kind) noexcept {
+    return single[static_cast<std::size_t>(kind)];
+  }
+
+  std::array<const IniSection*, static_cast<std::size_t>(SectionKind::unknown)> single{};
   std::vector<ObjectSection> objects;  ///< in ascending order of index and role, without duplicates
-  const IniSection* tool_list = nullptr;  ///< [Tools]
-  std::vector<const IniSection*> tools;   ///< [ToolN]
+  std::vector<const IniSection*> tools;  ///< [ToolN]
   std::vector<ObjectSection> links;
   /// The number x and the section of each [MxModuleInfo].
   std::vector<std::pair<std::uint16_t, const IniSection*>> modules;
@@ -45,7 +48,7 @@ struct Outline {
 class EdsReader {
  public:
   EdsReader(const IniFile& file, Report& report) noexcept
-      : file_{file}, report_{report}, modules_{file} {}
+      : file_{file}, report_{report}, modules_{file, report} {}
 
   EdsFile read(std::string file_name, std::optional<NodeId> node) {
     outline();
@@ -87,58 +90,23 @@ class EdsReader {
   void place(const SectionName& name, std::uint32_t at) {
     const auto& section = file_.sections[at];
     if (name.prefixed) {
-      report_.warning(
-          section.pos, "section-name-form",
-          "section " + quoted(section.name) +
-              " is read as the section of an object; CiA 306 writes the index without 0x");
+      report_.warning(section.pos, "section-name-form", "section ", Quoted{section.name},
+                      " is read as the section of an object; CiA 306 writes the index without 0x");
     }
     if (name.leading_zero) {
-      report_.note(
-          section.pos, "section-name-form",
-          "section " + quoted(section.name) + ": CiA 306 writes sub-indices without leading zero");
+      report_.note(section.pos, "section-name-form", "section ", Quoted{section.name},
+                   ": CiA 306 writes sub-indices without leading zero");
     }
     if (name.blank || section.padded()) report_blank_in_name(section, report_);
+    if (is_of_object(name.kind)) return outline_.objects.push_back(ObjectSection::of(name, at));
     switch (name.kind) {
-      case SectionKind::object:
-      case SectionKind::sub_object:
-      case SectionKind::name_list:
-      case SectionKind::value_list:
-      case SectionKind::denotation_list:
-        outline_.objects.push_back(ObjectSection::of(name, at));
-        return;
-      case SectionKind::device_info:
-        return keep(outline_.device_info, section);
-      case SectionKind::dummy_usage:
-        return keep(outline_.dummy_usage, section);
-      case SectionKind::mandatory_objects:
-        return keep(outline_.lists[0], section);
-      case SectionKind::optional_objects:
-        return keep(outline_.lists[1], section);
-      case SectionKind::manufacturer_objects:
-        return keep(outline_.lists[2], section);
-      case SectionKind::commissioning_two_m:
-        report_.warning(section.pos, "section-spelling",
-                        "CiA 306 spells it [DeviceComissioning], with one m; it was read");
-        return keep(outline_.commissioning, section);
-      case SectionKind::commissioning:
-        return keep(outline_.commissioning, section);
-      case SectionKind::unknown:
-        return report_unknown(section);
-      case SectionKind::file_info:
-        return keep(outline_.file_info, section);
-      case SectionKind::comments:
-        return keep(outline_.comments, section);
-      case SectionKind::tools:
-        if (same_word(section.name, "tools")) return keep(outline_.tool_list, section);
-        outline_.tools.push_back(&section);
-        return;
       case SectionKind::object_links:
         outline_.links.push_back(ObjectSection::of(name, at));
         return;
-      case SectionKind::dynamic_channels:
-        return keep(outline_.channels, section);
-      case SectionKind::short_object:
-        return;
+      case SectionKind::commissioning_two_m:
+        report_.warning(section.pos, "section-spelling",
+                        "CiA 306 spells it [DeviceComissioning], with one m; it was read");
+        return keep(SectionKind::commissioning, section);
       case SectionKind::supported_modules:
         return modules_.set_supported(section);
       case SectionKind::connected_modules:
@@ -146,63 +114,73 @@ class EdsReader {
       case SectionKind::module:
         if (same_word(name.module_part, "moduleinfo")) {
           outline_.modules.emplace_back(name.module, &section);
-          return;
+        } else if (!modules_.add(name, at)) {
+          report_unknown(section);
         }
-        if (!modules_.add(name, at, report_)) report_unknown(section);
         return;
+      case SectionKind::short_object:
+        return;
+      case SectionKind::unknown:
+        return report_unknown(section);
+      default:
+        if (name.kind == SectionKind::tools && !same_word(section.name, "tools")) {
+          outline_.tools.push_back(&section);
+        } else {
+          keep(name.kind, section);
+        }
     }
   }
 
-  void keep(const IniSection*& slot, const IniSection& section) {
+  void keep(SectionKind kind, const IniSection& section) {
+    const IniSection*& slot = outline_[kind];
     if (slot != nullptr) return report_duplicate(*slot, section);
     slot = &section;
   }
 
   void report_duplicate(const IniSection& first, const IniSection& second) {
-    if (!report_.wants("duplicate-section")) return;
-    report_.warning(second.pos, "duplicate-section",
-                    "section " + quoted(second.name) + " appears again; the first one, line " +
-                        std::to_string(first.pos.line) + ", applies");
+    report_.warning(second.pos, "duplicate-section", "section ", Quoted{second.name},
+                    " appears again; the first one, line ", first.pos.line, ", applies");
   }
 
   void report_unknown(const IniSection& section) {
-    if (!report_.wants("unknown-section")) return;
-    report_.warning(section.pos, "unknown-section",
-                    "section " + quoted(section.name) + " is not one of CiA 306; it was left out");
+    report_.warning(section.pos, "unknown-section", "section ", Quoted{section.name},
+                    " is not one of CiA 306; it was left out");
   }
 
-  /// The extension of the file name decides. If it does not tell, the section that only a DCF
-  /// should have decides.
-  bool is_dcf(std::string_view name) const noexcept {
-    if (name.size() >= 4 && same_word(name.substr(name.size() - 4), ".dcf")) return true;
-    if (name.size() >= 4 && same_word(name.substr(name.size() - 4), ".eds")) return false;
-    return outline_.commissioning != nullptr;
+  /// The extension of the file name decides. For other extensions than .eds and .dcf, the section
+  /// that only a DCF should have decides.
+  bool is_dcf(std::string_view name) noexcept {
+    const auto extension = name.substr(name.size() - std::min<std::size_t>(name.size(), 4));
+    if (same_word(extension, ".dcf")) return true;
+    return !same_word(extension, ".eds") && outline_[SectionKind::commissioning] != nullptr;
   }
 
-  IniEntries entries(const IniSection* section) const noexcept {
+  /// Returns the entries of the only section of a kind.
+  IniEntries entries(SectionKind kind) noexcept {
+    const auto* section = outline_[kind];
     return section == nullptr ? IniEntries{} : file_.entries(*section);
   }
 
   void read_headers(ObjectDictionary& dictionary, std::optional<NodeId> node) {
     ValueReader values{report_, std::nullopt};
-    if (outline_.commissioning != nullptr) {
-      dictionary.commissioning.pos = outline_.commissioning->pos;
+    if (const auto* section = outline_[SectionKind::commissioning]) {
+      dictionary.commissioning.pos = section->pos;
     }
-    read_commissioning(dictionary.commissioning, entries(outline_.commissioning), values, report_);
+    read_commissioning(dictionary.commissioning, entries(SectionKind::commissioning), values,
+                       report_);
     dictionary.node_id = node ? node : dictionary.commissioning.node_id;
-    if (outline_.device_info != nullptr) {
-      read_device_info(dictionary.device, *outline_.device_info, entries(outline_.device_info),
-                       values, report_);
+    if (const auto* section = outline_[SectionKind::device_info]) {
+      read_device_info(dictionary.device, *section, file_.entries(*section), values, report_);
     } else {
       report_.warning(file_start, "device-info-missing", "the file has no section [DeviceInfo]");
     }
-    read_dummy_usage(dictionary.dummy_usage, entries(outline_.dummy_usage), values, report_);
+    read_dummy_usage(dictionary.dummy_usage, entries(SectionKind::dummy_usage), values, report_);
     read_channels(dictionary, values);
     read_notes(dictionary);
   }
 
   void read_channels(ObjectDictionary& dictionary, ValueReader& values) {
-    const auto* section = outline_.channels;
+    const auto* section = outline_[SectionKind::dynamic_channels];
     const bool supported = dictionary.device.dynamic_channels != 0;
     if (section == nullptr && supported) {
       report_.warning(dictionary.device.pos, "channels-missing",
@@ -213,16 +191,17 @@ class EdsReader {
       report_.note(section->pos, "channels-unsupported",
                    "the file has [DynamicChannels], but DynamicChannelsSupported is 0");
     }
-    dictionary.channels = read_dynamic_channels(entries(section), section->pos, values, report_);
+    dictionary.channels =
+        read_dynamic_channels(file_.entries(*section), section->pos, values, report_);
   }
 
   void read_notes(ObjectDictionary& dictionary) {
-    read_file_info(dictionary.notes.info, entries(outline_.file_info), report_);
-    dictionary.notes.comments = read_comments(entries(outline_.comments), report_);
+    read_file_info(dictionary.notes.info, entries(SectionKind::file_info), report_);
+    dictionary.notes.comments = read_comments(entries(SectionKind::comments), report_);
     for (const auto* tool : outline_.tools) {
-      dictionary.notes.tools.push_back(read_tool(*tool, entries(tool), report_));
+      dictionary.notes.tools.push_back(read_tool(*tool, file_.entries(*tool), report_));
     }
-    check_tools(entries(outline_.tool_list), outline_.tools.size(), report_);
+    check_tools(entries(SectionKind::tools), outline_.tools.size(), report_);
     read_modules(dictionary);
   }
 
@@ -236,7 +215,7 @@ class EdsReader {
         report_lonely_list(section, report_);
         continue;
       }
-      auto links = read_links(section, entries(&section), is_described, report_);
+      auto links = read_links(section, file_.entries(section), is_described, report_);
       const bool is_there = dictionary.find(link.index()) != nullptr;
       if (is_there) dictionary.links.push_back(std::move(links));
     }
@@ -249,7 +228,8 @@ class EdsReader {
       if (!dictionary.modules.empty() && dictionary.modules.back().number == number) {
         report_duplicate(*outline_.modules[at - 1].second, *section);
       } else {
-        dictionary.modules.push_back(read_module_info(number, *section, entries(section), report_));
+        dictionary.modules.push_back(
+            read_module_info(number, *section, file_.entries(*section), report_));
       }
     }
   }
@@ -261,10 +241,9 @@ class EdsReader {
     }
     dictionary.objects.reserve(described->count());
     ObjectLists lists{*described, report_};
-    for (const auto list :
-         {ObjectList::mandatory, ObjectList::optional, ObjectList::manufacturer}) {
-      const auto* section = outline_.lists[static_cast<std::size_t>(list)];
-      if (section != nullptr) lists.read(list, *section, entries(section));
+    for (const auto& [kind, list] : object_lists) {
+      const auto* section = outline_[kind];
+      if (section != nullptr) lists.read(list, *section, file_.entries(*section));
     }
     if (!lists.any() && described->any()) {
       report_.warning(file_start, "lists-missing",
@@ -286,8 +265,8 @@ class EdsReader {
       }
       at = end;
     }
-    modules_.expand(dictionary, reader, report_);
-    modules_.check(dictionary, report_);
+    modules_.expand(dictionary, reader);
+    modules_.check(dictionary);
     dictionary.domain_files = reader.take_domain_files();
     dictionary.parameter_references = reader.take_references();
     std::ranges::stable_sort(dictionary.parameter_references, {}, &ParameterReference::index);

@@ -1,11 +1,10 @@
 #include "eds_parser/read/eds_channels.hpp"
 
 #include <algorithm>
-#include <optional>
-#include <utility>
 
 #include "eds_parser/dictionary/standard_types.hpp"
 #include "eds_parser/ini/section_keys.hpp"
+#include "eds_parser/read/object_words.hpp"
 #include "eds_parser/report/text.hpp"
 
 namespace takt {
@@ -28,9 +27,8 @@ class ChannelReader {
     keys_.number(count, "nrofseg", values_);
     for (unsigned number = 1; number <= count; ++number) read(std::to_string(number));
     if (count < most_segments && keys_.get("type" + std::to_string(count + 1U)) != nullptr) {
-      report_.warning(pos_, "channel-incomplete",
-                      "NrOfSeg is " + std::to_string(count) + ", but there is Type" +
-                          std::to_string(count + 1U) + "; it was left out");
+      report_.warning(pos_, "channel-incomplete", "NrOfSeg is ", count, ", but there is Type",
+                      count + 1U, "; it was left out");
     }
     return std::move(channels_);
   }
@@ -41,9 +39,8 @@ class ChannelReader {
     const auto* range = keys_.get("range" + number);
     const auto* dir = keys_.get("dir" + number);
     if (type == nullptr || range == nullptr || dir == nullptr) {
-      report_.warning(pos_, "channel-incomplete",
-                      "segment " + number + " needs Type" + number + ", Dir" + number +
-                          " and Range" + number + "; it was left out");
+      report_.warning(pos_, "channel-incomplete", "segment ", number, " needs Type", number,
+                      ", Dir", number, " and Range", number, "; it was left out");
       return;
     }
     DynamicChannel channel{.pos = range->pos()};
@@ -58,43 +55,39 @@ class ChannelReader {
   }
 
   bool read_type(DynamicChannel& channel, const IniEntry& entry) {
-    const auto code = values_.read_count(entry.value, 0xFFFF, entry.key, entry.pos());
+    const auto code = values_.read_count(entry, 0xFFFF);
     if (!code) return false;
     channel.type_code = static_cast<std::uint16_t>(*code);
     channel.type = data_type_of(*code);
     if (byte_width(channel.type) != 0) return true;
-    report_.warning(entry.pos(), "channel-type",
-                    quoted(entry.value) +
-                        " is not a data type of a network variable (a number or BOOLEAN); the "
-                        "segment was left out");
+    report_.warning(entry.pos(), "channel-type", Quoted{entry.value},
+                    " is not a data type of a network variable (a number or BOOLEAN); the "
+                    "segment was left out");
     return false;
   }
 
   /// Reads the direction as other devices see it: `ro` is an output of the program.
   bool read_direction(DynamicChannel& channel, const IniEntry& entry) {
-    constexpr std::pair<std::string_view, Access> words[] = {
-        {"ro", Access::ro},   {"wo", Access::wo},   {"rw", Access::rw},
-        {"rwr", Access::rwr}, {"rww", Access::rww},
-    };
-    for (const auto& [word, access] : words) {
-      if (!same_word(entry.value, word)) continue;
-      channel.direction = access;
+    const auto access = access_of_word(entry.value);
+    if (access && *access != Access::constant) {
+      channel.direction = *access;
       return true;
     }
-    report_.warning(
-        entry.pos(), "channel-direction",
-        quoted(entry.value) + " is not one of ro, wo, rw, rwr, rww; the segment was left out");
+    report_.warning(entry.pos(), "channel-direction", Quoted{entry.value},
+                    " is not one of ro, wo, rw, rwr, rww; the segment was left out");
     return false;
   }
 
   bool read_range(DynamicChannel& channel, const IniEntry& entry) {
     const auto dash = entry.value.find('-');
-    if (dash == std::string_view::npos)
+    if (dash == std::string_view::npos) {
       return wrong_range(entry, "is not of the form 0xA080-0xA0BF");
-    const auto first =
-        values_.read_count(trim(entry.value.substr(0, dash)), 0xFFFF, entry.key, entry.pos());
-    const auto last =
-        values_.read_count(trim(entry.value.substr(dash + 1)), 0xFFFF, entry.key, entry.pos());
+    }
+    IniEntry end = entry;
+    end.value = trim(entry.value.substr(0, dash));
+    const auto first = values_.read_count(end, 0xFFFF);
+    end.value = trim(entry.value.substr(dash + 1));
+    const auto last = values_.read_count(end, 0xFFFF);
     if (!first || !last) return false;
     if (*last < *first) return wrong_range(entry, "ends before it begins");
     if (*first < first_variable || *last > last_variable) {
@@ -105,9 +98,9 @@ class ChannelReader {
     return true;
   }
 
-  bool wrong_range(const IniEntry& entry, const std::string& why) {
-    report_.warning(entry.pos(), "channel-range",
-                    "range " + quoted(entry.value) + ' ' + why + "; the segment was left out");
+  bool wrong_range(const IniEntry& entry, std::string_view why) {
+    report_.warning(entry.pos(), "channel-range", "range ", Quoted{entry.value}, ' ', why,
+                    "; the segment was left out");
     return false;
   }
 
@@ -116,9 +109,8 @@ class ChannelReader {
       return channel.first <= seen.last && seen.first <= channel.last;
     });
     if (other == channels_.end()) return;
-    report_.warning(
-        channel.pos, "channel-range",
-        "segment " + number + " shares indices with " + hex(other->first) + "-" + hex(other->last));
+    report_.warning(channel.pos, "channel-range", "segment ", number, " shares indices with ",
+                    Hex{other->first}, "-", Hex{other->last});
   }
 
   SectionKeys keys_;

@@ -14,9 +14,7 @@ namespace {
 /// Returns N of `BaudRate_N`, or std::nullopt for other keys such as `BaudRate_auto`.
 std::optional<std::uint16_t> baud_rate_of(std::string_view key) noexcept {
   constexpr std::string_view prefix = "baudrate_";
-  if (key.size() <= prefix.size() || !same_word(key.substr(0, prefix.size()), prefix)) {
-    return std::nullopt;
-  }
+  if (!has_prefix(key, prefix)) return std::nullopt;
   std::uint16_t rate = 0;
   const auto* end = key.data() + key.size();
   const auto [stop, error] = std::from_chars(key.data() + prefix.size(), end, rate);
@@ -31,22 +29,22 @@ bool is_reserved(std::string_view key) noexcept {
   constexpr std::string_view reserved[] = {
       "productversion",       "productrevision",     "lmt_manufacturername",   "lmt_productname",
       "extendedbootupmaster", "extendedbootupslave", "canopensafetysupported", "baudrate_auto"};
-  constexpr std::string_view guarding = "ng_";  // NG_Slave, NG_Master ... of older files
-  if (baud_rate_of(key) || same_word(key.substr(0, guarding.size()), guarding)) return true;
+  // NG_Slave, NG_Master ... are keys of older files.
+  if (baud_rate_of(key) || has_prefix(key, "ng_")) return true;
   return std::ranges::any_of(reserved, [key](auto word) { return same_word(key, word); });
 }
 
-/// Returns true for `Dummy0005`: the word followed by the index of a data type.
-bool is_dummy(std::string_view key) noexcept {
+/// Returns the index of the data type in `Dummy0005`, or std::nullopt for other keys.
+std::optional<std::uint32_t> dummy_type(std::string_view key) noexcept {
   constexpr std::string_view word = "dummy";
-  return key.size() == word.size() + 4 && same_word(key.substr(0, word.size()), word) &&
-         std::ranges::all_of(key.substr(word.size()), [](char c) { return hex_digit(c) >= 0; });
+  if (key.size() != word.size() + 4 || !has_prefix(key, word)) return std::nullopt;
+  return hex_digits(key.substr(word.size()));
 }
 
 void read_baud_rates(DeviceInfo& device, const IniEntries& entries, ValueReader& values) {
   for (const auto& entry : entries) {
     const auto rate = baud_rate_of(entry.key);
-    if (!rate || !values.read_flag(entry.value, entry.key, entry.pos())) continue;
+    if (!rate || !values.read_flag(entry)) continue;
     const auto at = std::ranges::lower_bound(device.baud_rates_kbit, *rate);
     if (at != device.baud_rates_kbit.end() && *at == *rate) continue;
     if (device.baud_rates_kbit.size() < 64) device.baud_rates_kbit.insert(at, *rate);
@@ -74,17 +72,9 @@ void read_file_info(FileInfo& info, const IniEntries& entries, Report& report) {
 
 std::vector<std::string> read_comments(const IniEntries& entries, Report& report) {
   std::vector<std::string> lines;
-  std::optional<IniEntry> count;
-  for (const auto& entry : entries) {
-    if (same_word(entry.key, "lines")) {
-      if (!count) count = entry;
-    } else if (is_numbered(entry.key, "line")) {
-      lines.push_back(to_utf8(entry.value));
-    } else {
-      report_unknown_key(entry, "Comments", report);
-    }
+  for (const auto& entry : read_numbered_list(entries, "Comments", "lines", report, "line")) {
+    lines.push_back(to_utf8(entry.value));
   }
-  if (count) check_entry_count(*count, lines.size(), "Comments", report);
   return lines;
 }
 
@@ -105,28 +95,15 @@ ObjectLinks read_links(const IniSection& section, const IniEntries& entries,
                        const std::function<bool(std::uint16_t)>& is_described, Report& report) {
   ValueReader values{report, std::nullopt};
   ObjectLinks links{classify_section(section).index, {}};
-  std::optional<IniEntry> count;
-  std::size_t found = 0;
-  for (const auto& entry : entries) {
-    if (same_word(entry.key, "objectlinks")) {
-      if (!count) count = entry;
-      continue;
-    }
-    if (!entry_number(entry.key)) {
-      report_unknown_key(entry, section.name, report);
-      continue;
-    }
-    ++found;
-    const auto other = values.read_count(entry.value, 0xFFFF, entry.key, entry.pos());
+  for (const auto& entry : read_numbered_list(entries, section.name, "objectlinks", report)) {
+    const auto other = values.read_count(entry, 0xFFFF);
     if (!other) continue;
     const auto index = static_cast<std::uint16_t>(*other);
     links.to.push_back(index);
-    if (is_described(index) || !report.wants("listed-without-section")) continue;
-    report.warning(entry.pos(), "listed-without-section",
-                   "[" + to_utf8(section.name) + "] links object " + hex(index) +
-                       ", which the file does not describe");
+    if (is_described(index)) continue;
+    report.warning(entry.pos(), "listed-without-section", section, " links object ", Hex{index},
+                   ", which the file does not describe");
   }
-  if (count) check_entry_count(*count, found, section.name, report);
   return links;
 }
 
@@ -142,20 +119,14 @@ void read_device_info(DeviceInfo& device, const IniSection& section, const IniEn
   keys.number(device.revision_number, "revisionnumber", values);
   keys.flag(device.simple_boot_up_master, "simplebootupmaster", values);
   keys.flag(device.simple_boot_up_slave, "simplebootupslave", values);
-  keys.number(device.granularity, "granularity", values);
-  const auto* granularity = keys.get("granularity");
-  device.granularity_pos = granularity == nullptr ? section.pos : granularity->pos();
+  const auto place = [&](const IniEntry* entry) {
+    return entry == nullptr ? section.pos : entry->pos();
+  };
+  device.granularity_pos = place(keys.number(device.granularity, "granularity", values));
+  device.nr_rx_pdo_pos = place(keys.number(device.nr_rx_pdo, "nrofrxpdo", values));
+  device.nr_tx_pdo_pos = place(keys.number(device.nr_tx_pdo, "nroftxpdo", values));
   keys.number(device.dynamic_channels, "dynamicchannelssupported", values);
   keys.flag(device.group_messaging, "groupmessaging", values);
-  const auto pdos = [&](std::uint16_t& count, SourcePos& pos, std::string_view key) {
-    const auto* entry = keys.get(key);
-    pos = entry == nullptr ? section.pos : entry->pos();
-    if (entry == nullptr) return;
-    const auto read = values.read_count(entry->value, 0xFFFF, entry->key, entry->pos());
-    if (read) count = static_cast<std::uint16_t>(*read);
-  };
-  pdos(device.nr_rx_pdo, device.nr_rx_pdo_pos, "nrofrxpdo");
-  pdos(device.nr_tx_pdo, device.nr_tx_pdo_pos, "nroftxpdo");
   keys.flag(device.lss_supported, "lss_supported", values);
   keys.number(device.compact_pdo, "compactpdo", values);
   keys.report_unknown("DeviceInfo", is_reserved);
@@ -175,19 +146,19 @@ void read_commissioning(Commissioning& commissioning, const IniEntries& entries,
   const auto* rate = keys.get("baudrate");
   const auto* node = keys.get("nodeid");
   keys.report_unknown("DeviceComissioning", nothing_else);
-  if (const auto* entry = node) {
-    const auto id = values.read_count(entry->value, 0xFFFF'FFFF, entry->key, entry->pos());
+  if (node != nullptr) {
+    const auto id = values.read_count(*node, 0xFFFF'FFFF);
     if (id) commissioning.node_id = NodeId::from(*id);
     if (id && !commissioning.node_id) {
-      report.warning(entry->pos(), "node-id-range",
-                     "NodeID is 1..127, not " + quoted(entry->value) + "; it was left out");
+      report.warning(node->pos(), "node-id-range", "NodeID is 1..127, not ", Quoted{node->value},
+                     "; it was left out");
     }
   }
   if (rate == nullptr) return;
-  auto kbit = values.read_count(rate->value, 0xFFFF'FFFF, rate->key, rate->pos()).value_or(0);
+  auto kbit = values.read_count(*rate, 0xFFFF'FFFF).value_or(0);
   if (kbit > 1000) {
-    report.warning(rate->pos(), "baudrate-unit",
-                   "Baudrate is in kbit/s; " + quoted(rate->value) + " was read as bit/s");
+    report.warning(rate->pos(), "baudrate-unit", "Baudrate is in kbit/s; ", Quoted{rate->value},
+                   " was read as bit/s");
     kbit = std::min(kbit / 1000, 0xFFFFU);
   }
   commissioning.baudrate_kbit = static_cast<std::uint16_t>(kbit);
@@ -205,15 +176,13 @@ ModuleInfo read_module_info(std::uint16_t number, const IniSection& section,
 
 void read_dummy_usage(std::array<bool, 8>& usage, const IniEntries& entries, ValueReader& values,
                       Report& report) {
-  constexpr std::string_view prefix = "dummy000";
   for (const auto& entry : entries) {
-    if (!is_dummy(entry.key)) {
+    const auto type = dummy_type(entry.key);
+    if (!type) {
       report_unknown_key(entry, "DummyUsage", report);
-      continue;
+    } else if (*type >= 1 && *type < usage.size()) {
+      usage[*type] |= values.read_flag(entry);
     }
-    const int digit = hex_digit(entry.key.back());
-    if (!same_word(entry.key.substr(0, prefix.size()), prefix) || digit < 1 || digit > 7) continue;
-    usage[static_cast<std::size_t>(digit)] |= values.read_flag(entry.value, entry.key, entry.pos());
   }
 }
 

@@ -17,8 +17,8 @@ std::vector<std::string> read_comments(const IniEntries& entries, Report& report
 VendorTool read_tool(const IniSection& section, const IniEntries& entries, Report& report);
 /// Compares [Tools] with `found`, the number of sections [ToolN].
 void check_tools(const IniEntries& entries, std::size_t found, Report& report);
-/// Reads [xxxxObjectLinks]. `is_described` tells whether the file describes the object of an index.
-/// CiA 306, 4.6.4.
+/// Reads [xxxxObjectLinks]. `is_described` returns whether the file describes the object of an
+/// index. CiA 306, 4.6.4.
 ObjectLinks read_links(const IniSection& section, const IniEntries& entries,
                        const std::function<bool(std::uint16_t)>& is_described, Report& report);
 

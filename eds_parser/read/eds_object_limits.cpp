@@ -1,4 +1,3 @@
-#include "eds_parser/dictionary/eds_limits.hpp"
 #include "eds_parser/ini/number.hpp"
 #include "eds_parser/read/eds_objects.hpp"
 #include "eds_parser/report/text.hpp"
@@ -24,22 +23,20 @@ bool is_pattern(const std::optional<Value>& limit, std::string_view text) noexce
 /// Drops limits that exclude values which the file means to allow. CiA 306 does not say how the
 /// limit of a signed type is written. Vendors write bit patterns, and numbers above the range of
 /// the type.
-void ObjectReader::judge_limits(SubObject& sub, const ObjectFields& fields, ObjectKey key,
-                                const IniSection& section) {
+void ObjectReader::judge_limits(SubObject& sub, const ObjectFields& fields, ObjectKey key) {
   if (sub.low_limit && sub.high_limit && inverted(*sub.low_limit, *sub.high_limit)) {
-    report_.warning(fields.pos(Keyword::low_limit, section.pos), "limits-inverted",
-                    to_string(key) + ": LowLimit " + quoted(fields.text(Keyword::low_limit)) +
-                        " is above HighLimit " + quoted(fields.text(Keyword::high_limit)) + " in " +
-                        std::string{name(sub.type)} + "; both were left out");
+    report_.warning(fields.pos(Keyword::low_limit), "limits-inverted", key, ": LowLimit ",
+                    Quoted{fields.text(Keyword::low_limit)}, " is above HighLimit ",
+                    Quoted{fields.text(Keyword::high_limit)}, " in ", sub.type,
+                    "; both were left out");
     sub.low_limit.reset();
     sub.high_limit.reset();
     return;
   }
   const auto drop = [&](std::optional<Value>& limit, Keyword keyword, std::string_view what) {
-    report_.warning(fields.pos(keyword, section.pos), "limit-above-type",
-                    to_string(key) + ": " + std::string{what} + ' ' + quoted(fields.text(keyword)) +
-                        " would be " + std::to_string(std::get<std::int64_t>(*limit)) + " in " +
-                        std::string{name(sub.type)} + "; it was left out");
+    report_.warning(fields.pos(keyword), "limit-above-type", key, ": ", what, ' ',
+                    Quoted{fields.text(keyword)}, " would be ", std::get<std::int64_t>(*limit),
+                    " in ", sub.type, "; it was left out");
     limit.reset();
   };
   const bool low = is_pattern(sub.low_limit, fields.text(Keyword::low_limit));

@@ -68,24 +68,18 @@ class ObjectReader {
   Parts split(std::span<const ObjectSection> group);
   /// Returns false if sub-objects were left out, so that lists of sub-objects can not be judged.
   bool read_main(Object& object, const Parts& parts);
-  void read_single(Object& object, const ObjectFields& fields, const IniSection& section);
+  void read_single(Object& object, const ObjectFields& fields);
   void read_subs(Object& object, const Parts& parts);
-  bool expand(Object& object, const ObjectFields& fields, const IniSection& section,
-              const Parts& parts, std::uint32_t count);
-  void check_sub_number(const Object& object, const ObjectFields& fields,
-                        const IniSection& section);
-  ObjectType read_object_type(const ObjectFields& fields, const IniSection& section,
-                              std::uint16_t index, bool has_subs);
-  void read_sub(SubObject& sub, const ObjectFields& fields, ObjectKey key,
-                const IniSection& section);
-  void read_type(SubObject& sub, const ObjectFields& fields, ObjectKey key,
-                 const IniSection& section);
-  Access read_access(const ObjectFields& fields, ObjectKey key, const IniSection& section,
-                     bool is_domain);
-  void read_values(SubObject& sub, const ObjectFields& fields, ObjectKey key,
-                   const IniSection& section);
-  void judge_limits(SubObject& sub, const ObjectFields& fields, ObjectKey key,
-                    const IniSection& section);
+  bool expand(Object& object, const ObjectFields& fields, const Parts& parts, std::uint32_t count);
+  void check_sub_number(const Object& object, const ObjectFields& fields);
+  ObjectType read_object_type(const ObjectFields& fields, std::uint16_t index, bool has_subs);
+  void read_sub(SubObject& sub, const ObjectFields& fields, ObjectKey key);
+  void read_type(SubObject& sub, const ObjectFields& fields, ObjectKey key);
+  Access read_access(const ObjectFields& fields, ObjectKey key, bool is_domain);
+  void read_values(SubObject& sub, const ObjectFields& fields, ObjectKey key);
+  void judge_limits(SubObject& sub, const ObjectFields& fields, ObjectKey key);
+  std::uint32_t read_count(const ObjectFields& fields, Keyword keyword,
+                           std::uint32_t highest = 0xFF);
   void apply_lists(Object& object, const Parts& parts);
   void keep_reference(const ObjectFields& fields, std::uint16_t index,
                       std::optional<std::uint8_t> sub);

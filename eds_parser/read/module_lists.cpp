@@ -37,11 +37,10 @@ void ModuleLists::check(const IniFile& file, std::size_t described, Report& repo
   std::set<Object> listed;
   for (const List& list : lists_) check_list(list, file.entries(*list.section), listed, report);
   for (const Object& object : objects_) {
-    if (listed.contains(object) || !report.wants("module-list")) continue;
-    report.warning(object.section->pos, "module-list",
-                   "section " + quoted(object.section->name) + " is not named by an entry of [" +
-                       list_name(object.module, object.part) +
-                       "]; it was read, other tools drop it");
+    if (listed.contains(object)) continue;
+    report.warning(object.section->pos, "module-list", "section ", Quoted{object.section->name},
+                   " is not named by an entry of [", list_name(object.module, object.part),
+                   "]; it was read, other tools drop it");
   }
 }
 
@@ -56,30 +55,16 @@ void ModuleLists::check_supported(const IniFile& file, std::size_t described,
 void ModuleLists::check_list(const List& list, const IniEntries& entries, std::set<Object>& listed,
                              Report& report) const {
   ValueReader values{report, std::nullopt};
-  std::optional<IniEntry> count;
-  std::size_t found = 0;
-  for (const auto& entry : entries) {
-    if (same_word(entry.key, "nrofentries")) {
-      if (!count) count = entry;
-      continue;
-    }
-    if (!entry_number(entry.key)) {
-      report_unknown_key(entry, list.section->name, report);
-      continue;
-    }
-    ++found;
-    const auto index = values.read_count(entry.value, 0xFFFF, entry.key, entry.pos());
+  for (const auto& entry : read_numbered_list(entries, list.section->name, "nrofentries", report)) {
+    const auto index = values.read_count(entry, 0xFFFF);
     if (!index) continue;
     const Object object{list.module, list.part, static_cast<std::uint16_t>(*index), list.section};
     listed.insert(object);
-    if (objects_.contains(object) || !report.wants("module-list")) continue;
+    if (objects_.contains(object)) continue;
     const std::string kind = list.part == ModulePart::fixed ? "Fixed" : "SubExt";
-    report.warning(entry.pos(), "module-list",
-                   "[" + to_utf8(list.section->name) + "] names object " + hex(object.index) +
-                       ", but there is no [M" + std::to_string(list.module) + kind +
-                       hex(object.index).substr(2) + ']');
+    report.warning(entry.pos(), "module-list", *list.section, " names object ", Hex{object.index},
+                   ", but there is no [M", list.module, kind, hex(object.index).substr(2), ']');
   }
-  if (count) check_entry_count(*count, found, list.section->name, report);
 }
 
 }  // namespace takt

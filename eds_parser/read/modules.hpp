@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <map>
 #include <set>
 #include <span>
 #include <tuple>
@@ -18,23 +17,23 @@ namespace takt {
 /// plugged in. CiA 306, 6.
 class ModuleSections {
  public:
-  explicit ModuleSections(const IniFile& file) noexcept : file_{file} {}
+  ModuleSections(const IniFile& file, Report& report) noexcept : file_{file}, report_{report} {}
 
   /// Adds a section [Mx...]. Only fixed objects, sub-index extensions and the lists of both are
   /// used; other sections of CiA 306 are ignored. Returns false if the section is not one of CiA
   /// 306.
-  bool add(const SectionName& name, std::uint32_t section, Report& report);
+  bool add(const SectionName& name, std::uint32_t section);
   void set_supported(const IniSection& section) noexcept { lists_.set_supported(section); }
   void set_connected(const IniSection& section) noexcept { connected_ = &section; }
 
   /// Adds the objects of the connected modules to a dictionary, in physical order. Without
   /// [ConnectedModules], as in an EDS, no module is plugged in.
-  void expand(ObjectDictionary& dictionary, ObjectReader& reader, Report& report);
+  void expand(ObjectDictionary& dictionary, ObjectReader& reader);
   /// Returns true if a section of any module, connected or not, describes this object.
   bool describes(std::uint16_t index) const { return indices_.contains(index); }
   /// Checks the lists, and reads the sections of modules that are not connected for their findings
   /// only. Call this after expand().
-  void check(const ObjectDictionary& dictionary, Report& report);
+  void check(const ObjectDictionary& dictionary);
 
  private:
   using Part = ModulePart;
@@ -47,44 +46,24 @@ class ModuleSections {
     auto order() const noexcept { return std::tuple{module, part, object.order}; }
   };
 
-  /// The progress of filling the sub-indices of an extended object.
-  struct Fill {
-    std::uint16_t first_index = 0;
-    std::uint16_t index = 0;
-    unsigned sub = 0;
-    unsigned bits_used = 0;
-    unsigned described = 0;  ///< highest sub-index that `index` had before the extension
-  };
-
   struct Slot {
     std::uint32_t number = 0;
     IniEntry entry;
   };
 
-  std::vector<Slot> slots(Report& report) const;
-  std::vector<std::uint16_t> connected_types(Report& report) const;
+  class Expansion;
+
+  std::vector<Slot> slots() const;
+  std::vector<std::uint16_t> connected_types() const;
   std::span<const ModuleSection> sections_of(std::uint16_t module, Part part) const;
-  bool add_modules(ObjectDictionary& dictionary, ObjectReader& reader, Report& report);
-  void add_fixed(std::uint16_t module, const ObjectDictionary& dictionary, ObjectReader& reader,
-                 Report& report);
-  bool extend(const ModuleSection& section, ObjectDictionary& dictionary, ObjectReader& reader,
-              Report& report);
-  const SubExtension& extension_of(const ModuleSection& section, ObjectReader& reader,
-                                   Report& report);
-  Object* find(std::uint16_t index, ObjectDictionary& dictionary);
-  Fill& fill_of(std::uint16_t index, ObjectDictionary& dictionary);
-  unsigned described_subs(std::uint16_t index, ObjectDictionary& dictionary);
-  void report_overlap(const Fill& fill, ObjectDictionary& dictionary, Report& report);
+  SubExtension read_extension(const ModuleSection& section, ObjectReader& reader) const;
 
   const IniFile& file_;
+  Report& report_;
   const IniSection* connected_ = nullptr;
   std::vector<ModuleSection> sections_;
-  std::set<std::uint16_t> indices_;                   ///< indices that `sections_` describe
-  std::map<std::uint32_t, SubExtension> extensions_;  ///< by section number
+  std::set<std::uint16_t> indices_;  ///< indices that `sections_` describe
   ModuleLists lists_;
-  std::vector<Fill> fills_;               ///< in ascending order of first_index
-  std::map<std::uint16_t, Object> made_;  ///< objects that the dictionary does not have yet
-  ExpansionBudget budget_;
 };
 
 }  // namespace takt

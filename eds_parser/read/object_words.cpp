@@ -1,112 +1,77 @@
 #include "eds_parser/read/object_words.hpp"
 
 #include <algorithm>
-#include <span>
+#include <iterator>
 
 #include "eds_parser/ini/number.hpp"
 #include "eds_parser/report/text.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/access_name.hpp"
 
 namespace takt {
 namespace {
 
-template <class T>
-struct Word {
-  std::string_view text;
-  T meaning;
+struct ObjectTypeWord {
+  std::string_view word;
+  ObjectType type;
 };
 
-template <class T>
-std::optional<T> meaning_of(std::string_view text, std::span<const Word<T>> words) noexcept {
-  const auto it = std::ranges::find_if(
-      words, [text](const Word<T>& word) { return same_word(text, word.text); });
-  return it == words.end() ? std::nullopt : std::optional{it->meaning};
-}
-
-constexpr Word<Access> access_words[] = {{"ro", Access::ro},   {"wo", Access::wo},
-                                         {"rw", Access::rw},   {"rwr", Access::rwr},
-                                         {"rww", Access::rww}, {"const", Access::constant}};
-
-constexpr Word<Access> access_letters[] = {{"r", Access::ro}, {"w", Access::wo}};
-
-constexpr Word<ObjectType> object_type_words[] = {
+constexpr ObjectTypeWord object_type_words[] = {
     {"null", ObjectType::null},       {"domain", ObjectType::domain},
     {"deftype", ObjectType::deftype}, {"defstruct", ObjectType::defstruct},
     {"var", ObjectType::var},         {"variable", ObjectType::var},
     {"array", ObjectType::array},     {"record", ObjectType::record}};
 
-bool may_be_word(std::string_view text) noexcept {
-  return !text.empty() && (text.front() < '0' || text.front() > '9');
+std::optional<std::uint32_t> object_type_code(std::string_view text) noexcept {
+  const auto* it = std::ranges::find_if(
+      object_type_words, [text](const auto& known) { return same_word(text, known.word); });
+  if (it == std::end(object_type_words)) return std::nullopt;
+  return static_cast<std::uint32_t>(it->type);
 }
 
-std::optional<ObjectType> object_type_of(std::string_view text) noexcept {
-  if (!may_be_word(text)) return std::nullopt;
-  return meaning_of<ObjectType>(text, object_type_words);
-}
-
-std::optional<DataType> data_type_of_word(std::string_view text) noexcept {
-  if (!may_be_word(text)) return std::nullopt;
-  for (unsigned code = 1; code <= static_cast<unsigned>(DataType::unsigned64); ++code) {
-    const auto type = static_cast<DataType>(code);
-    const auto word = name(type);
-    if (word != "unknown" && std::ranges::equal(text, word, {}, fold, fold)) return type;
+std::optional<std::uint32_t> data_type_code(std::string_view text) noexcept {
+  for (std::uint32_t code = 1; code <= static_cast<std::uint32_t>(DataType::unsigned64); ++code) {
+    const auto word = name(static_cast<DataType>(code));
+    if (word != "unknown" && std::ranges::equal(text, word, {}, fold, fold)) return code;
   }
   return std::nullopt;
-}
-
-struct CodeKey {
-  Keyword keyword;
-  std::string_view name;
-  std::uint32_t highest;
-};
-
-std::optional<std::uint32_t> read_code(const ObjectFields& fields, const CodeKey& key,
-                                       SourcePos pos, ValueReader& values, Report& report) {
-  const auto text = fields.text(key.keyword);
-  const auto code = code_of_word(key.keyword, text);
-  if (!code) return values.read_count(text, key.highest, key.name, pos);
-  const auto bare = without_comment(text);
-  if (report.wants("type-word")) {
-    report.warning(
-        pos, "type-word",
-        quoted(bare) + " was read as " + hex(*code) + "; CiA 306 requires the number here");
-  }
-  if (bare.size() != text.size()) {
-    report.warning(pos, "inline-comment",
-                   std::string{key.name} + ": text behind ';' or '#' was read as a comment");
-  }
-  return code;
 }
 
 }  // namespace
 
 std::optional<Access> access_of_word(std::string_view text) noexcept {
-  return meaning_of<Access>(text, access_words);
+  using enum Access;
+  for (const Access access : {ro, wo, rw, rwr, rww, constant}) {
+    if (same_word(text, access_name(access))) return access;
+  }
+  return std::nullopt;
 }
 
 std::optional<Access> access_of_letter(std::string_view text) noexcept {
-  return meaning_of<Access>(text, access_letters);
+  if (same_word(text, "r")) return Access::ro;
+  return same_word(text, "w") ? std::optional{Access::wo} : std::nullopt;
 }
 
 std::optional<std::uint32_t> code_of_word(Keyword keyword, std::string_view text) noexcept {
   const auto word = without_comment(text);
-  if (keyword == Keyword::object_type) {
-    const auto type = object_type_of(word);
-    return type ? std::optional{static_cast<std::uint32_t>(*type)} : std::nullopt;
+  if (word.empty() || (word.front() >= '0' && word.front() <= '9')) return std::nullopt;
+  if (keyword == Keyword::object_type) return object_type_code(word);
+  return keyword == Keyword::data_type ? data_type_code(word) : std::nullopt;
+}
+
+std::optional<std::uint32_t> read_type_code(const ObjectFields& fields, Keyword keyword,
+                                            ValueReader& values, Report& report) {
+  const auto entry = fields.get(keyword);
+  if (!entry) return std::nullopt;
+  const auto code = code_of_word(keyword, entry->value);
+  if (!code) return values.read_count(*entry, keyword == Keyword::object_type ? 0xFF : 0xFFFF);
+  const auto bare = without_comment(entry->value);
+  report.warning(entry->pos(), "type-word", Quoted{bare}, " was read as ", Hex{*code},
+                 "; CiA 306 requires the number here");
+  if (bare.size() != entry->value.size()) {
+    report.warning(entry->pos(), "inline-comment", entry->key,
+                   ": text behind ';' or '#' was read as a comment");
   }
-  if (keyword != Keyword::data_type) return std::nullopt;
-  const auto type = data_type_of_word(word);
-  return type ? std::optional{static_cast<std::uint32_t>(*type)} : std::nullopt;
-}
-
-std::optional<std::uint32_t> read_object_type_code(const ObjectFields& fields, SourcePos pos,
-                                                   ValueReader& values, Report& report) {
-  return read_code(fields, {Keyword::object_type, "ObjectType", 0xFF}, pos, values, report);
-}
-
-std::optional<std::uint32_t> read_data_type_code(const ObjectFields& fields, SourcePos pos,
-                                                 ValueReader& values, Report& report) {
-  return read_code(fields, {Keyword::data_type, "DataType", 0xFFFF}, pos, values, report);
+  return code;
 }
 
 bool is_domain_object(const ObjectFields& fields) noexcept {
@@ -114,7 +79,7 @@ bool is_domain_object(const ObjectFields& fields) noexcept {
   const auto text = fields.text(Keyword::object_type);
   if (const auto code = code_of_word(Keyword::object_type, text)) return *code == domain;
   const auto number = parse_number(text);
-  return number && !number->negative && !number->relative() && number->magnitude == domain;
+  return number && number->is_within(domain) && number->magnitude == domain;
 }
 
 }  // namespace takt

@@ -20,10 +20,8 @@ std::optional<std::uint32_t> code_of_word(Keyword keyword, std::string_view text
 
 /// Reads ObjectType or DataType. Both are numbers, but some files contain the words instead:
 /// `RECORD`, `UNSIGNED32`. Returns std::nullopt if the key is missing or its value is neither.
-std::optional<std::uint32_t> read_object_type_code(const ObjectFields& fields, SourcePos pos,
-                                                   ValueReader& values, Report& report);
-std::optional<std::uint32_t> read_data_type_code(const ObjectFields& fields, SourcePos pos,
-                                                 ValueReader& values, Report& report);
+std::optional<std::uint32_t> read_type_code(const ObjectFields& fields, Keyword keyword,
+                                            ValueReader& values, Report& report);
 /// Returns true if ObjectType is DOMAIN. Reports no findings.
 bool is_domain_object(const ObjectFields& fields) noexcept;
 

@@ -4,8 +4,8 @@
 #include <iterator>
 
 #include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/ini/number.hpp"
-#include "eds_parser/report/text.hpp"
 
 namespace takt {
 namespace {
@@ -28,8 +28,7 @@ bool any_configured(const Object* object) noexcept {
 /// Returns the index of the communication record of the PDO to which an object belongs, or 0 if it
 /// does not belong to a PDO.
 std::uint16_t pdo_of(std::uint16_t index) noexcept {
-  if (index < 0x1400 || index > 0x1BFF) return 0;
-  return static_cast<std::uint16_t>(index & ~0x0200U);
+  return is_pdo_parameter(index) ? static_cast<std::uint16_t>(index & ~0x0200U) : 0;
 }
 
 class Collector {
@@ -58,19 +57,17 @@ class Collector {
   void report_left_out() {
     for (const auto& files : dictionary_.domain_files) {
       if (files.download.empty()) continue;
-      report_.warning(files.pos, "download-left-out",
-                      to_string(files.key) + ": the content of DownloadFile " +
-                          takt::quoted(files.download) + " is left out of a concise DCF");
+      report_.warning(files.pos, "download-left-out", files.key, ": the content of DownloadFile ",
+                      Quoted{files.download}, " is left out of a concise DCF");
     }
     if (dictionary_.node_id) return;
     for (const auto& object : dictionary_.objects) {
       for (const auto& sub : object.subs) {
         const auto number = parse_number(sub.parameter_text);
         if (!number || !number->relative() || !sub.is_configurable()) continue;
-        report_.warning(sub.parameter_pos, "value-left-out",
-                        to_string(ObjectKey{object.index, sub.sub}) + ": ParameterValue " +
-                            takt::quoted(sub.parameter_text) +
-                            " has no value without a node id; it is left out");
+        report_.warning(sub.parameter_pos, "value-left-out", ObjectKey{object.index, sub.sub},
+                        ": ParameterValue ", Quoted{sub.parameter_text},
+                        " has no value without a node id; it is left out");
       }
     }
   }
@@ -79,9 +76,8 @@ class Collector {
     for (const auto& sub : object.subs) {
       if (!is_configured(sub)) continue;
       if (object.index == 0x1010 || object.index == 0x1011) {
-        report_.note(sub.parameter_pos, "command-left-out",
-                     to_string(ObjectKey{object.index, sub.sub}) +
-                         " stores or restores parameters; takt leaves it out of the configuration");
+        report_.note(sub.parameter_pos, "command-left-out", ObjectKey{object.index, sub.sub},
+                     " stores or restores parameters; takt leaves it out of the configuration");
         continue;
       }
       add({object.index, sub.sub}, sub, *sub.parameter_value);
@@ -96,12 +92,11 @@ class Collector {
     const ObjectKey cob_id{index, 1};
     const auto* id = dictionary_.find(cob_id);
     const auto raw = integer_of(dictionary_, cob_id);
-    const bool switchable = raw && id->access != Access::ro && id->access != Access::constant;
+    const bool switchable = raw && id->is_writable();
     if (!switchable) {
-      report_.warning(communication->pos, "pdo-not-switchable",
-                      to_string(cob_id) +
-                          " has no known value that can be written; the PDO stays valid while "
-                          "its parameters change (is --node missing?)");
+      report_.warning(communication->pos, "pdo-not-switchable", cob_id,
+                      " has no known value that can be written; the PDO stays valid while "
+                      "its parameters change (is --node missing?)");
     }
     const auto value = static_cast<std::uint64_t>(raw.value_or(0));
     if (switchable) add(cob_id, *id, Value{value | invalid_pdo});
@@ -117,8 +112,7 @@ class Collector {
     const auto* count = dictionary_.find(entries);
     const auto declared = integer_of(dictionary_, entries);
     const auto number = declared ? *declared : entries_of(mapping);
-    const bool writable =
-        count != nullptr && count->access != Access::ro && count->access != Access::constant;
+    const bool writable = count != nullptr && count->is_writable();
     if (writable) add({mapping.index, 0}, *count, Value{std::uint64_t{0}});
     for (const auto& sub : mapping.subs) {
       if (sub.sub == 0 || !sub.value()) continue;
@@ -126,8 +120,8 @@ class Collector {
         add({mapping.index, sub.sub}, sub, *sub.value());
       } else if (maps_something(sub)) {
         report_.warning(sub.parameter_pos, "mapping-entry-left-out",
-                        to_string(ObjectKey{mapping.index, sub.sub}) + " is left out: " +
-                            to_string(entries) + " counts " + std::to_string(number));
+                        ObjectKey{mapping.index, sub.sub}, " is left out: ", entries, " counts ",
+                        number);
       }
     }
     if (writable) add({mapping.index, 0}, *count, Value{static_cast<std::uint64_t>(number)});
@@ -143,21 +137,20 @@ class Collector {
     for (std::int64_t entry = 1; entry <= number; ++entry) {
       const ObjectKey key{mapping.index, static_cast<std::uint8_t>(entry)};
       if (integer_of(dictionary_, key).value_or(0) != 0) continue;
-      report_.error(mapping.pos, "mapping-count-unknown",
-                    to_string(ObjectKey{mapping.index, 0}) + " has no value, and " +
-                        to_string(key) + " before the last configured entry has no value either");
+      report_.error(mapping.pos, "mapping-count-unknown", ObjectKey{mapping.index, 0},
+                    " has no value, and ", key,
+                    " before the last configured entry has no value either");
       break;
     }
     return number;
   }
 
   void add(ObjectKey key, const SubObject& sub, const Value& value) {
-    auto bytes = to_bytes(value, sub.type);
     if (sub.type == DataType::unknown) {
-      return report_.warning(sub.parameter_pos, "data-type-unknown",
-                             to_string(key) + " is left out: its data type is not known");
+      return report_.warning(sub.parameter_pos, "data-type-unknown", key,
+                             " is left out: its data type is not known");
     }
-    entries_.push_back({key, std::move(bytes)});
+    entries_.push_back({key, to_bytes(value, sub.type)});
   }
 
   const ObjectDictionary& dictionary_;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
-#include "eds_parser/dictionary/eds_limits.hpp"
 #include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/ini/decimal_subs.hpp"
 #include "eds_parser/ini/number.hpp"
@@ -18,10 +18,6 @@ namespace takt {
 namespace {
 
 constexpr std::uint32_t refuse_write = 1;  // ObjFlags, bit 0
-
-bool is_writable(Access access) noexcept {
-  return access != Access::ro && access != Access::constant;
-}
 
 std::string_view base_name(std::string_view path) noexcept {
   const auto slash = path.rfind('/');
@@ -62,14 +58,11 @@ class DcfWriter {
  private:
   void write_value(const DcfValue& value) {
     const auto* sub = dictionary_.find(value.object);
-    if (sub == nullptr || !allowed(value, *sub)) {
-      if (sub == nullptr) {
-        refuse({}, "unknown-object",
-               to_string(value.object) + " is not an object of " + dictionary_.file);
-      }
+    if (sub == nullptr) {
+      refuse({}, "unknown-object", value.object, " is not an object of ", dictionary_.file);
+    } else if (!allowed(value, *sub)) {
       return;
-    }
-    if (is_file(value, *sub)) {
+    } else if (is_file(value, *sub)) {
       place(value.object, "DownloadFile", value.text.substr(1));
     } else if (good(value, *sub)) {
       place(value.object, "ParameterValue", value.text);
@@ -77,17 +70,17 @@ class DcfWriter {
   }
 
   bool allowed(const DcfValue& value, const SubObject& sub) {
-    const auto what = to_string(value.object) + ' ' + sub.name;
-    if (!is_writable(sub.access)) {
-      return refuse(sub.pos, "read-only",
-                    what + " is read-only: the device would refuse the value");
+    if (!sub.is_writable()) {
+      return refuse(sub.pos, "read-only", value.object, ' ', sub.name,
+                    " is read-only: the device would refuse the value");
     }
     if ((sub.flags & refuse_write) != 0) {
-      return refuse(sub.pos, "refuses-write",
-                    what + " is not to be written by a configuration (ObjFlags bit 0)");
+      return refuse(sub.pos, "refuses-write", value.object, ' ', sub.name,
+                    " is not to be written by a configuration (ObjFlags bit 0)");
     }
     if (value.text.find_first_of("\r\n") != std::string::npos) {
-      return refuse(sub.pos, "line-break", what + ": a value can't hold a line break");
+      return refuse(sub.pos, "line-break", value.object, ' ', sub.name,
+                    ": a value can't hold a line break");
     }
     return true;
   }
@@ -95,8 +88,8 @@ class DcfWriter {
   /// Whether the device would accept the value, read in the same way as in the written DCF.
   bool good(const DcfValue& value, const SubObject& sub) {
     if (trim(value.text).size() != value.text.size()) {
-      return refuse(sub.pos, "outer-blanks",
-                    to_string(value.object) + ": blanks around a value are lost in a DCF");
+      return refuse(sub.pos, "outer-blanks", value.object,
+                    ": blanks around a value are lost in a DCF");
     }
     const auto read =
         values_.read(value.text, sub.type, {value.object, "new value", sub.pos, Severity::error});
@@ -104,19 +97,16 @@ class DcfWriter {
       const auto number = parse_number(value.text);
       const bool needs_node =
           number && number->relative() && !options_.node && !dictionary_.node_id;
-      return refuse(sub.pos, "value-unreadable",
-                    to_string(value.object) + ": " + takt::quoted(value.text) +
-                        " is not a value of " + std::string{name(sub.type)} +
-                        (needs_node ? ": $NODEID needs --node" : ""));
+      return refuse(sub.pos, "value-unreadable", value.object, ": ", Quoted{value.text},
+                    " is not a value of ", sub.type, needs_node ? ": $NODEID needs --node" : "");
     }
     if (!outside_limits(*read, sub)) return true;
     const auto limit = [&](const std::optional<Value>& end) {
       return end ? eds_value_text(*end, sub.type) : std::string{"any"};
     };
-    return refuse(sub.pos, "value-outside-limits",
-                  to_string(value.object) + ": " + value.text + " lies outside " +
-                      limit(sub.low_limit) + ".." + limit(sub.high_limit) +
-                      ": the device would refuse it");
+    return refuse(sub.pos, "value-outside-limits", value.object, ": ", value.text, " lies outside ",
+                  limit(sub.low_limit), "..", limit(sub.high_limit),
+                  ": the device would refuse it");
   }
 
   /// Writes a value to the place that depends on how the file describes the object.
@@ -183,14 +173,11 @@ class DcfWriter {
     }
   }
 
-  /// Returns the new number.
-  std::uint64_t add_to_count(const IniSection& section, std::string_view lower_key,
-                             std::size_t more) {
+  void add_to_count(const IniSection& section, std::string_view lower_key, std::size_t more) {
     const auto count = sections_.entry(section, lower_key);
-    const auto before = count ? std::optional{parse_number(count->value)} : std::nullopt;
-    const auto number = (before && *before ? (*before)->magnitude : 0) + more;
-    if (count) edits_.replace(count->value, std::to_string(number));
-    return number;
+    if (!count) return;
+    const auto before = parse_number(count->value);
+    edits_.replace(count->value, std::to_string((before ? before->magnitude : 0) + more));
   }
 
   void write_implied_objects() {
@@ -255,11 +242,8 @@ class DcfWriter {
   void add_pdo_partners() {
     std::vector<std::uint16_t> partners;
     for (const auto& [index, values] : implied_) {
-      const bool communication = (index & 0xFE00) == 0x1400 || (index & 0xFE00) == 0x1800;
-      const bool mapping = (index & 0xFE00) == 0x1600 || (index & 0xFE00) == 0x1A00;
-      if (!communication && !mapping) continue;
-      const auto partner =
-          static_cast<std::uint16_t>(communication ? index + 0x200 : index - 0x200);
+      if (!is_pdo_parameter(index)) continue;
+      const auto partner = static_cast<std::uint16_t>(index ^ 0x200U);
       const bool implied = dictionary_.find(partner) != nullptr && !sections_.object(partner);
       if (implied) partners.push_back(partner);
     }
@@ -289,28 +273,24 @@ class DcfWriter {
   }
 
   void write_commissioning() {
-    std::vector<std::pair<std::string_view, std::string>> keys;
-    if (options_.node) keys.emplace_back("NodeID", std::to_string(options_.node->value()));
-    if (!options_.node_name.empty()) keys.emplace_back("NodeName", options_.node_name);
-    if (options_.baudrate_kbit) {
-      keys.emplace_back("Baudrate", std::to_string(*options_.baudrate_kbit));
-    }
     const auto* section = sections_.other(SectionKind::commissioning);
-    if (section == nullptr && !keys.empty()) {
-      edits_.append_line("");
-      edits_.append_line("[DeviceComissioning]");
-    }
-    for (auto& [key, text] : keys) {
-      if (section != nullptr) {
-        set(*section, key, std::move(text));
-      } else {
-        edits_.append_line(std::string{key} + '=' + text);
+    bool begun = false;
+    const auto write = [&](std::string_view key, std::string text) {
+      if (section != nullptr) return set(*section, key, std::move(text));
+      if (!std::exchange(begun, true)) {
+        edits_.append_line("");
+        edits_.append_line("[DeviceComissioning]");
       }
-    }
+      edits_.append_line(concat(key, '=', text));
+    };
+    if (options_.node) write("NodeID", std::to_string(options_.node->value()));
+    if (!options_.node_name.empty()) write("NodeName", options_.node_name);
+    if (options_.baudrate_kbit) write("Baudrate", std::to_string(*options_.baudrate_kbit));
   }
 
-  bool refuse(SourcePos pos, std::string_view rule, std::string message) {
-    report_.error(pos, rule, std::move(message));
+  template <class... Parts>
+  bool refuse(SourcePos pos, std::string_view rule, const Parts&... message) {
+    report_.error(pos, rule, message...);
     return false;
   }
 
@@ -348,10 +328,9 @@ void confirm(const std::string& text, const ObjectDictionary& before, const DcfO
   const auto written = read_eds(text, before.file, node).dictionary;
   for (const auto& [object, value] : last_values(options)) {
     if (holds(written, *value)) continue;
-    report.error(before.find(object)->pos, "value-not-set",
-                 to_string(object) +
-                     ": the file gives the value on another line than the one that takt would "
-                     "change; correct that line by hand");
+    report.error(before.find(object)->pos, "value-not-set", object,
+                 ": the file gives the value on another line than the one that takt would "
+                 "change; correct that line by hand");
   }
 }
 

@@ -31,10 +31,10 @@ struct DcfText {
 };
 
 /// Turns an EDS or DCF into the DCF of one device. It writes ParameterValue of the given objects,
-/// [DeviceComissioning], and LastEDS in [FileInfo]. The rest stays byte for byte, except that a
-/// UTF-16 file becomes UTF-8. An object that only CompactPDO or modules imply is written out if it
-/// gets a value. A value that the device would refuse (read-only, outside its limits or its type)
-/// is an error. CiA 306, 5.
+/// [DeviceComissioning], and LastEDS in [FileInfo]. All other text stays byte for byte, except that
+/// a UTF-16 file becomes UTF-8. An object that only CompactPDO or modules imply is written out if
+/// it gets a value. A value that the device would refuse (read-only, outside its limits or its
+/// type) is an error. CiA 306, 5.
 DcfText write_dcf(std::string_view source, const std::string& source_name,
                   const DcfOptions& options);
 

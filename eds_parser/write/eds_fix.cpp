@@ -150,21 +150,19 @@ class FixPass {
   bool section_finding(const Finding& finding, const IniSection& section) {
     const std::string_view rule = finding.rule;
     if (rule == "section-spelling") {
-      return touched_.insert(section.pos.line).second &&
-             replace(section.name, "DeviceComissioning");
+      return touch(section.pos.line) && replace(section.name, "DeviceComissioning");
     }
     if (rule == "section-not-closed") {
-      return touched_.insert(section.pos.line).second &&
-             replace(section.name, std::string{section.name} + ']');
+      return touch(section.pos.line) && replace(section.name, concat(section.name, ']'));
     }
     if (rule == "decimal-sub-index") return hexadecimal_subs();
     if (rule == "sub-number-missing") return sub_number(section, nullptr);
     if (rule != "section-name-form") return false;
     const std::uint32_t line = section.pos.line;
-    if (!touched_.insert(line).second) return done_.contains(line);  // one edit mends both findings
+    if (!touch(line)) return done_.contains(line);  // one edit mends both findings
     done_.insert(line);
     std::string name{section.name};
-    if (name.starts_with("0x") || name.starts_with("0X")) name.erase(0, 2);
+    if (is_prefixed_hex(name)) name.erase(0, 2);
     const std::size_t sub = name.find_first_of("sS");
     const std::size_t digits = sub == std::string::npos ? sub : sub + 3;
     while (digits < name.size() - 1 && name[digits] == '0') name.erase(digits, 1);
@@ -183,16 +181,16 @@ class FixPass {
     for (const IniSection& section : file_.sections) {
       if (!*subs_mended_ || !section.has_decimal_sub) continue;
       const std::string_view start = section.name.substr(0, std::string_view{"2000sub"}.size());
-      touched_.insert(section.pos.line);
-      replace(section.name, std::string{start} + hex(classify_section(section).sub, 1).substr(2));
+      touch(section.pos.line);
+      replace(section.name, concat(start, hex(classify_section(section).sub, 1).substr(2)));
     }
     return *subs_mended_;
   }
 
   bool entry_finding(std::string_view rule, const Place& at) {
     if (rule == "blank-in-key") return touch(at) && replace(at.entry.key, "SupportedObjects");
-    if (rule == "sub-number-wrong") return touch(at) && sub_number(*at.section, &at.entry);
-    if (rule == "sub-number-missing") return touch(at) && sub_number(*at.section, &at.entry);
+    if (rule == "sub-number-wrong" || rule == "sub-number-missing")
+      return touch(at) && sub_number(*at.section, &at.entry);
     if (rule == "compact-and-sub-number") return compact(at);
     if (rule == "baudrate-unit") return baudrate(at);
     if (rule == "entry-count-wrong" || rule == "module-count") return entry_count(at);
@@ -200,7 +198,9 @@ class FixPass {
     return is_value_rule(rule) && value(at);
   }
 
-  bool touch(const Place& at) { return touched_.insert(at.entry.line).second; }
+  /// Marks a line as edited. Returns false if it already has an edit.
+  bool touch(std::uint32_t line) { return touched_.insert(line).second; }
+  bool touch(const Place& at) { return touch(at.entry.line); }
 
   /// Returns the number of sub-object sections, as the reader counts them.
   std::size_t subs_of(std::uint16_t index) {

@@ -19,13 +19,15 @@ class ListFix {
           TextEdits& edits, std::set<std::uint32_t>& touched)
       : text_{text}, file_{file}, sections_{sections}, edits_{edits}, touched_{touched} {}
 
-  /// The entry on this line repeats another one.
+  /// Notes that the entry on this line repeats another one.
   void drop(std::uint32_t line) { dropped_.insert(line); }
-  /// The object of this entry belongs in another list. Returns false if the object is not clear.
+  /// Notes that the object of this entry belongs in another list. Returns false if the object is
+  /// not clear.
   bool move(const IniEntry& entry);
-  /// No list has this object.
+  /// Notes that no list has this object.
   void add(std::uint16_t index) { added_.insert(index); }
-  /// The count, or the numbering, of the list whose count or name is on this line is wrong.
+  /// Notes that the count, or the numbering, of a list is wrong. The count or the name of the list
+  /// is on this line.
   void count(std::uint32_t line) { counted_.insert(line); }
   void renumber(std::uint32_t line) { renumbered_.insert(line); }
   void run();

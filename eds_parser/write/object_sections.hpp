@@ -11,7 +11,4 @@ namespace takt {
 /// CiA 306, 4.6.3.2.
 std::vector<std::string> object_sections(const Object& object);
 
-/// Formats a value of `type` as CiA 306 writes it, so that it reads back as the same value.
-std::string eds_value_text(const Value& value, DataType type);
-
 }  // namespace takt

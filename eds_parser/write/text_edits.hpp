@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// A set of changes to a text. The rest of the text stays byte for byte. New lines have the same
+/// A set of changes to a text. All other text stays byte for byte. New lines have the same
 /// line end as those of the text.
 class TextEdits {
  public:

@@ -9,7 +9,6 @@
 #include "eds_parser/read/object_words.hpp"
 #include "eds_parser/report/text.hpp"
 #include "eds_parser/table/access_name.hpp"
-#include "eds_parser/write/object_sections.hpp"
 
 namespace takt {
 namespace {
@@ -28,15 +27,10 @@ Keyword value_keyword(const SectionName& section, std::string_view key) noexcept
   if (section.kind == SectionKind::value_list) {
     return entry_number(key) ? Keyword::parameter_value : Keyword::unknown;
   }
-  switch (const Keyword keyword = classify_key(key)) {
-    case Keyword::default_value:
-    case Keyword::parameter_value:
-    case Keyword::low_limit:
-    case Keyword::high_limit:
-      return keyword;
-    default:
-      return Keyword::unknown;
-  }
+  constexpr Keyword keywords[] = {Keyword::default_value, Keyword::parameter_value,
+                                  Keyword::low_limit, Keyword::high_limit};
+  const auto* found = std::ranges::find(keywords, classify_key(key));
+  return found == std::end(keywords) ? Keyword::unknown : *found;
 }
 
 /// Returns the element that the section of an object describes: a VAR, or an element by
@@ -68,29 +62,12 @@ const SubObject* element_of(const ObjectDictionary& dictionary, const IniSection
 
 /// Returns the value that was read at this entry, or std::nullopt if another entry counts.
 std::optional<Value> value_read(const SubObject& sub, Keyword keyword, const IniEntry& entry) {
-  switch (keyword) {
-    case Keyword::default_value:
-      return sub.default_pos == entry.pos() ? sub.default_value : std::nullopt;
-    case Keyword::parameter_value:
-      return sub.parameter_pos == entry.pos() ? sub.parameter_value : std::nullopt;
-    case Keyword::low_limit:
-      return sub.low_limit;
-    case Keyword::high_limit:
-      return sub.high_limit;
-    default:
-      return {};
-  }
-}
-
-std::string magnitude_text(const ParsedNumber& number) {
-  return number.hex ? hex(0, 1).substr(0, 2) + [&] {
-    std::string digits;
-    for (std::uint64_t rest = number.magnitude; rest != 0; rest >>= 4U) {
-      digits.insert(digits.begin(), "0123456789ABCDEF"[rest & 0xFU]);
-    }
-    return digits.empty() ? std::string{"0"} : digits;
-  }()
-                    : std::to_string(number.magnitude);
+  if (keyword == Keyword::low_limit) return sub.low_limit;
+  if (keyword == Keyword::high_limit) return sub.high_limit;
+  const bool is_default = keyword == Keyword::default_value;
+  const SourcePos read_at = is_default ? sub.default_pos : sub.parameter_pos;
+  if (read_at != entry.pos()) return std::nullopt;
+  return is_default ? sub.default_value : sub.parameter_value;
 }
 
 /// Returns a number in plain notation. Hexadecimal stays hexadecimal. Returns std::nullopt if the
@@ -104,7 +81,9 @@ std::optional<std::string> plain_number(std::string_view bare) {
   const bool only_id = number->relative() && number->magnitude == 0;
   if (number->negative) plain += '-';
   if (number->relative() && !number->negative && !only_id) plain += '+';
-  if (!only_id) plain += magnitude_text(*number);
+  if (!only_id) {
+    plain += number->hex ? hex64(number->magnitude, 1) : std::to_string(number->magnitude);
+  }
   const auto again = parse_number(plain);
   const bool same = again && again->magnitude == number->magnitude &&
                     again->negative == number->negative && again->node_ids == number->node_ids &&
@@ -115,12 +94,7 @@ std::optional<std::string> plain_number(std::string_view bare) {
 /// Returns `1` for `true` and numbers other than 0, `0` for `false` and 0, and std::nullopt for
 /// other texts.
 std::optional<std::string> plain_flag(std::string_view bare) {
-  for (const auto* yes : {"true", "yes", "on"}) {
-    if (same_word(bare, yes)) return "1";
-  }
-  for (const auto* no : {"false", "no", "off"}) {
-    if (same_word(bare, no)) return "0";
-  }
+  if (const auto word = boolean_word(bare)) return *word ? "1" : "0";
   const auto number = parse_number(bare);
   if (number && !number->relative()) return number->magnitude == 0 ? "0" : "1";
   return {};
@@ -132,9 +106,7 @@ std::optional<std::string> value_text(const std::optional<Value>& value, DataTyp
                                       std::string_view bare) {
   const auto written = parse_number(bare);
   if (!value || (written && written->relative())) return {};
-  if (const auto* number = std::get_if<std::uint64_t>(&*value)) {
-    return magnitude_text({.magnitude = *number, .hex = true});
-  }
+  if (const auto* number = std::get_if<std::uint64_t>(&*value)) return hex64(*number, 1);
   return eds_value_text(*value, type);
 }
 
@@ -147,25 +119,21 @@ std::string without_suffix(std::string_view real) {
 std::optional<std::string> plain_element(const SubObject& element, Keyword keyword,
                                          const IniEntry& entry, const Rules& rules) {
   const std::string_view bare = without_comment(entry.value);
-  const bool is_hex = bare.size() > 2 && bare[0] == '0' && fold(bare[1]) == 'x';
   const bool other_form = rules.contains("real-bit-pattern") ||
                           rules.contains("octet-string-form") ||
                           rules.contains("negative-unsigned");
   if (element.type == DataType::unknown) return {};
-  if (other_form || (is_real(element.type) && is_hex)) {
+  if (other_form || (is_real(element.type) && is_prefixed_hex(bare))) {
     return value_text(value_read(element, keyword, entry), element.type, bare);
   }
   if (is_real(element.type)) return without_suffix(bare);
-  const bool is_time =
-      element.type == DataType::time_of_day || element.type == DataType::time_difference;
   const bool two_numbers = bare.find_first_of(" \t") != std::string_view::npos;
-  if (is_bytes(element.type) || (is_time && two_numbers)) return std::string{bare};
+  if (is_bytes(element.type) || (is_time(element.type) && two_numbers)) return std::string{bare};
   return rules.contains("boolean-word") ? plain_flag(bare) : plain_number(bare);
 }
 
 bool in_list(SectionKind kind) noexcept {
-  return kind == SectionKind::mandatory_objects || kind == SectionKind::optional_objects ||
-         kind == SectionKind::manufacturer_objects;
+  return kind >= SectionKind::mandatory_objects && kind <= SectionKind::manufacturer_objects;
 }
 
 }  // namespace

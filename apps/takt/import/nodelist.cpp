@@ -157,7 +157,7 @@ class Importer {
       name_ = to_utf8(entry.value);
       add(entry, KeyFate::used, "name of the bus, part of the LCM channels");
     } else if (key == "nodes") {
-      count_ = values_.read_count(entry.value, 127, entry.key, entry.pos());
+      count_ = values_.read_count(entry, 127);
       count_row_ = add(entry, KeyFate::used, "compared with the nodes that are listed");
     } else if (key == "netrefd") {
       add(entry, KeyFate::ignored, "a reference for readers");
@@ -180,7 +180,7 @@ class Importer {
     auto& node = nodes_[id];
     if (node.pos == SourcePos{}) node.pos = entry.key_pos();
     if (what == "present") {
-      node.is_present = values_.read_flag(entry.value, entry.key, entry.pos());
+      node.is_present = values_.read_flag(entry);
       node.present = add(entry, node.is_present ? KeyFate::used : KeyFate::ignored,
                          node.is_present ? "" : "the node is not present; takt left it out");
     } else if (what == "name") {
