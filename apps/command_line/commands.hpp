@@ -35,6 +35,7 @@ void add_soak(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);
 void add_timing(CLI::App& app, int& exit_code);
 void add_top(CLI::App& app, int& exit_code);
+void add_trajectory(CLI::App& app, int& exit_code);
 
 /// The verbs of `takt eds` that have separate source files.
 void add_eds_dcf(CLI::App& eds, int& exit_code);

@@ -102,6 +102,7 @@ ROOMS = {
                           "master/wire master/sim master/sim/dictionary master/sim/service master/sim/pdo master/sim/model"),
     "master/sim/bus": ("the wire, its faults, and the world of all devices",
                        "master/wire master/sim master/sim/device master/rt/port.hpp"),
+    "master/motion": ("trajectories of axes within their limits", ""),
     "master/units": ("raw values of the image, and SI units", ""),
     "master/lcm": ("messages of takt on LCM, and the transport", "eds_parser/lcm master/linux"),
     "master/lcm/envelope": ("signed messages and their keys", "eds_parser/lcm master/lcm master/linux"),
@@ -157,6 +158,7 @@ ROOMS = {
     "apps/takt/soak": ("runs random sequences of faults",
                        "apps/command_line apps/takt/simulate apps/takt/simulate/program apps/takt/soak/judge "
                        "eds_parser/network_file master/explain master/gateway master/rt master/rt/exchange " + SIM),
+    "apps/takt/trajectory": ("plans trajectories without a bus", "apps/command_line master/motion"),
     "apps/takt": ("the tool: commands on files",
                   "apps/command_line eds_parser/check eds_parser/write eds_parser/export eds_parser/budget "
                   "eds_parser/network_file eds_parser/print eds_parser/print/plan master/lcm master/lcm/envelope "
@@ -178,7 +180,7 @@ MOST_FILES = 30  # of a room; a note
 LIBRARIES = ("eds_parser", "master", "apps", "share")
 # Rooms that use C++ and its standard library alone.
 PURE = tuple(room for room in ROOMS
-             if room.startswith(("eds_parser/", "master/wire", "master/core", "master/rt"))
+             if room.startswith(("eds_parser/", "master/wire", "master/core", "master/rt", "master/motion"))
              and not room.startswith(("eds_parser/print", "eds_parser/network_file"))) + ("master/explain",)
 WRITERS = ("nlohmann/", "fmt/")  # of text and JSON, for the rooms that write them
 WRITING = ("eds_parser/print", "master/explain")

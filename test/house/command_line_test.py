@@ -59,7 +59,7 @@ def wrong_use(tools):
     tools.says("behind -- are no options", ["takt", "plan", "--", "--jsn"], 2, "--jsn")
     tools.says("takt without a command is wrong use", ["takt"], 2, "--help")
     for command in ([], ["dump"], ["eds"], ["import"], ["learn"], ["plan"], ["budget"], ["sim"], ["simulate"], ["status"],
-                    ["top"], ["sdo"], ["nmt"]):
+                    ["top"], ["sdo"], ["nmt"], ["trajectory"]):
         tools.says(" ".join(["takt", *command, "--help"]) + " has an example", ["takt", *command, "--help"], 0, "Example")
 
 
@@ -194,6 +194,24 @@ def budget(tools):
     tools.says("a time without a unit", ["takt", "budget", DEMO, "--what-if", "period=1000"], 2, "us, ms or s")
 
 
+def trajectory(tools):
+    way = '"from":{"position":[0]},"to":{"position":[1]}'
+    limits = '"limits":{"velocity":[1],"acceleration":[5],"jerk":[50]}'
+    with tempfile.TemporaryDirectory() as folder:
+        lines, picture = pathlib.Path(folder, "lines.json"), pathlib.Path(folder, "move.svg")
+        lines.write_text("{%s,%s}\n" % (way, limits))
+        tools.says("a trajectory has a duration", ["takt", "trajectory", str(lines), "--plot", str(picture)], 0, '"duration":1.2999999', '"error":null')
+        drawn = picture.read_text()
+        check("its picture is an SVG file", drawn.startswith("<svg"), drawn[:100])
+        lines.write_text("{%s,%s}\n\n{%s}\n" % (way, limits.replace("[1]", "[-1]"), way))
+        tools.says("a wrong line is named, and the others are answered", ["takt", "trajectory", str(lines)], 2,
+                   "lines.json:3: `limits` is missing", "axis 0: the velocity limits do not enclose 0")
+        lines.write_text("{%s,%s}\n" % (way, limits.replace("[1]", "[-1]")))
+        tools.says("what has no solution is the answer no", ["takt", "trajectory", str(lines)], 1, '"duration":null')
+    tools.says("a file that is not there", ["takt", "trajectory", "missing.json"], 2, "can't read missing.json")
+    tools.says("an interval without sense", ["takt", "trajectory", "--sample", "0s"], 2, "expected a time such as 1ms")
+
+
 def babble(path, stop):
     """Eight bytes that an SDO client could take for an answer, on many other identifiers."""
     bus = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -241,6 +259,7 @@ def main(binaries):
         imports(tools, pathlib.Path(folder))
         plan(tools)
         budget(tools)
+        trajectory(tools)
         sdo_without_daemon(tools, pathlib.Path(folder))
     print(f"{len(failures)} checks failed" if failures else "all checks passed")
     return 1 if failures else 0

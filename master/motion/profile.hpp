@@ -1,0 +1,81 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace takt::motion {
+
+/// Position, velocity and acceleration of one axis at one moment, in units of the caller and
+/// seconds.
+struct State {
+  double position = 0.0;
+  double velocity = 0.0;
+  double acceleration = 0.0;
+};
+
+/// A part of a motion with constant jerk.
+struct Segment {
+  double duration = 0.0;  ///< s, never negative
+  double jerk = 0.0;      ///< units/s^3
+};
+
+/// Returns the state after `duration` seconds of constant jerk.
+constexpr State advanced(const State& from, double duration, double jerk) noexcept {
+  const double t = duration;
+  return {
+      .position = from.position + t * (from.velocity + t * (from.acceleration / 2 + t * jerk / 6)),
+      .velocity = from.velocity + t * (from.acceleration + t * jerk / 2),
+      .acceleration = from.acceleration + t * jerk};
+}
+
+/// A motion of one axis as segments that follow each other. It never allocates.
+class Profile {
+ public:
+  /// Two segments bring a state inside its limits. The longest motion after them is a mixture of
+  /// two motions with seven segments each.
+  static constexpr std::size_t capacity = 2 + 14;
+
+  /// Appends a segment. A segment without duration is dropped.
+  constexpr void add(double duration, double jerk) noexcept {
+    if (duration <= 0.0 || size_ == capacity) return;
+    segments_[size_++] = {.duration = duration, .jerk = jerk};
+  }
+
+  constexpr std::span<const Segment> segments() const noexcept {
+    return std::span{segments_}.first(size_);
+  }
+
+  /// Duration of the whole motion in s.
+  constexpr double duration() const noexcept {
+    double sum = 0.0;
+    for (const Segment& segment : segments()) sum += segment.duration;
+    return sum;
+  }
+
+  /// Returns the state `time` seconds after the begin of the motion, which starts at `from`. After
+  /// the end of the motion the acceleration stays as it was at the end.
+  constexpr State at(const State& from, double time) const noexcept {
+    State state = from;
+    for (const Segment& segment : segments()) {
+      if (time <= segment.duration) return advanced(state, time, segment.jerk);
+      state = advanced(state, segment.duration, segment.jerk);
+      time -= segment.duration;
+    }
+    return advanced(state, time, 0.0);
+  }
+
+  /// Returns the state at the end of the motion, which starts at `from`.
+  constexpr State end(const State& from) const noexcept {
+    State state = from;
+    for (const Segment& segment : segments()) {
+      state = advanced(state, segment.duration, segment.jerk);
+    }
+    return state;
+  }
+
+ private:
+  std::array<Segment, capacity> segments_{};
+  std::size_t size_ = 0;
+};
+
+}  // namespace takt::motion
