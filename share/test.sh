@@ -1,7 +1,7 @@
 #!/bin/sh
 # test.sh - everything that CI runs, a line a stage; ends with the count and exit code 0 if all is good.
-#   TAKT_STAGES  only these of: format release asan tsan fuzz tidy (without: all but tidy, which takes ten minutes of two
-#                processors where it has not seen the sources before)
+#   TAKT_STAGES  only these of: format release asan tsan fuzz tidy mutation (without: all but tidy and mutation; tidy takes ten
+#                minutes of two processors where it has not seen the sources before, mutation builds a copy of the tree)
 #   TAKT_FUZZ    seconds of the stage fuzz for EDS files; half of it for network files, a third for each other target (60)
 #   TAKT_PCH     ON, OFF: precompiled headers in all builds, in none (without: in all but tsan, which thereby proves that
 #                sources include what they use)
@@ -74,6 +74,9 @@ check_tidy() {
     python3 test/house/tidy.py build/tidy "$jobs"
 }
 
+# The copy of the tree and its programs stay in build/mutation, so that a second run compiles only what has changed.
+check_mutation() { python3 test/mutation/mutate.py --seed 1 --count 200 --jobs "$jobs"; }
+
 # build PRESET COMPILER PCH [TARGET...]. Warnings are errors in release and asan, which compile all files.
 build() {
   preset=$1
@@ -125,6 +128,7 @@ for wanted in $stages; do
   case $wanted in
     format) stage format check_format ;;
     tidy) stage tidy check_tidy ;;
+    mutation) stage mutation check_mutation ;;
     release)
       if stage release-build build release c++ ON; then
         stage release-tests run_tests release

@@ -1,0 +1,9 @@
+# Included by the project that mutate.py configures, right after project(): adds the listener to the test programs
+# TAKT_LISTENING, which exist when the top folder has been read.
+function(takt_listen)
+  foreach(program IN LISTS TAKT_LISTENING)
+    target_sources(${program} PRIVATE ${CMAKE_SOURCE_DIR}/test/mutation/reach_listener.cpp)
+    target_include_directories(${program} PRIVATE ${CMAKE_SOURCE_DIR})
+  endforeach()
+endfunction()
+cmake_language(DEFER DIRECTORY ${CMAKE_SOURCE_DIR} CALL takt_listen)
