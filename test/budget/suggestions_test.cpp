@@ -218,13 +218,15 @@ TEST(WhatIf, BlanksAroundAChangeAreNoPartOfIt) {
 }
 
 TEST(WhatIf, WhatANetworkFileMayNotHaveIsRefused) {
-  for (const auto* text : {"counter=1", "arm.tpdo1=241", "arm.tpdo1=251", "arm.rpdo1=252",
-                           "arm.rpdo1=253", "period=199us", "services=251"}) {
+  for (const auto* text :
+       {"counter=1", "arm.tpdo1=241", "arm.tpdo1=251", "arm.rpdo1=252", "arm.rpdo1=253",
+        "period=199us", "services=251", "arm.tpdo1.start=241"}) {
     WhatIf changes;
     EXPECT_FALSE(add_change(text, changes)) << text;
   }
-  for (const auto* text : {"counter=0", "counter=2", "arm.tpdo1=240", "arm.tpdo1=252",
-                           "arm.rpdo1=254", "period=200us", "services=250"}) {
+  for (const auto* text :
+       {"counter=0", "counter=2", "arm.tpdo1=240", "arm.tpdo1=252", "arm.rpdo1=254", "period=200us",
+        "services=250", "arm.tpdo1.start=240"}) {
     WhatIf changes;
     EXPECT_TRUE(add_change(text, changes)) << text;
   }

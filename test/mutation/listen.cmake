@@ -3,7 +3,6 @@
 function(takt_listen)
   foreach(program IN LISTS TAKT_LISTENING)
     target_sources(${program} PRIVATE ${CMAKE_SOURCE_DIR}/test/mutation/reach_listener.cpp)
-    target_include_directories(${program} PRIVATE ${CMAKE_SOURCE_DIR})
   endforeach()
 endfunction()
 cmake_language(DEFER DIRECTORY ${CMAKE_SOURCE_DIR} CALL takt_listen)

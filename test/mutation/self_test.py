@@ -24,6 +24,7 @@ PLACES = {
     "static constexpr int x = 1;": set(),
     "static_assert(a < 1);": set(),
     "if constexpr (a < 1) {}": set(),
+    "if constexpr (endian::native == endian::big) x = 1; y = 2;": {"y = 3;", ""},
     "if consteval { x = 1; }": {"x = 2;", ""},
     "switch (a) { case 1: default: ; }": set(),
     "if (!a) return;": {"a", "!(!a)"},
@@ -53,6 +54,7 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 find_package(GTest REQUIRED)
 add_executable(small code/small.cpp small_test.cpp)
+target_include_directories(small PRIVATE ${CMAKE_SOURCE_DIR})
 target_link_libraries(small PRIVATE GTest::gtest_main)
 """
 # In the order of the text: caught, survives because no test reaches it, survives because the tests are weak, hangs.

@@ -158,7 +158,13 @@ class Reader:
                 self.definition(*parts[0])
             if not self.definition(*parts[-1]):
                 self.place(VALUE if text == "switch" else CONDITION, *parts[-1])
-        return self.statement(close + 1, end) if source.word(close + 1) != ";" else close + 2
+        if source.word(close + 1) == ";":
+            return close + 2
+        kept = len(self.places)
+        behind = self.statement(close + 1, end)
+        if constant and "endian" in source.code(opened, close):  # code for other processors, which is not compiled
+            del self.places[kept:]
+        return behind
 
     def definition(self, i, end):
         """Takes the initial values of `auto x = 1` or `T x{1}`. Returns false if [i, end) defines nothing."""

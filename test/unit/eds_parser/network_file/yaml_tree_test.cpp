@@ -29,6 +29,15 @@ TEST(YamlTree, KeepsLineAndColumnOfKeysAndValues) {
   EXPECT_EQ(parsed.tree.root()->pairs[1].key_pos, (SourcePos{2, 1}));
 }
 
+TEST(YamlTree, AnEmptyFileIsReportedAtItsBeginning) {
+  for (const auto* text : {"", "# nothing\n"}) {
+    const auto parsed = parse(text);
+    ASSERT_EQ(parsed.findings.size(), 1U);
+    EXPECT_EQ(parsed.findings[0].rule, "syntax");
+    EXPECT_EQ(parsed.findings[0].pos, (SourcePos{1, 1}));
+  }
+}
+
 TEST(YamlTree, MergeKeysLoseAgainstOwnKeysAndEarlierMaps) {
   const auto parsed = parse(
       "a: &a {x: 1, y: 1}\n"
@@ -48,6 +57,19 @@ TEST(YamlTree, ReportsAKeyThatIsWrittenTwice) {
 
   EXPECT_EQ(first(parsed),
             "f:3:1: error: key `a` is written twice, first in line 1: keep one [duplicate-key]");
+}
+
+TEST(YamlTree, ManyMergesOfALargeMapAreRefused) {
+  const auto merged = [](int times) {
+    std::string text = "a: &a {";
+    for (int i = 0; i < 999; ++i) text += "k" + std::to_string(i) + ": 1, ";
+    text += "last: 1}\n";
+    for (int i = 0; i < times; ++i) text += "m" + std::to_string(i) + ": {<<: *a}\n";
+    return parse(text);
+  };
+  EXPECT_TRUE(merged(99).findings.empty());
+  ASSERT_FALSE(merged(100).findings.empty());
+  EXPECT_EQ(merged(100).findings[0].rule, "too-large");
 }
 
 TEST(YamlTree, BillionLaughsStaySmall) {

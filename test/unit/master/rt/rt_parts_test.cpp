@@ -288,5 +288,24 @@ TEST(StatusBoard, IsConsistentBetweenTwoThreads) {
   EXPECT_EQ(snapshot.bus.cycle, 20000U);
 }
 
+TEST(StatusBoard, KeepsTheNodesThatAreNotWritten) {
+  StatusBoard board{3, 0};
+  std::vector<NodeStatus> nodes(3);
+  const auto write = [&](std::size_t count, std::uint32_t boots) {
+    for (NodeStatus& node : nodes) node.boot_count = boots;
+    board.write(
+        {}, std::span{nodes}.first(count), [](std::size_t) { return PdoStatus{}; },
+        [](std::size_t) { return RpdoStatus{}; });
+  };
+  write(3, 7);
+  write(2, 8);
+
+  StatusSnapshot snapshot;
+  board.read(snapshot);
+  ASSERT_EQ(snapshot.nodes.size(), 3U);
+  EXPECT_EQ(snapshot.nodes[1].boot_count, 8U);
+  EXPECT_EQ(snapshot.nodes[2].boot_count, 7U);
+}
+
 }  // namespace
 }  // namespace takt
