@@ -2,6 +2,7 @@
 import collections
 import concurrent.futures
 import dataclasses
+import hashlib
 import json
 import os
 import pathlib
@@ -26,16 +27,31 @@ class Project:
     configure: tuple  # the arguments of cmake, before those of the listener
 
 
+class KeptSet:
+    """A set of texts in a file, for the next run."""
+
+    def __init__(self, file):
+        self.file = file
+        self.texts = set(json.loads(file.read_text())) if file.exists() else set()
+
+    def __contains__(self, text):
+        return text in self.texts
+
+    def add(self, text):
+        self.texts.add(text)
+        self.file.write_text(json.dumps(sorted(self.texts), indent=0))
+
+
 class MutantTree:
     """The copy lies in `folder`/tree and is built in tree/build/mutants, as a checkout is, so that ccache finds what it has
     compiled there."""
 
-    def __init__(self, project, folder, jobs):
-        self.project, self.folder, self.jobs = project, folder, jobs
+    def __init__(self, project, folder, jobs, programs):
+        self.project, self.folder, self.jobs, self.programs = project, folder, jobs, programs
         self.tree = folder / "tree"
         self.build = self.tree / "build/mutants"
-        self.refused_file = folder / "refused.json"
-        self.refused = set(json.loads(self.refused_file.read_text())) if self.refused_file.exists() else set()
+        self.refused = KeptSet(folder / "refused.json")  # keys of mutants
+        self.compiled = KeptSet(folder / "compiled.json")  # digests of headers
         self.environment = os.environ | {"CCACHE_BASEDIR": str(self.tree), "CCACHE_NOHASHDIR": "1"}
 
     def make(self, choice):
@@ -53,7 +69,6 @@ class MutantTree:
                         self.refused.add(mutant.key)
                 found[:] = [mutant for mutant in found if mutant.number not in refused]
                 found += self.take(choice, room, choice.shares[room] - len(found))
-            self.refused_file.write_text(json.dumps(sorted(self.refused), indent=0))
         return [mutant for room, found in mutants.items() for mutant in found[:choice.shares[room]]]
 
     def take(self, choice, room, count):
@@ -90,8 +105,13 @@ class MutantTree:
     def refused_headers(self):
         """The mutants in headers that do not compile. A header is compiled alone first, because many sources wait for it."""
         def check(path):
+            digest = hashlib.sha256(self.instrumented[path].encode()).hexdigest()
+            if digest in self.compiled:
+                return set()
             done = subprocess.run(["c++", "-std=c++23", "-w", "-fsyntax-only", "-I.", "-I/usr/include/eigen3", "-x", "c++", path],
                                   cwd=self.tree, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            if done.returncode == 0:
+                self.compiled.add(digest)
             return self.mutants_of_errors(done.stdout, self.tree) if done.returncode else set()
 
         headers = [path for path in self.instrumented if path.endswith(".hpp")]
@@ -103,7 +123,7 @@ class MutantTree:
         self.run("cmake", *self.project.configure, "-B", self.build,
                  f"-DCMAKE_PROJECT_INCLUDE={self.tree / 'test/mutation/listen.cmake'}",
                  f"-DTAKT_LISTENING={';'.join(self.project.programs)}")
-        for targets in (self.project.libraries, self.project.programs):
+        for targets in (self.project.libraries, *([program] for program in self.programs)):
             output = self.run("ninja", "-C", self.build, "-k", "0", "-j", str(self.jobs), *targets, may_fail=True)
             if output is not None:
                 refused = self.mutants_of_errors(output, self.build)

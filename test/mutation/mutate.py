@@ -4,6 +4,7 @@
   mutate.py [--seed 1] [--count 200] [--jobs N] [--folder build/mutation]   builds, runs, reports
   mutate.py --list               only prints the mutants, without those that turn out not to compile
   mutate.py --only 17,23         runs only these mutants, for example after a test has been written
+  mutate.py --programs unit_eds,unit_plan     builds and runs only these programs
   mutate.py --self-test          shows with a small project that mutants are caught, that they survive, and what is mutated
 
 All mutants are in one copy of the tree, and an environment variable selects one of them at run time; so the programs are built
@@ -34,7 +35,8 @@ TAKT = Project(
                "takt_wire", "takt_core", "takt_explain", "takt_frame_text", "takt_rt"),
     programs=("unit_table", "unit_wire", "unit_eds", "unit_plan", "unit_core", "unit_frame_text", "unit_rt", "boot", "budget",
               "virtual"),
-    configure=("--preset", "release", "-DTAKT_TESTS=ON", "-DTAKT_WERROR=ON", "-DTAKT_UNITY=ON", "-DTAKT_PCH=ON"))
+    # A build type without flags: not optimized, because compiling takes longer than the tests, and with assertions.
+    configure=("--preset", "release", "-DCMAKE_BUILD_TYPE=Mutation", "-DTAKT_TESTS=ON", "-DTAKT_UNITY=ON", "-DTAKT_PCH=ON"))
 EXPLAINED = re.compile(r"^## ([0-9a-f]{8})\b.*\n\n(?:.+\n)+\n\S", re.MULTILINE)
 
 
@@ -84,7 +86,7 @@ def run(project, options, folder, reasons, least_limit=5.0):
     choice = Choice(read_sources(project.root, project.folders), options.seed, options.count)
     print(f"{choice.places} possible mutations in {choice.lines} lines of {len(choice.shares)} rooms", flush=True)
     folder.mkdir(parents=True, exist_ok=True)
-    tree = MutantTree(project, folder, options.jobs)
+    tree = MutantTree(project, folder, options.jobs, options.programs)
     if options.list:
         for room, share in choice.shares.items():
             for mutant in tree.take(choice, room, share):
@@ -93,7 +95,7 @@ def run(project, options, folder, reasons, least_limit=5.0):
     began = time.monotonic()
     mutants = tree.make(choice)
     print(f"built in {time.monotonic() - began:.0f} s", flush=True)
-    programs = TestPrograms(folder, tree.build / "bin", project.programs, least_limit)
+    programs = TestPrograms(folder, tree.build / "bin", options.programs, least_limit)
     programs.record()
     for test in programs.failing:
         print(f"fails without any mutant, so it is not used: {test}")
@@ -113,6 +115,7 @@ def main():
     parser.add_argument("--folder", type=pathlib.Path, default=ROOT / "build/mutation")
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--only", type=lambda text: {int(number) for number in text.split(",")})
+    parser.add_argument("--programs", type=lambda text: tuple(text.split(",")), default=TAKT.programs)
     parser.add_argument("--self-test", action="store_true")
     options = parser.parse_args()
     if options.self_test:

@@ -29,6 +29,7 @@ PLACES = {
     "switch (a) { case 1: default: ; }": set(),
     "if (!a) return;": {"a", "!(!a)"},
     "if (auto* p = f(1); p != nullptr) {}": {"f(2)", "p == nullptr", "!(p != nullptr)"},
+    "if (a > T{0}) return;": {"a >= T{0}", "a > T{1}", "!(a > T{0})"},
     "while (a) { --b; }": {"!(a)", "++b;", ""},
     "for (int i = 0; i < n; ++i) {}": {"1", "i <= n", "!(i < n)", "--i"},
     "for (auto& x : list) x += 1;": {"x -= 1;", "x += 2;", ""},
@@ -109,7 +110,7 @@ def wrong_verdicts():
             shutil.copy(HERE / name, root / "test/mutation")
         subprocess.run(["git", "init", "-q", root], check=True)
         project = Project(root, ("code",), (), ("small",), ("-G", "Ninja"))
-        every = argparse.Namespace(seed=1, count=100, jobs=1, list=False, only=None)
+        every = argparse.Namespace(seed=1, count=100, jobs=1, list=False, only=None, programs=("small",))
         told = io.StringIO()
         with contextlib.redirect_stdout(told):
             code = mutate.run(project, every, pathlib.Path(folder, "work"), set(), least_limit=1.0)

@@ -192,7 +192,7 @@ class Reader:
         if source.kind(end - 1) != "word" or source.word(i) in ("return", "throw", "delete", "co_await"):
             return False
         before = source.tokens[end - 2]
-        return before.kind == "word" or (before.text in (">", ">>", "*", "&", "&&") and end - 2 > i)
+        return before.kind == "word" or (before.text in (">", ">>", "*", "&", "&&") and not before.binary and end - 2 > i)
 
     def values(self, i, end):
         """The values between braces or parentheses."""
