@@ -123,7 +123,10 @@ class MutantTree:
         self.run("cmake", *self.project.configure, "-B", self.build,
                  f"-DCMAKE_PROJECT_INCLUDE={self.tree / 'test/mutation/listen.cmake'}",
                  f"-DTAKT_LISTENING={';'.join(self.project.programs)}")
-        for targets in (self.project.libraries, *([program] for program in self.programs)):
+        libraries = self.project.libraries if self.programs == self.project.programs else ()
+        for targets in (libraries, *([program] for program in self.programs)):
+            if not targets:
+                continue
             output = self.run("ninja", "-C", self.build, "-k", "0", "-j", str(self.jobs), *targets, may_fail=True)
             if output is not None:
                 refused = self.mutants_of_errors(output, self.build)

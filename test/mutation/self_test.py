@@ -73,14 +73,14 @@ int doubled(int);
 bool is_small(int);
 int count(int);
 TEST(Small, doubled) { EXPECT_EQ(doubled(4), 8); }
-TEST(Small, is_small) { EXPECT_TRUE(is_small(1)); EXPECT_FALSE(is_small(100)); }
+TEST(Small, is_small) { is_small(1); }
 TEST(Small, count) { EXPECT_EQ(count(3), 3); }
 """
-EXPECTED = (  # mutation, word of the report
-    (r"small.cpp:1 constant \+ 1", "caught", "small Small.doubled"),
-    (r"small.cpp:2 arithmetic", "SURVIVES", "no test reaches it"),
-    (r"small.cpp:3 comparison boundary", "SURVIVES", "1 tests reach it, none fails"),
-    (r"small.cpp:6 removed statement", "caught", "small Small.count takes too long"),
+EXPECTED = (  # line, word of the report, reason
+    (1, "caught", "small Small.doubled"),
+    (2, "SURVIVES", "no test reaches it"),
+    (3, "SURVIVES", "1 tests reach it, none fails"),
+    (6, "caught", "small Small.count takes too long"),
 )
 
 
@@ -115,9 +115,9 @@ def wrong_verdicts():
         with contextlib.redirect_stdout(told):
             code = mutate.run(project, every, pathlib.Path(folder, "work"), set(), least_limit=1.0)
     told = told.getvalue()
-    for where, word, by in EXPECTED:
-        if not re.search(rf"{word} +code/{where}: {by}", told):
-            yield f"not reported: {word} {where}: {by}"
+    for line, word, by in EXPECTED:
+        if not re.search(rf"{word} +code/small.cpp:{line} [a-z0-9+ ]+: {by}", told):
+            yield f"not reported: line {line} {word}: {by}"
     if code != 1:
         yield "survivors without an explanation, and exit code 0"
     if list(wrong_places()) or re.search("does not compile|does not build", told):
