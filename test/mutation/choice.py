@@ -7,6 +7,8 @@ import pathlib
 from cpp_tokens import Source
 from mutations import Mutation, mutations_of
 
+MOST_OF_A_ROOM = 1000
+
 
 @dataclasses.dataclass(frozen=True)
 class Mutant:
@@ -47,7 +49,8 @@ class Choice:
     def __init__(self, sources, seed, count):
         self.rooms = collections.defaultdict(list)
         self.spans = collections.defaultdict(list)  # of the chosen places of each file
-        self.numbered = 0
+        # A room has its own numbers: where one mutant replaces another, the sources of other rooms stay as they are.
+        self.numbered = collections.Counter()
         sizes, seen = collections.Counter(), collections.Counter()
         ranked = collections.defaultdict(list)
         for source in sources:
@@ -71,6 +74,7 @@ class Choice:
             spans = self.spans[mutation.path]
             if all(end <= other_begin or other_end <= begin for other_begin, other_end in spans):
                 spans.append((begin, end))
-                self.numbered += 1
-                taken.append(Mutant(self.numbered, room, mutation))
+                self.numbered[room] += 1
+                number = MOST_OF_A_ROOM * list(self.shares).index(room) + self.numbered[room]
+                taken.append(Mutant(number, room, mutation))
         return taken

@@ -6,7 +6,7 @@
 
 namespace takt_mutation {
 
-constexpr int most = 4096;
+constexpr int most = 100'000;
 /// The number of the mutant that is selected; 0 selects none. TAKT_MUTANT=-1 selects none and
 /// notes which mutants are reached.
 inline const int selected = [] {

@@ -13,6 +13,7 @@ BEGUN = re.compile(r"\[ RUN      \] (\S+)$", re.MULTILINE)
 FAILED = re.compile(r"\[  FAILED  \] ([^\s,]+)(?:, where .*)? \(\d+ ms\)$", re.MULTILINE)
 GOOD = re.compile(r"\[       OK \] ([^\s,]+)(?:, where .*)? \(\d+ ms\)$", re.MULTILINE)
 ROUNDS_MS = (1000, 10000)  # of the first rounds of a mutant; the last round has all other tests
+LONG_MS = 100
 LONGEST_FILTER = 100_000  # characters; Linux takes 131071 as one argument
 
 
@@ -82,8 +83,8 @@ class TestPrograms:
         return Verdict(False, f"{len(self.reaching[number])} tests reach it, none fails", time.monotonic() - began)
 
     def rounds(self, tests):
-        """The tests of one program that run together."""
-        left = sorted(tests, key=lambda test: (self.reached_by[test], test.ms))
+        """The tests of one program that run together. Tests that take long come last."""
+        left = sorted(tests, key=lambda test: (test.ms > LONG_MS, self.reached_by[test], test.ms))
         for most in (*ROUNDS_MS, None):
             programs, used = collections.defaultdict(list), 0
             while left and (most is None or used <= most):

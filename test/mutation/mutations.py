@@ -115,7 +115,7 @@ def mutations_of(source):
             found.append(Mutation(source, place, "negated condition", begin, f"!({source.code(begin, end)})"))
         elif place.form == CALL and is_removable(source, place):
             found.append(Mutation(source, place, "removed statement", begin, ""))
-        elif place.form == RETURN and source.code(begin + 1, end - 1) not in NOTHING_RETURNED:
+        elif place.form == RETURN and not place.deduced and source.code(begin + 1, end - 1) not in NOTHING_RETURNED:
             if end - begin > 3 or source.kind(begin + 1) != "number":
                 found.append(Mutation(source, place, "returned value", begin, "return {};"))
     return sorted(found, key=lambda mutation: mutation.at)

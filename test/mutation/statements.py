@@ -27,6 +27,7 @@ class Place:
     begin: int
     end: int
     hidden: tuple
+    deduced: bool  # the type that is returned follows from the returned value
 
     def visible(self, source):
         """The indices of the tokens that may change."""
@@ -44,7 +45,7 @@ class Place:
 
 class Reader:
     def __init__(self, source: Source):
-        self.source, self.places = source, []
+        self.source, self.places, self.deduced = source, [], False
 
     def read(self):
         self.scope(0, len(self.source.tokens))
@@ -80,6 +81,7 @@ class Reader:
                     self.scope(i + 1, close)
                     return close + 1
                 if parameters:
+                    self.deduced = "auto" in words
                     if "consteval" not in words:
                         self.block(i + 1, close)
                     return close + 1
@@ -212,11 +214,13 @@ class Reader:
             if body is None:
                 at += 1
                 continue
+            outside, self.deduced = self.deduced, "->" not in map(self.source.word, range(at, body))
             self.block(body + 1, self.source.match[body])
+            self.deduced = outside
             hidden.append((at, self.source.match[body] + 1))
             at = self.source.match[body] + 1
         if i < end and self.source.word(i) != "{":
-            self.places.append(Place(form, i, end, tuple(hidden)))
+            self.places.append(Place(form, i, end, tuple(hidden), self.deduced))
 
     def lambda_body(self, i, end):
         """The index of the body's brace if a lambda begins at token i."""

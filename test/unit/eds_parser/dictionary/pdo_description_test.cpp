@@ -85,5 +85,19 @@ TEST(PdoDescription, NeedsACommunicationRecord) {
   EXPECT_TRUE(describe_pdos(test::read(sub("1A04sub0", "5", "0")).dictionary).empty());
 }
 
+TEST(MappableRecord, IsThatOfEitherDirectionWhoseCountIsWritable) {
+  for (const std::uint16_t index : {std::uint16_t{0x1600}, std::uint16_t{0x1A00}}) {
+    ObjectDictionary dictionary;
+    Object& record = dictionary.objects.emplace_back();
+    record.index = index;
+    record.subs.emplace_back().access = Access::ro;
+    EXPECT_EQ(mappable_record(dictionary), nullptr);
+    record.subs[0].access = Access::rw;
+    EXPECT_EQ(mappable_record(dictionary), &record);
+    record.index = 0x1800;
+    EXPECT_EQ(mappable_record(dictionary), nullptr);
+  }
+}
+
 }  // namespace
 }  // namespace takt

@@ -83,6 +83,12 @@ TEST(DataType, UnsignedIntegersHaveTheirRange) {
   EXPECT_TRUE(exceeds("0x001A", "0x100000000000000"));
 }
 
+TEST(DataType, AWordIsAValueOfABooleanAlone) {
+  EXPECT_EQ(value_of("0x0001", "true"), Value{std::uint64_t{1}});
+  EXPECT_FALSE(value_of("0x0005", "true"));
+  EXPECT_TRUE(has(read(var("0x0005", "true")).findings, "value-unreadable"));
+}
+
 TEST(DataType, OddWidthsGoOntoTheWireInTheirBytes) {
   using Bytes = std::vector<std::byte>;
   const auto b = [](auto... byte) { return Bytes{std::byte(byte)...}; };

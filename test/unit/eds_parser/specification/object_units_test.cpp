@@ -43,8 +43,8 @@ TEST(ObjectUnits, EachObjectOfADriveHasItsQuantityOnEachAxis) {
 }
 
 TEST(ObjectUnits, OtherObjectsHaveNone) {
-  for (const std::uint16_t index : {0x2071, 0x5FFF, 0x6040, 0x6041, 0x6060, 0xA071}) {
-    EXPECT_FALSE(quantity_of({index, 0})) << std::hex << index;
+  for (const unsigned index : {0x2071U, 0x5FFFU, 0x6040U, 0x6041U, 0x6060U, 0xA071U}) {
+    EXPECT_FALSE(quantity_of({static_cast<std::uint16_t>(index), 0})) << std::hex << index;
   }
 }
 
