@@ -31,8 +31,8 @@ static int (*host_clone)(int (*)(void*), void*, int, void*, ...);
 static Nanoseconds idle;               /* the sum of all jumps */
 static Nanoseconds of_processes;       /* processor time of the guest's processes */
 static Nanoseconds booted;             /* processor time that the kernel took until its first process */
-static pid_t running;                  /* the process that UML waits for, or 0 */
-static Nanoseconds running_from;       /* its processor time when that wait began */
+static pid_t last;                     /* the process that UML waited for last; the others stand still */
+static Nanoseconds counted;            /* its processor time that is in of_processes */
 static Nanoseconds expiry = -1;        /* of the guest's timer, by the guest's clock; -1: it is off */
 static Nanoseconds interval;
 static timer_t timer;
@@ -49,13 +49,16 @@ static Nanoseconds processor_time(clockid_t clock) {
 
 static clockid_t clock_of(pid_t process) { return (clockid_t)(~(unsigned)process << 3 | 2); }
 
-static Nanoseconds used_by_running(void) {
-  const Nanoseconds used = running ? processor_time(clock_of(running)) : -1;
-  return used < running_from ? 0 : used - running_from;
+static void count(void) {
+  const Nanoseconds more = last ? processor_time(clock_of(last)) - counted : 0;
+  if (more <= 0) return; /* It has ended. */
+  counted += more;
+  of_processes += more;
 }
 
 static Nanoseconds used(void) {
-  return processor_time(CLOCK_PROCESS_CPUTIME_ID) + of_processes + used_by_running();
+  count();
+  return processor_time(CLOCK_PROCESS_CPUTIME_ID) + of_processes;
 }
 
 static Nanoseconds now(void) { return idle + (used() - booted) / speed + booted; }
@@ -138,14 +141,12 @@ int clone(int (*function)(void*), void* stack, int flags, void* argument, ...) {
 
 pid_t waitpid(pid_t process, int* status, int options) {
   if (process <= 0) return host_waitpid(process, status, options);
-  running_from = processor_time(clock_of(process));
-  running = process;
-  const pid_t result = host_waitpid(process, status, options);
-  const int error = errno;
-  of_processes += used_by_running();
-  running = 0;
-  errno = error;
-  return result;
+  if (process != last) {
+    count();
+    last = process;
+    counted = processor_time(clock_of(process));
+  }
+  return host_waitpid(process, status, options);
 }
 
 __attribute__((constructor)) static void find_functions(void) {

@@ -1,6 +1,6 @@
 """What Wireshark's CANopen dissector makes of the traffic on vcan0.
 
-tshark is slow in user-mode-linux. So a judge that run_judge.py has started leaves its recordings in a folder, and the
+tshark is slow in user-mode-linux. So a judge that guest_tests.py has started leaves its recordings in a folder, and the
 dissector reads them when the guest has ended.
 """
 import collections

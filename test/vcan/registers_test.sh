@@ -1,10 +1,10 @@
 #!/bin/bash
-# registers_test.sh WITH_VCAN LIBRARIES - both ways in which user-mode-linux can set registers, on any processor: with
+# registers_test.sh WITH_VCAN LIBRARIES PROBE - both ways in which user-mode-linux can set registers, on any processor: with
 # its own code, and with libwhole_registers.so preloaded. A host with the large state of AMX is imitated where there is none.
 # Exit code 77: this is no x86 processor, and user-mode-linux is not there.
 set -u
 case $(uname -m) in x86_64 | i?86) ;; *) exit 77 ;; esac
-with_vcan=$1 libraries=$2
+with_vcan=$1 libraries=$2 probe=$3
 export WITH_VCAN_LIBRARIES=$libraries
 unset WITH_VCAN_REGISTERS
 folder=$(mktemp -d)
@@ -13,26 +13,8 @@ failures=0
 
 amx() { grep -qm1 amx_tile /proc/cpuinfo; }
 
-# Floating-point numbers in two processes that wait for each other: their registers are saved and set again and again.
-cat >"$folder/numbers.py" <<'END'
-import os, socket
-ends = socket.socketpair()
-child = os.fork() == 0
-number, end = (0.5, ends[0]) if child else (0.25, ends[1])
-total = 0.0
-for turn in range(200):
-    total += number
-    end.send(b"x")
-    end.recv(1)
-assert total == 200 * number, total
-if child:
-    os._exit(0)
-assert os.wait()[1] == 0
-print("numbers are right")
-END
-
-# guest WAY: the numbers in a guest.
-guest() { "$with_vcan" -m uml -t 1500 -x "$1" /usr/bin/python3 "$folder/numbers.py" >"$folder/said" 2>&1; }
+# guest [OPTION...]: the numbers in a guest.
+guest() { "$with_vcan" -m uml -t 1500 "$@" "$probe" numbers >"$folder/said" 2>&1; }
 
 # expect WORDS WHAT: the last guest has said so.
 expect() {
@@ -42,9 +24,9 @@ expect() {
   failures=$((failures + 1))
 }
 
-guest auto; expect "numbers are right" "a guest calculates in the way that with-vcan chooses here"
-guest whole; expect "numbers are right" "with -x whole, on this processor"
-guest plain
+guest -x auto; expect "numbers are right" "a guest calculates in the way that with-vcan chooses here"
+guest -x whole; expect "numbers are right" "with -x whole, on this processor"
+guest -x plain
 if amx; then expect put_fp_registers "with -x plain it panics, as this processor has AMX"
 else expect "numbers are right" "with -x plain, on this processor"; fi
 
@@ -55,10 +37,8 @@ LD_PRELOAD="\${LD_PRELOAD:+\$LD_PRELOAD:}$libraries/liblarge_registers.so" exec 
 END
 chmod 755 "$folder/kernel"
 export WITH_VCAN_KERNEL=$folder/kernel
-guest plain; expect put_fp_registers "with -x plain it panics on a host with 11 kB of registers"
-guest whole; expect "numbers are right" "with -x whole it calculates there"
-WITH_VCAN_REGISTERS=whole "$with_vcan" -m uml -t 1500 echo "chosen by the variable" >"$folder/said" 2>&1
-expect "chosen by the variable" "WITH_VCAN_REGISTERS=whole is the same"
-WITH_VCAN_LIBRARIES=$folder/none guest whole; expect "build the target whole_registers" "without the library it says what to build"
-guest some; expect "is auto, whole or plain" "a wrong way is refused"
+guest -x plain; expect put_fp_registers "with -x plain it panics on a host with 11 kB of registers"
+WITH_VCAN_REGISTERS=whole guest; expect "numbers are right" "with WITH_VCAN_REGISTERS=whole it calculates there"
+WITH_VCAN_LIBRARIES=$folder/none guest -x whole; expect "build the target whole_registers" "without the library it says what to build"
+guest -x some; expect "is auto, whole or plain" "a wrong way is refused"
 [ $failures -eq 0 ]
