@@ -285,7 +285,6 @@ class WorstPhase {
   }
 
   void run_until(Time end) {
-    sim::WireFrame wire;
     for (;;) {
       const Time now = bus_.next_event();
       const Time next = std::min(now, end);
@@ -296,14 +295,15 @@ class WorstPhase {
       } else if (now >= end) {
         return;
       } else {
-        step(now, wire);
+        step(now);
       }
     }
   }
 
-  void step(Time now, sim::WireFrame& wire) {
+  void step(Time now) {
     if (options_.error_distance > Time{0}) disturb(now >= next_error_ ? 1.0 : 0.0);
-    if (!bus_.step(now, wire)) return;
+    if (!bus_.step(now)) return;
+    const sim::WireFrame& wire = bus_.wire();
     if (wire.result == sim::WireResult::sent) return arrived(wire);
     ++seen_.errors;
     next_error_ = wire.end + options_.error_distance;

@@ -1,7 +1,6 @@
 #include "master/core/pdo/output_limits.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cmath>
 
@@ -13,8 +12,7 @@ namespace {
 constexpr Time longest_gap = std::chrono::milliseconds{50};
 constexpr double fewest_cycles = 3;       // least number of cycles for longest_gap
 constexpr double from_actual_cycles = 1;  // cycles of a step that begins at the actual position
-constexpr std::int64_t enable_operation = 0x0F;  // bits of the controlword
-constexpr double rounding = 1e-6;                // rounding errors of the arithmetic, in counts
+constexpr double rounding = 1e-6;         // rounding errors of the arithmetic, in counts
 
 LimitBreach breach(LimitKind kind, double measured, double limit) noexcept {
   return {kind, static_cast<float>(measured), static_cast<float>(limit)};
@@ -33,6 +31,8 @@ OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const
       held_(plan.nodes.size(), 0),
       longest_gap_{fewest_cycles},
       seconds_{std::chrono::duration<double>(plan.cycle.period).count()} {
+  notations_.reserve(plan.layout.signals.size());
+  for (const Signal& signal : plan.layout.signals) notations_.emplace_back(signal);
   if (plan.cycle.period > Time{0}) {
     longest_gap_ = std::max(fewest_cycles, static_cast<double>(longest_gap / plan.cycle.period));
   }
@@ -97,18 +97,6 @@ bool OutputLimits::narrow(const DeviceLimit& what, std::uint32_t low, std::uint3
   return false;
 }
 
-/// The value as the frame carries it: bits beyond the width of the object are cut off.
-double OutputLimits::number(const Signal& signal, std::int64_t raw) const noexcept {
-  if (signal.type == DataType::real32) {
-    return double{std::bit_cast<float>(static_cast<std::uint32_t>(raw))};
-  }
-  if (signal.type == DataType::real64) return std::bit_cast<double>(raw);
-  const unsigned spare = signal.bits == 0 || signal.bits > 64 ? 0U : 64U - signal.bits;
-  const auto top = static_cast<std::uint64_t>(raw) << spare;
-  if (is_signed(signal.type)) return static_cast<double>(static_cast<std::int64_t>(top) >> spare);
-  return static_cast<double>(top >> spare);
-}
-
 /// The distance between two positions; for positions that wrap around, the shorter way. Two
 /// positions of one turn are less than a turn apart; whole turns beyond that are a distance that
 /// the axis would move.
@@ -123,27 +111,28 @@ double OutputLimits::distance(std::size_t place, double from, double to) const n
 std::optional<double> OutputLimits::actual(std::size_t place) const noexcept {
   const auto feedback = limits_[place].feedback;
   if (!feedback || !inputs_.fresh(*feedback)) return std::nullopt;
-  return number(plan_.layout.signals[*feedback], image_.values[*feedback]);
+  return number(*feedback, image_.values[*feedback]);
 }
 
 /// The value of the offset, in counts of the limited output.
 double OutputLimits::offset(std::size_t place, std::int64_t raw) const noexcept {
   const auto added = limits_[place].offset;
   if (!added) return 0;
-  const Signal& signal = plan_.layout.signals[*added];
-  return number(signal, raw) * (signal.scale / signal_of(place).scale);
+  const double scale = plan_.layout.signals[*added].scale;
+  return number(*added, raw) * (scale / signal_of(place).scale);
 }
 
 /// The set-point that the axis would follow, in counts of the limited output.
-double OutputLimits::set_point(std::size_t place, const AxisCommand& command) const noexcept {
-  const double target = number(signal_of(place), command.value);
-  return in_force(place, command.mode) ? target + offset(place, command.offset) : target;
+double OutputLimits::set_point(std::size_t place, const AxisCommand& command,
+                               Leads found) const noexcept {
+  const double target = number(limits_[place].signal, command.value);
+  return found.any() ? target + offset(place, command.offset) : target;
 }
 
-/// The set-point that the values sent last are in this commanded mode.
-double OutputLimits::last_set_point(std::size_t place, std::int64_t mode) const noexcept {
+/// The set-point that the values sent last are in the commanded mode.
+double OutputLimits::last_set_point(std::size_t place, Leads found) const noexcept {
   const Slot& slot = slots_[place];
-  return in_force(place, mode) ? slot.value + slot.offset : slot.value;
+  return found.any() ? slot.value + slot.offset : slot.value;
 }
 
 AxisCommand OutputLimits::image_command(std::size_t place) const noexcept {
@@ -166,6 +155,14 @@ double OutputLimits::most(std::size_t place, double counts, double at) const noe
   if (type == DataType::real32) return counts + std::abs(at) * 0x1p-22;
   if (type == DataType::real64) return counts + std::abs(at) * 0x1p-50;
   return std::ceil(counts - rounding);
+}
+
+bool OutputLimits::exceeds(std::size_t place, double length, double counts,
+                           double at) const noexcept {
+  if (length <= counts - rounding) [[likely]] {
+    return false;  // without the rounding, which takes longer
+  }
+  return !(length <= most(place, counts, at));
 }
 
 std::optional<LimitBreach> OutputLimits::outside(std::size_t place, double value,
@@ -197,16 +194,16 @@ std::optional<LimitBreach> OutputLimits::too_far(std::size_t place, const Way& w
   const Slot& slot = slots_[place];
   const double scale = std::abs(signal_of(place).scale);
   const double length = std::abs(way.distance);
-  if (!(length <= most(place, limit.step * way.cycles, way.at))) {
+  if (exceeds(place, length, limit.step * way.cycles, way.at)) {
     return breach(LimitKind::step, length / way.cycles * scale, limit.step * scale);
   }
-  if (!(length <= most(place, slot.rate * way.cycles, way.at))) {
+  if (exceeds(place, length, slot.rate * way.cycles, way.at)) {
     const double per_second = scale / seconds_;
     return breach(limit.rate_of, length / way.cycles * per_second, slot.rate * per_second);
   }
   const bool bent_only = limit.step == OutputLimit::none && slot.rate == OutputLimit::none;
   const double reach = slot.bend * longest_gap_ * longest_gap_;
-  if (way.start == Start::standing && bent_only && !(length <= most(place, reach, way.at))) {
+  if (way.start == Start::standing && bent_only && exceeds(place, length, reach, way.at)) {
     const double per_square = scale / (seconds_ * seconds_ * longest_gap_ * longest_gap_);
     return breach(LimitKind::acceleration, length * per_square,
                   slot.bend * scale / (seconds_ * seconds_));
@@ -233,10 +230,11 @@ std::optional<LimitBreach> OutputLimits::too_sharp(std::size_t place,
 
 bool OutputLimits::lacks_start(std::size_t place, std::int64_t mode) const noexcept {
   const Slot& slot = slots_[place];
+  if (slot.known) return false;
   const bool measured = limits_[place].step != OutputLimit::none ||
                         slot.rate != OutputLimit::none || slot.bend != OutputLimit::none;
-  return measured && !slot.known && limits_[place].feedback &&
-         !inputs_.fresh(*limits_[place].feedback) && follows_each(place, mode);
+  return measured && limits_[place].feedback && !inputs_.fresh(*limits_[place].feedback) &&
+         follows_each(place, leads(place, mode));
 }
 
 /// The distance from the actual position; with `from_earlier` from the nearest of the last cycles.
@@ -256,8 +254,9 @@ std::optional<LimitBreach> OutputLimits::judge(std::size_t place, const AxisComm
                                                Obeying obeying,
                                                std::uint64_t cycle) const noexcept {
   const Slot& slot = slots_[place];
-  const double value = set_point(place, command);
-  const bool each = follows_each(place, command.mode);
+  const Leads mode = leads(place, command.mode);
+  const double value = set_point(place, command, mode);
+  const bool each = follows_each(place, mode);
   const bool follows = obeying == Obeying::yes && enabled(place);
   const bool rests = starts_from_actual(place, command.order);
   const bool from_last = slot.known && !rests && (!each || !slot.idle);
@@ -267,7 +266,7 @@ std::optional<LimitBreach> OutputLimits::judge(std::size_t place, const AxisComm
   std::optional<LimitBreach> found;
   if (from_last) {
     if (command.age == SetPointAge::held) return std::nullopt;
-    const Way way{.distance = distance(place, last_set_point(place, command.mode), value),
+    const Way way{.distance = distance(place, last_set_point(place, mode), value),
                   .cycles = follows ? cycles_since(slot, cycle) : 1.0,
                   .at = value,
                   .start = follows ? Start::moving : Start::standing};
@@ -277,7 +276,7 @@ std::optional<LimitBreach> OutputLimits::judge(std::size_t place, const AxisComm
   }
   if (!from_actual || !actual(place)) return found;
   const bool computed = command.age == SetPointAge::commanded;
-  const bool lags = rests && computed && (command.order & enable_operation) != enable_operation;
+  const bool lags = rests && computed && !enables(command.order);
   return too_far(place, {.distance = distance_from_actual(place, value, lags),
                          .cycles = from_actual_cycles,
                          .at = value,
@@ -323,8 +322,7 @@ void OutputLimits::forgive(std::size_t place, std::uint64_t cycle) noexcept {
   if (slots_[place].refused && cycle > slots_[place].refused_at) set_refused(place, false);
 }
 
-void OutputLimits::expire(std::uint64_t cycle) noexcept {
-  if (!holds_any()) return;
+void OutputLimits::end_old_refusals(std::uint64_t cycle) noexcept {
   constexpr Time longest = std::chrono::seconds{1};
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (!slots_[i].refused) continue;
@@ -341,7 +339,9 @@ void OutputLimits::admit(std::size_t place, const AxisCommand& command,
   Slot& slot = slots_[place];
   slot.news = true;
   // An event-driven frame is not sent again for the same value, so the command counts as sent.
-  if (!slot.known || set_point(place, command) != last_set_point(place, command.mode)) return;
+  if (!slot.known) return;
+  const Leads mode = leads(place, command.mode);
+  if (set_point(place, command, mode) != last_set_point(place, mode)) return;
   slot.cycle = cycle;
   slot.speed = 0;
   slot.gap = 1;
@@ -360,8 +360,9 @@ void OutputLimits::sent(SignalIndex signal, std::uint64_t cycle) noexcept {
 void OutputLimits::note_sent(std::size_t place, std::uint64_t cycle) noexcept {
   Slot& slot = slots_[place];
   const AxisCommand command = image_command(place);
-  const double value = set_point(place, command);
-  const double last = last_set_point(place, command.mode);
+  const Leads mode = leads(place, command.mode);
+  const double value = set_point(place, command, mode);
+  const double last = last_set_point(place, mode);
   if (!slot.known || slot.news || value != last) {
     const double cycles = cycles_since(slot, cycle);
     const bool moves = slot.known && slot.news && enabled(place);
@@ -369,12 +370,12 @@ void OutputLimits::note_sent(std::size_t place, std::uint64_t cycle) noexcept {
     slot.gap = moves ? cycles : 1.0;
     slot.cycle = cycle;
   }
-  slot.value = number(signal_of(place), command.value);
+  slot.value = number(limits_[place].signal, command.value);
   slot.offset = offset(place, command.offset);
   slot.set_point = value;
-  if (covered_by_target(place, command.mode)) slot.set_point.reset();
+  if (limits_[place].target && mode.both()) slot.set_point.reset();
   slot.news = false;
-  slot.idle = !follows_each(place, command.mode);
+  slot.idle = !follows_each(place, mode);
 }
 
 }  // namespace takt

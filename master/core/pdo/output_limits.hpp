@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
+#include "master/core/pdo/notation.hpp"
 #include "master/core/pdo/pdo_inputs.hpp"
 #include "master/core/pdo/working_image.hpp"
 
@@ -95,7 +96,9 @@ class OutputLimits {
   /// refuse() began.
   void forgive(std::size_t place, std::uint64_t cycle) noexcept;
   /// Ends refusals that were not repeated for the time to live of a command.
-  void expire(std::uint64_t cycle) noexcept;
+  void expire(std::uint64_t cycle) noexcept {
+    if (holds_any()) end_old_refusals(cycle);
+  }
   /// A command to this node was outside its limits, and no later one was inside.
   bool holds(std::size_t node_index) const noexcept { return held_[node_index] != 0; }
   bool holds_any() const noexcept { return held_nodes_ != 0; }
@@ -152,15 +155,23 @@ class OutputLimits {
     Start start = Start::moving;
   };
 
+  /// The controlword asks the axis to enable operation.
+  static bool enables(std::int64_t order) noexcept {
+    constexpr std::int64_t enable_operation = 0x0F;
+    return (order & enable_operation) == enable_operation;
+  }
   const Signal& signal_of(std::size_t place) const noexcept {
     return plan_.layout.signals[limits_[place].signal];
   }
-  double number(const Signal& signal, std::int64_t raw) const noexcept;
+  double number(SignalIndex signal, std::int64_t raw) const noexcept {
+    return notations_[signal].number(raw);
+  }
   double distance(std::size_t place, double from, double to) const noexcept;
   std::optional<double> actual(std::size_t place) const noexcept;
   double offset(std::size_t place, std::int64_t raw) const noexcept;
-  double set_point(std::size_t place, const AxisCommand& command) const noexcept;
-  double last_set_point(std::size_t place, std::int64_t mode) const noexcept;
+  struct Leads;
+  double set_point(std::size_t place, const AxisCommand& command, Leads found) const noexcept;
+  double last_set_point(std::size_t place, Leads found) const noexcept;
   AxisCommand image_command(std::size_t place) const noexcept;
   double distance_from_actual(std::size_t place, double value, bool from_earlier) const noexcept;
   void note_sent(std::size_t place, std::uint64_t cycle) noexcept;
@@ -173,24 +184,35 @@ class OutputLimits {
   struct Leads {
     bool commanded = false;
     bool shown = false;
+
+    /// While the drive changes the mode, it may still follow the output.
+    bool any() const noexcept { return commanded || shown; }
+    bool both() const noexcept { return commanded && shown; }
   };
   Leads leads(std::size_t place, std::int64_t mode) const noexcept;
-  bool in_force(std::size_t place, std::int64_t mode) const noexcept;
-  bool follows_each(std::size_t place, std::int64_t mode) const noexcept;
+  /// The drive follows each value of the output. The steps of target velocities and torques count
+  /// in every mode, because the next mode may follow them.
+  bool follows_each(std::size_t place, Leads found) const noexcept {
+    return limits_[place].quantity != AxisQuantity::position || found.any();
+  }
   double cycles_since(const Slot& slot, std::uint64_t cycle) const noexcept;
   /// The largest permitted difference, rounded to counts that the frame can carry.
   double most(std::size_t place, double counts, double at) const noexcept;
+  /// A difference is larger than permitted.
+  bool exceeds(std::size_t place, double length, double counts, double at) const noexcept;
   std::optional<LimitBreach> outside(std::size_t place, double value,
                                      bool from_actual) const noexcept;
   std::optional<LimitBreach> too_far(std::size_t place, const Way& way) const noexcept;
   std::optional<LimitBreach> too_sharp(std::size_t place, const Way& way) const noexcept;
   Slot fresh_slot(std::size_t place) const noexcept;
+  void end_old_refusals(std::uint64_t cycle) noexcept;
   void set_refused(std::size_t place, bool refused) noexcept;
 
   const BusPlan& plan_;
   const WorkingImage& image_;
   const PdoInputs& inputs_;
   std::vector<OutputLimit> limits_;
+  std::vector<Notation> notations_;                     ///< by signal
   std::vector<std::uint16_t> places_;                   ///< place of the limits, by signal
   std::vector<std::vector<std::uint16_t>> dependents_;  ///< by signal, see dependents()
   std::vector<Slot> slots_;                             ///< parallel to limits_

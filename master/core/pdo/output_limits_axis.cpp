@@ -12,10 +12,6 @@ constexpr std::int64_t fault_reaction_active = 0x0F;
 constexpr std::int64_t fault = 0x08;
 constexpr std::int64_t switch_on_disabled = 0x40;
 
-constexpr std::int64_t enable_operation = 0x0F;  // bits of the controlword
-
-bool enables(std::int64_t order) noexcept { return (order & enable_operation) == enable_operation; }
-
 /// In these states, drives ignore a controlword that stays at "enable operation".
 bool ignores_enabling(std::int64_t statusword) noexcept {
   const std::int64_t state = statusword & short_state_bits;
@@ -56,21 +52,8 @@ OutputLimits::Leads OutputLimits::leads(std::size_t place, std::int64_t mode) co
   return {.commanded = limit.mode ? commanded : shown, .shown = shown};
 }
 
-/// While the drive changes the mode, it may still follow the output.
-bool OutputLimits::in_force(std::size_t place, std::int64_t mode) const noexcept {
-  const Leads found = leads(place, mode);
-  return found.commanded || found.shown;
-}
-
-/// The steps of target velocities and torques count in every mode, because the next mode may follow
-/// them.
-bool OutputLimits::follows_each(std::size_t place, std::int64_t mode) const noexcept {
-  return limits_[place].quantity != AxisQuantity::position || in_force(place, mode);
-}
-
 bool OutputLimits::covered_by_target(std::size_t place, std::int64_t mode) const noexcept {
-  const Leads found = leads(place, mode);
-  return limits_[place].target && found.commanded && found.shown;
+  return limits_[place].target && leads(place, mode).both();
 }
 
 }  // namespace takt

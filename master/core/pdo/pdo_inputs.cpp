@@ -52,9 +52,8 @@ void PdoInputs::announce(EventKind kind, const Row& row, Time now, std::uint32_t
                 .value = row.number});
 }
 
-void PdoInputs::set_reception(std::size_t node_index, Reception reception) noexcept {
+void PdoInputs::change_reception(std::size_t node_index, Reception reception) noexcept {
   const Reception before = std::exchange(receptions_[node_index], reception);
-  if (before == reception) return;
   const bool taken = before != Reception::off && reception != Reception::off;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     Row& row = rows_[i];

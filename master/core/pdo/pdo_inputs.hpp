@@ -29,7 +29,9 @@ class PdoInputs {
 
   /// Sets the reception of a node. Values that have arrived stay fresh, unless the reception is or
   /// was `off`.
-  void set_reception(std::size_t node_index, Reception reception) noexcept;
+  void set_reception(std::size_t node_index, Reception reception) noexcept {
+    if (receptions_[node_index] != reception) change_reception(node_index, reception);
+  }
   Reception reception(std::size_t node_index) const noexcept { return receptions_[node_index]; }
 
   /// Begins the beat of the SYNC that was sent at `sync`, and determines the expected TPDOs.
@@ -106,6 +108,7 @@ class PdoInputs {
     }
   };
 
+  void change_reception(std::size_t node_index, Reception reception) noexcept;
   std::uint16_t find_extended(CobId id) const noexcept;
   std::uint16_t find_object(std::uint16_t first, const Frame& frame) const noexcept;
   void accept(Row& row, PdoMark& news, const StampedFrame& stamped) noexcept;

@@ -138,7 +138,9 @@ bool PdoOutputs::due(std::size_t position, OutputMoment moment) const noexcept {
   const PdoRow& pdo = plan_.pdos.rpdos[position];
   const Row& row = rows_[position];
   if (!row.ever_sent || row.due) return true;
-  if (pdo.cyclic()) return stopping_ || turn_ % pdo.transmission == 0;
+  if (pdo.cyclic()) {
+    return stopping_ || pdo.transmission == 1 || turn_ % pdo.transmission == 0;
+  }
   if (pdo.synchronous()) return row.pending;
   const Time period = plan_.cycle.period;
   const Time since = static_cast<std::int64_t>(moment.cycle - row.last_cycle) * period;

@@ -202,6 +202,7 @@ class PdoOutputs {
     return set_point.generation != output.generation && set_point.time_to_live != output_released &&
            !refuses(output) && !is_late(output, set_point, moment);
   }
+  bool has_news(std::span<const SetPoint> set_points) const noexcept;
   bool limited_row_open(std::size_t place) const noexcept;
   Obeying obeying(SignalIndex signal) const noexcept;
   void judge_news(std::size_t place, std::span<const SetPoint> set_points,

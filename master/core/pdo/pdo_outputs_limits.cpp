@@ -168,13 +168,25 @@ void PdoOutputs::admit_news(std::size_t place, std::span<const SetPoint> set_poi
                 moment.cycle);
 }
 
+/// Some output has a command that the last pack has not seen.
+bool PdoOutputs::has_news(std::span<const SetPoint> set_points) const noexcept {
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    if (set_points[i].generation != outputs_[i].generation) return true;
+  }
+  return false;
+}
+
 void PdoOutputs::check_limits(std::span<const SetPoint> set_points, OutputMoment moment) noexcept {
   limits_.expire(moment.cycle);
   limits_.remember();
+  const bool news = has_news(set_points);
   for (std::size_t i = 0; i < limits_.size(); ++i) {
+    const auto order = limits_.limit(i).controlword;
+    // Without news, only a controlword from within the bus thread can need a judgement.
+    if (!news && !(order && limits_.begins(i, image_.values[*order]))) continue;
     if (limits_.bounds(i) && limited_row_open(i)) judge_news(i, set_points, moment);
   }
-  for (std::size_t i = 0; i < limits_.size(); ++i) admit_news(i, set_points, moment);
+  for (std::size_t i = 0; news && i < limits_.size(); ++i) admit_news(i, set_points, moment);
   if (!limits_.holds_any()) return;
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const Signal& signal = plan_.layout.signals[inputs_count_ + i];
@@ -233,17 +245,16 @@ bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
   const std::size_t node_index = plan_.layout.signals[signal].node_index;
   if (!suits_targets(signal, value, moment)) return false;
   const std::uint16_t place = limits_.place_of(signal);
-  if (place != OutputLimits::no_place && limited_row_open(place)) {
-    const AxisCommand command = command_with(place, signal, value);
+  const bool limited = place != OutputLimits::no_place;
+  const AxisCommand command = limited ? command_with(place, signal, value) : AxisCommand{};
+  if (limited && limited_row_open(place)) {
     if (limits_.lacks_start(place, command.mode)) return false;
     const bool covers = covered(place, command.mode, false);
     if (!covers && !judge(place, command, {signal, value}, moment)) return false;
     forgive(place, moment);
   }
   if (limits_.holds(node_index)) return false;
-  if (place != OutputLimits::no_place) {
-    limits_.admit(place, command_with(place, signal, value), moment.cycle);
-  }
+  if (limited) limits_.admit(place, command, moment.cycle);
   for (const std::uint16_t target : limits_.dependents(signal)) {
     if (limits_.limit(target).offset != signal) continue;
     limits_.admit(target, command_with(target, signal, value), moment.cycle);

@@ -60,6 +60,12 @@ class BusNode {
   std::size_t drop_expired(Time now) noexcept {
     return first_expiry_ < now ? erase_expired(now) : 0;
   }
+  /// No queued frame expires earlier.
+  Time first_expiry() const noexcept { return first_expiry_; }
+  /// The order of arrival does not decide which frame is offered.
+  bool offers_any() const noexcept {
+    return options.order == QueueOrder::priority && queue_.size() > 1;
+  }
   /// Returns the position of the frame that the node offers to the bus at `now`, or `none`.
   std::size_t offered(Time now) const noexcept {
     if (offers_any()) return lowest_rank(now);
@@ -102,16 +108,12 @@ class BusNode {
   Time suspended_until{};  ///< end of the pause of an error-passive node after its own frame
 
  private:
-  /// The order of arrival does not decide which frame is offered.
-  bool offers_any() const noexcept {
-    return options.order == QueueOrder::priority && queue_.size() > 1;
-  }
   std::size_t lowest_rank(Time now) const noexcept;
   Time first_ready() const noexcept;
   std::size_t erase_expired(Time now) noexcept;
 
   FrameQueue queue_;           ///< has room for `capacity` frames and one that was put back
-  Time first_expiry_ = never;  ///< no queued frame expires earlier
+  Time first_expiry_ = never;  ///< see first_expiry()
   std::uint32_t receive_errors_ = 0;
   std::uint64_t receive_errors_at_ = 0;
 };

@@ -43,17 +43,21 @@ constexpr RunStep follow(Run run, bool bit) {
   return {static_cast<Run>(bit ? 0 : 4), 1};  // the stuff bit begins a new run
 }
 
-/// stuff bits * 8 + next run, for each 1 to 8 bits (with a leading one bit as length mark) and for
+/// Stuff bits are counted in units of 256, so that sums of table entries need no division: the runs
+/// of all steps of a frame add up to less than one unit.
+constexpr std::uint32_t one_stuff_bit = 256;
+
+/// Stuff bits and next run, for each 1 to 8 bits (with a leading one bit as length mark) and for
 /// each run before them. The run is the last index, because the next step waits for it.
 constexpr auto run_table = [] {
-  std::array<std::array<std::uint8_t, runs>, 512> table{};
+  std::array<std::array<std::uint16_t, runs>, 512> table{};
   for (Run start = 0; start < runs; ++start) {
     table[1][start] = start;
     for (std::uint32_t marked = 2; marked < 512; ++marked) {
-      const std::uint8_t before = table[marked >> 1][start];
+      const std::uint16_t before = table[marked >> 1][start];
       const RunStep step = follow(before % runs, (marked & 1) != 0);
-      const int stuffed = before / runs + step.stuffed;
-      table[marked][start] = static_cast<std::uint8_t>(stuffed * runs + step.run);
+      const std::uint32_t stuffed = before / one_stuff_bit + step.stuffed;
+      table[marked][start] = static_cast<std::uint16_t>(stuffed * one_stuff_bit + step.run);
     }
   }
   return table;
@@ -73,18 +77,18 @@ class BitRow {
   void byte(std::uint32_t value) noexcept { head(value & 0xFF, 8); }
   /// Appends `count` bits that the CRC does not cover.
   void stuff(std::uint32_t bits, int count) noexcept {
-    const std::uint8_t step = run_table[1u << count | bits][run_];
+    const std::uint32_t step = run_table[1u << count | bits][run_];
     run_ = step % runs;
-    stuffed_ += step / runs;
+    steps_ += step;
   }
   std::uint32_t crc() const noexcept { return crc_; }
-  std::uint32_t stuffed() const noexcept { return stuffed_; }
+  std::uint32_t stuffed() const noexcept { return steps_ / one_stuff_bit; }
 
  private:
   std::size_t following_;
   std::uint32_t crc_ = 0;
-  std::uint32_t stuffed_ = 0;
-  Run run_ = 0;
+  std::uint32_t steps_ = 0;  ///< sum of the table entries
+  std::uint32_t run_ = 0;
 };
 
 /// Appends 18 bits: identifier, RTR, IDE, r0, DLC.
@@ -116,6 +120,7 @@ FrameBits frame_bits(const Frame& frame) noexcept {
   } else {
     base_header(row, frame);
   }
+#pragma GCC unroll 8
   for (std::uint32_t i = 0; i < bytes; ++i) row.byte(frame.data[i]);
   const std::uint32_t crc = row.crc();
   row.stuff(crc >> 8, 7);

@@ -29,6 +29,7 @@ void VirtualBus::set_bitrate(std::uint32_t bitrate) noexcept {
 BusNodeIndex VirtualBus::attach(BusNodeOptions options) {
   const auto index = static_cast<BusNodeIndex>(nodes_.size());
   nodes_.emplace_back(options);
+  offers_.emplace_back();
   waiting_.resize(nodes_.size() / 64 + 1);
   changes_.reserve(nodes_.size() + 8);
   ++on_bus_;
@@ -46,16 +47,23 @@ bool VirtualBus::queue(BusNodeIndex from, const Frame& frame, Time ready, Time e
     ++counters_.overflowed;
     return false;
   }
-  mark(from);
+  first_expiry_ = std::min(first_expiry_, expires);
+  renew_offer(from);
   if (!busy_) next_ = std::min(next_, std::max({idle_from_, ready, node.suspended_until}));
   return true;
 }
 
-void VirtualBus::mark(BusNodeIndex index) noexcept {
-  waiting_[index / 64] |= std::uint64_t{1} << (index % 64);
+void VirtualBus::renew_offer(BusNodeIndex index) noexcept {
+  const BusNode& node = nodes_[index];
+  const std::uint64_t bit = std::uint64_t{1} << (index % 64);
+  if (node.empty()) {
+    waiting_[index / 64] &= ~bit;
+    return;
+  }
+  waiting_[index / 64] |= bit;
+  offers_[index] = {
+      .from = node.earliest(), .rank = node.at(0).rank, .by_priority = node.offers_any()};
 }
-
-void VirtualBus::drop_queue(BusNodeIndex from) noexcept { nodes_[from].clear(); }
 
 void VirtualBus::set_powered(BusNodeIndex index, bool on, Time now) noexcept {
   BusNode& node = nodes_[index];
@@ -66,6 +74,7 @@ void VirtualBus::set_powered(BusNodeIndex index, bool on, Time now) noexcept {
   node.bus_off = false;
   node.recovers = never;
   node.clear();
+  renew_offer(index);
   node.reset_errors();
   if (on) ++on_bus_;
   if (busy_ && sender_ == index && !on) wire_.result = WireResult::destroyed;
@@ -77,14 +86,14 @@ void VirtualBus::set_bus_off(BusNodeIndex index, Time now) noexcept {
   if (!busy_) schedule();
 }
 
-bool VirtualBus::step(Time now, WireFrame& wire) noexcept {
+bool VirtualBus::step(Time now) noexcept {
   if (recovering_ != 0) recover(now);
   if (busy_) {
     if (wire_.end > now) {
       schedule();
       return false;
     }
-    finish(now, wire);
+    finish(now);
     schedule();
     return true;
   }
@@ -106,12 +115,7 @@ void VirtualBus::schedule() noexcept {
   for (std::size_t word = 0; word < waiting_.size(); ++word) {
     for (std::uint64_t bits = waiting_[word]; bits != 0; bits &= bits - 1) {
       const auto bit = static_cast<std::size_t>(std::countr_zero(bits));
-      const BusNode& node = nodes_[word * 64 + bit];
-      if (node.empty()) {
-        waiting_[word] &= ~(std::uint64_t{1} << bit);
-        continue;
-      }
-      next_ = std::min(next_, std::max(idle_from_, node.earliest()));
+      next_ = std::min(next_, std::max(idle_from_, offers_[word * 64 + bit].from));
       if (next_ <= idle_from_) return;
     }
   }
@@ -121,51 +125,67 @@ void VirtualBus::schedule() noexcept {
 /// 10.4.
 void VirtualBus::arbitrate(Time now) noexcept {
   sender_ = rival_ = nobody;
-  std::size_t position = BusNode::none;
+  if (first_expiry_ < now) drop_expired(now);
   std::uint32_t best = 0;
   for (std::size_t word = 0; word < waiting_.size(); ++word) {
     for (std::uint64_t bits = waiting_[word]; bits != 0; bits &= bits - 1) {
       const auto index =
           static_cast<BusNodeIndex>(word * 64 + static_cast<std::size_t>(std::countr_zero(bits)));
-      BusNode& node = nodes_[index];
-      if (node.empty()) {
-        waiting_[word] &= ~(std::uint64_t{1} << (index % 64));
-        continue;
+      if (offers_[index].from > now) continue;
+      const std::uint32_t rank = rank_at(index, now);
+      if (sender_ == nobody || rank < best) {
+        best = rank;
+        sender_ = index;
+        rival_ = nobody;
+      } else if (rank == best && !relays(index) && !relays(sender_)) {
+        rival_ = index;
       }
-      counters_.expired += node.drop_expired(now);
-      if (node.suspended_until > now) continue;
-      const std::size_t offer = node.offered(now);
-      if (offer == BusNode::none) continue;
-      const std::uint32_t rank = node.at(offer).rank;
-      if (sender_ != nobody && rank >= best) {
-        const bool relayed = node.options.relays || nodes_[sender_].options.relays;
-        if (rank == best && !relayed) rival_ = index;
-        continue;
-      }
-      best = rank;
-      sender_ = index;
-      rival_ = nobody;
-      position = offer;
     }
   }
-  if (sender_ != nobody) {
-    current_ = nodes_[sender_].take(position);
-    begin(now);
-  }
+  if (sender_ != nobody) begin(now);
   schedule();
 }
 
+std::uint32_t VirtualBus::rank_at(BusNodeIndex index, Time now) const noexcept {
+  const Offer& offer = offers_[index];
+  if (!offer.by_priority) return offer.rank;
+  const BusNode& node = nodes_[index];
+  return node.at(node.offered(now)).rank;
+}
+
+void VirtualBus::drop_expired(Time now) noexcept {
+  first_expiry_ = never;
+  for (BusNodeIndex i = 0; i < nodes_.size(); ++i) {
+    if (nodes_[i].empty()) continue;
+    counters_.expired += nodes_[i].drop_expired(now);
+    first_expiry_ = std::min(first_expiry_, nodes_[i].first_expiry());
+    renew_offer(i);
+  }
+}
+
+/// Takes the frame that the node offers.
+QueuedFrame VirtualBus::take(BusNodeIndex index, Time now) noexcept {
+  BusNode& node = nodes_[index];
+  const QueuedFrame frame = node.take(node.offered(now));
+  renew_offer(index);
+  return frame;
+}
+
 void VirtualBus::begin(Time now) noexcept {
+  current_ = take(sender_, now);
   const std::uint32_t length = current_.bits;
   wire_.frame = current_.frame;
   wire_.start = now;
   wire_.sender = sender_;
   wire_.result = WireResult::sent;
   if (rival_ != nobody) {
-    BusNode& rival = nodes_[rival_];
-    const QueuedFrame other = rival.at(rival.offered(now));
-    if (other.frame != current_.frame) wire_.result = WireResult::destroyed;
-    if (wire_.result == WireResult::sent) rival.take(rival.offered(now));
+    const BusNode& rival = nodes_[rival_];
+    const bool same = rival.at(rival.offered(now)).frame == current_.frame;
+    if (same) {
+      take(rival_, now);
+    } else {
+      wire_.result = WireResult::destroyed;
+    }
   }
   if (random_.chance(nodes_[sender_].faults.error)) wire_.result = WireResult::destroyed;
   if (wire_.result == WireResult::sent && !acknowledged(sender_)) {
@@ -190,23 +210,23 @@ bool VirtualBus::acknowledged(BusNodeIndex sender) const noexcept {
   return analyser_ || on_bus_ > (nodes_[sender].on_bus() ? 1u : 0u);
 }
 
-void VirtualBus::finish(Time now, WireFrame& wire) noexcept {
+void VirtualBus::finish(Time now) noexcept {
   busy_ = false;
   counters_.bits += wire_.bits + interframe_bits;
   idle_from_ = now + bit_time(interframe_bits);
-  wire = wire_;
   if (wire_.result == WireResult::sent) {
-    finish_good(wire);
+    finish_good();
   } else {
     finish_bad(now);
   }
   for (const BusNodeIndex index : {sender_, rival_}) {
     if (index == nobody || !nodes_[index].error_passive(counters_.frames)) continue;
     nodes_[index].suspended_until = idle_from_ + bit_time(suspend_bits);
+    renew_offer(index);
   }
 }
 
-void VirtualBus::finish_good(WireFrame& wire) noexcept {
+void VirtualBus::finish_good() noexcept {
   ++counters_.frames;
   BusNode& sender = nodes_[sender_];
   if (sender.transmit_errors != 0) --sender.transmit_errors;
@@ -218,7 +238,7 @@ void VirtualBus::finish_good(WireFrame& wire) noexcept {
   }
   if (random_.chance(sender.faults.loss)) {
     ++counters_.lost;
-    wire.result = WireResult::lost;
+    wire_.result = WireResult::lost;
   }
 }
 
@@ -236,7 +256,8 @@ void VirtualBus::finish_bad(Time now) noexcept {
 
 void VirtualBus::repeat(BusNodeIndex index, const QueuedFrame& frame) noexcept {
   nodes_[index].put_back(frame);
-  mark(index);
+  first_expiry_ = std::min(first_expiry_, frame.expires);
+  renew_offer(index);
 }
 
 void VirtualBus::punish(BusNodeIndex index, Time now) noexcept {
@@ -255,6 +276,7 @@ void VirtualBus::go_bus_off(BusNodeIndex index, Time now) noexcept {
   node.bus_off = true;
   ++node.times_bus_off;
   node.clear();
+  renew_offer(index);
   --on_bus_;
   if (changes_.size() < changes_.capacity()) changes_.push_back(index);
   if (node.options.restart == never) return;

@@ -37,7 +37,6 @@ class VirtualBus {
   /// Offers a frame from `ready` on. The frame is dropped if it is not on the wire before
   /// `expires`. Returns false if the queue is full or the node is off the bus.
   bool queue(BusNodeIndex from, const Frame& frame, Time ready, Time expires = never) noexcept;
-  void drop_queue(BusNodeIndex from) noexcept;
   void set_powered(BusNodeIndex index, bool on, Time now) noexcept;
   void set_bus_off(BusNodeIndex index, Time now) noexcept;
   /// Adds or removes an analyser that acknowledges every frame, so that a bus without other devices
@@ -45,9 +44,10 @@ class VirtualBus {
   void set_analyser(bool present) noexcept { analyser_ = present; }
 
   Time next_event() const noexcept { return next_; }
-  /// Does the work that is due at next_event(). Returns true if a frame has left the wire; the
-  /// frame is then in `wire`.
-  bool step(Time now, WireFrame& wire) noexcept;
+  /// Does the work that is due at next_event(). Returns true if a frame has left the wire.
+  bool step(Time now) noexcept;
+  /// The frame that has left the wire; valid until the next step.
+  const WireFrame& wire() const noexcept { return wire_; }
 
   Time bit_time(std::uint32_t bits) const noexcept {
     const std::uint64_t rest = bit_rest_ == 0 ? 0 : bits * bit_rest_ / bitrate_;
@@ -68,18 +68,29 @@ class VirtualBus {
   static constexpr BusNodeIndex nobody = 0xFFFF;
 
  private:
+  /// What a node offers to the bus. Each change of its queue renews it.
+  struct Offer {
+    Time from = never;         ///< the node offers nothing earlier
+    std::uint32_t rank = 0;    ///< rank of the frame that is offered
+    bool by_priority = false;  ///< several frames compete, so that the time decides which one
+  };
+
   void schedule() noexcept;
   void arbitrate(Time now) noexcept;
   void begin(Time now) noexcept;
   std::uint32_t bits_until_error(std::uint32_t frame_length) noexcept;
-  void finish(Time now, WireFrame& wire) noexcept;
-  void finish_good(WireFrame& wire) noexcept;
+  void finish(Time now) noexcept;
+  void finish_good() noexcept;
   void finish_bad(Time now) noexcept;
   void punish(BusNodeIndex index, Time now) noexcept;
   void go_bus_off(BusNodeIndex index, Time now) noexcept;
   void repeat(BusNodeIndex index, const QueuedFrame& frame) noexcept;
   void recover(Time now) noexcept;
-  void mark(BusNodeIndex index) noexcept;
+  QueuedFrame take(BusNodeIndex index, Time now) noexcept;
+  void drop_expired(Time now) noexcept;
+  void renew_offer(BusNodeIndex index) noexcept;
+  std::uint32_t rank_at(BusNodeIndex index, Time now) const noexcept;
+  bool relays(BusNodeIndex index) const noexcept { return nodes_[index].options.relays; }
   bool acknowledged(BusNodeIndex sender) const noexcept;
 
   std::uint32_t bitrate_ = 1'000'000;
@@ -87,7 +98,9 @@ class VirtualBus {
   std::uint64_t bit_rest_ = 0;    ///< rest of that division; 0 at the usual bit rates
   Random random_;
   std::vector<BusNode> nodes_;
+  std::vector<Offer> offers_;           ///< by node
   std::vector<std::uint64_t> waiting_;  ///< set of nodes with queued frames, one bit a node
+  Time first_expiry_ = never;           ///< no queued frame expires earlier
   std::vector<BusNodeIndex> changes_;
   BusCounters counters_;
   bool analyser_ = false;

@@ -60,45 +60,47 @@ Time World::next_event() const noexcept {
 }
 
 void World::advance_to(Time until) noexcept {
-  for (Time at = next_event(); at <= until && at != never; at = next_event()) step(at);
-  now_ = std::max(now_, until);
+  while (step_until(until)) {
+  }
 }
 
 bool World::advance_until_frame(RemotePort& port, Time until) noexcept {
   while (!port.has_frames()) {
-    const Time at = next_event();
-    if (at > until || at == never) {
-      now_ = std::max(now_, until);
-      return false;
-    }
-    step(at);
+    if (!step_until(until)) return false;
   }
   return true;
 }
 
-/// Processes faults first, then the devices, then the bus, so that a frame offered at this time
-/// takes part in the arbitration at this time.
-void World::step(Time at) noexcept {
+/// Processes the next event. Returns false if there is none until this time. At equal times, faults
+/// come first, then the devices, then the bus, so that a frame offered at this time takes part in
+/// the arbitration at this time.
+bool World::step_until(Time until) noexcept {
+  const Time others = std::min(timers_.earliest(), schedule_.next());
+  const Time at = std::min(others, bus_.next_event());
+  if (at > until || at == never) {
+    now_ = std::max(now_, until);
+    return false;
+  }
   now_ = std::max(now_, at);
+  if (others <= at) {
+    act(at);
+  } else {
+    if (bus_.step(now_)) on_wire_end(bus_.wire());
+    report_bus_changes();
+  }
+  return true;
+}
+
+/// Lets the next fault, device or babbler act.
+void World::act(Time at) noexcept {
   if (schedule_.next() <= at) {
     const FaultSchedule::Edge edge = schedule_.take();
     apply(schedule_.fault(edge.fault), edge.begins);
-  } else if (timers_.earliest() <= at) {
-    const std::size_t index = timers_.first();
-    if (index == devices_.size()) {
-      babble_again();
-    } else {
-      run_device(index);
-    }
+  } else if (const std::size_t index = timers_.first(); index == devices_.size()) {
+    babble_again();
   } else {
-    step_bus();
+    run_device(index);
   }
-}
-
-void World::step_bus() noexcept {
-  WireFrame wire;
-  if (bus_.step(now_, wire)) on_wire_end(wire);
-  report_bus_changes();
 }
 
 void World::run_device(std::size_t index) noexcept {

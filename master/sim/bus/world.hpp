@@ -67,8 +67,8 @@ class World {
   std::uint8_t node_of(BusNodeIndex sender) const noexcept;
 
  private:
-  void step(Time at) noexcept;
-  void step_bus() noexcept;
+  bool step_until(Time until) noexcept;
+  void act(Time at) noexcept;
   void run_device(std::size_t index) noexcept;
   void after_call(std::size_t index) noexcept;
   void route(std::size_t index) noexcept;

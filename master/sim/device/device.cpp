@@ -56,6 +56,7 @@ Device::Device(const DeviceTable& table, Random random, DeviceTimes times)
   const DeviceTraits traits = model_->traits();
   for (Tpdo& tpdo : tpdos_) tpdo.set_traits(traits);
   sync_.set_may_produce(traits.produces_sync);
+  answers_rpdos_ = traits.answers_255;
 }
 
 Device::~Device() = default;
@@ -137,6 +138,10 @@ void Device::send_bootup(Time now) noexcept {
 
 void Device::on_frame(const Frame& frame, Time now) noexcept {
   auto route = std::ranges::lower_bound(routes_, frame.id, {}, &Route::id);
+  if (route == routes_.end() || route->id != frame.id) return;
+  const auto next = route + 1;
+  const bool alone = next == routes_.end() || next->id != frame.id;
+  if (alone && keep_until_sync(*route, frame, now)) return;
   std::array<Route, 8> taken;  // a handler may rebuild the routes
   std::size_t count = 0;
   bool services = frame.rtr;
@@ -144,7 +149,6 @@ void Device::on_frame(const Frame& frame, Time now) noexcept {
     taken[count++] = *route;
     services = services || (route->kind != RouteKind::sync && route->kind != RouteKind::rpdo);
   }
-  if (count == 0) return;
   for (std::size_t i = 0; i < count; ++i) dispatch(taken[i], frame, now);
   services ? finish_call(now) : finish_exchange(now);
 }

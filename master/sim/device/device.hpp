@@ -131,6 +131,7 @@ class Device final : private Dictionary {
   Abort width(ObjectKey key, std::size_t& bytes) const noexcept override;
   bool is_mute(ObjectKey key) const noexcept override;
 
+  bool keep_until_sync(const Route& route, const Frame& frame, Time now) noexcept;
   void dispatch(const Route& route, const Frame& frame, Time now) noexcept;
   void on_request(const Route& route, Time now) noexcept;
   void ask(SdoServer& server, const Frame& frame, Time now) noexcept;
@@ -192,6 +193,7 @@ class Device final : private Dictionary {
   std::unique_ptr<Model> model_;
   std::vector<Route> routes_;  ///< sorted by ascending identifier
   bool routes_changed_ = true;
+  bool answers_rpdos_ = false;  ///< DeviceTraits::answers_255
   DeviceState state_ = DeviceState::off;
   Time boots_at_ = never;
   Time next_storm_ = never;

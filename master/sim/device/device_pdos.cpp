@@ -53,6 +53,13 @@ void Device::on_sync(const Frame& frame, Time now) noexcept {
   if (fresh) look_at_inputs(now);
 }
 
+/// An RPDO that only waits for SYNC changes no deadline and sends nothing.
+bool Device::keep_until_sync(const Route& route, const Frame& frame, Time now) noexcept {
+  if (route.kind != RouteKind::rpdo || frame.rtr || answers_rpdos_) return false;
+  return state_ == DeviceState::operational &&
+         rpdos_[route.index].keep_until_sync(frame, now, sync_.window_end(), emcy_);
+}
+
 void Device::on_rpdo(Rpdo& rpdo, const Frame& frame, Time now) noexcept {
   if (state_ != DeviceState::operational) return;
   const std::uint16_t number = rpdo.record().number();

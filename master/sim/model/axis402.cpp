@@ -51,7 +51,8 @@ void Axis402::outputs(Time now) noexcept {
   if (last_sync_ == Time{} || now - last_sync_ > sync_is_gone) {
     take_cyclic_target(interpolation_period());
   }
-  publish();
+  publish_state();
+  if (published_ != now || mode_ == DriveMode::homing) publish_motion();
 }
 
 void Axis402::on_sync(Time now) noexcept {
@@ -104,6 +105,7 @@ void Axis402::follow_mode() noexcept {
 }
 
 void Axis402::start_mode() noexcept {
+  published_ = never;
   if (!is_powered(state_)) demand_ = {motor_.position, 0};
   profile_.start(demand_);
   homing_.start();
@@ -146,6 +148,7 @@ void Axis402::go(DriveState next) noexcept {
 void Axis402::enter(DriveState next) noexcept {
   const bool was_powered = is_powered(state_);
   state_ = next;
+  published_ = never;
   settled_ = false;
   stopping_to_ = DriveState::operation_enabled;
   if (!is_powered(next) || !was_powered) demand_ = {motor_.position, 0};

@@ -76,6 +76,8 @@ class Axis402 {
   bool controls_position() const noexcept;
 
   void publish() noexcept;
+  void publish_state() noexcept;
+  void publish_motion() noexcept;
   void publish_torque() noexcept;
   std::uint16_t statusword() const noexcept;
   std::uint16_t mode_bits() const noexcept;
@@ -99,6 +101,7 @@ class Axis402 {
   bool on_target_ = false;
   bool target_waits_ = false;
   Time time_{};
+  Time published_ = never;  ///< the objects hold the motion of this time
   Time last_sync_{};
   Time sync_distance_{};
   Time following_time_{};

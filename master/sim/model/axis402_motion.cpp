@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "master/sim/model/axis402.hpp"
 
@@ -30,9 +31,10 @@ void Axis402::advance(Time now) noexcept {
   }
   const Time::rep steps = std::clamp<Time::rep>(
       (span.count() + longest_step.count() - 1) / longest_step.count(), 1, most_steps);
+  const Time from = time_;
   for (Time::rep i = 1; i <= steps; ++i) {
-    const Time part = span * i / steps - span * (i - 1) / steps;
-    time_ += part;
+    const Time end = i == steps ? now : from + span * i / steps;
+    const Time part = end - std::exchange(time_, end);
     step(part);
   }
   publish();
@@ -72,9 +74,9 @@ void Axis402::step_enabled(double h) noexcept {
 }
 
 bool Axis402::halted() const noexcept {
-  const bool profile = mode_ == DriveMode::profile_position ||
-                       mode_ == DriveMode::profile_velocity || mode_ == DriveMode::homing;
-  return profile && (controlword_ & halt_bit) != 0;
+  if ((controlword_ & halt_bit) == 0) return false;
+  return mode_ == DriveMode::profile_position || mode_ == DriveMode::profile_velocity ||
+         mode_ == DriveMode::homing;
 }
 
 void Axis402::step_mode(double h) noexcept {
@@ -175,7 +177,7 @@ bool Axis402::controls_position() const noexcept {
 void Axis402::supervise_following_error(Time span) noexcept {
   const std::int64_t window = objects_.following_window.get();
   const double error = std::abs(demand_.position - motor_.position);
-  const bool watched = controls_position() && window != 0 && window != 0xFFFF'FFFF;
+  const bool watched = window != 0 && window != 0xFFFF'FFFF && controls_position();
   if (!watched || error <= static_cast<double>(window)) {
     following_time_ = Time{};
     following_error_ = false;
@@ -246,10 +248,19 @@ std::uint16_t Axis402::statusword() const noexcept {
 }
 
 void Axis402::publish() noexcept {
-  const std::int64_t actual = rounded(motor_.position);
-  const std::int64_t wanted = rounded(demand_.position);
+  publish_state();
+  publish_motion();
+}
+
+void Axis402::publish_state() noexcept {
   objects_.statusword.set(statusword());
   objects_.mode_display.set(static_cast<std::int64_t>(mode_));
+}
+
+void Axis402::publish_motion() noexcept {
+  published_ = time_;
+  const std::int64_t actual = rounded(motor_.position);
+  const std::int64_t wanted = rounded(demand_.position);
   objects_.position_actual.set(actual);
   objects_.position_actual_internal.set(actual);
   objects_.position_demand.set(wanted);

@@ -55,7 +55,7 @@ void MultiplexedPdos::add_mapped(const PdoRecord& tpdo) noexcept {
   }
 }
 
-void MultiplexedPdos::notice(Time now, Transmitter& out) noexcept {
+void MultiplexedPdos::send_changes(Time now, Transmitter& out) noexcept {
   for (Source& source : sources_) {
     if (source.sent && source.object->value == source.last) continue;
     source.sent = true;

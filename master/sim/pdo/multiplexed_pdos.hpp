@@ -29,7 +29,9 @@ class MultiplexedPdos {
   void add(const PdoRecord& tpdo) noexcept;
   bool wants_events() const noexcept { return !sources_.empty(); }
   /// Sends the values that have changed since the last call.
-  void notice(Time now, Transmitter& out) noexcept;
+  void notice(Time now, Transmitter& out) noexcept {
+    if (wants_events()) send_changes(now, out);
+  }
 
   /// Returns true if the frame has written an object.
   bool on_frame(const PdoRecord& rpdo, const Frame& frame, EmcyProducer& emcy) noexcept;
@@ -44,6 +46,7 @@ class MultiplexedPdos {
   };
   static constexpr std::size_t most_sources = 512;
 
+  void send_changes(Time now, Transmitter& out) noexcept;
   void add_source(const PdoRecord& tpdo, ObjectKey key, std::uint8_t address) noexcept;
   void add_scanned(const PdoRecord& tpdo) noexcept;
   void add_mapped(const PdoRecord& tpdo) noexcept;

@@ -38,9 +38,9 @@ class PdoMapping {
     std::uint64_t mask = 0;
     std::uint8_t shift = 0;
   };
-  std::array<Place, 64> places_{};
   std::uint8_t count_ = 0;
   std::uint8_t bits_ = 0;
+  std::array<Place, 64> places_{};
 };
 
 }  // namespace takt::sim

@@ -1,6 +1,8 @@
 #include "master/sim/pdo/rpdo.hpp"
 
-#include <algorithm>
+#include <span>
+
+#include "master/wire/bytes.hpp"
 
 namespace takt::sim {
 namespace {
@@ -23,12 +25,22 @@ void Rpdo::reconfigure() noexcept {
   deadline_ = never;
 }
 
+bool Rpdo::keep_until_sync(const Frame& frame, Time now, Time window_end,
+                           const EmcyProducer& emcy) noexcept {
+  const bool fits = frame.length == mapping_.bytes() && frame.length != 0 && now <= window_end;
+  const bool watched = deadline_ != never || record_.event_timer() != Time{};
+  if (!fits || watched || !synchronous_ || !emcy.quiet()) return false;
+  if (!running_ || !record_.valid()) return false;
+  data_ = load_le<std::uint64_t>(std::span{frame.data});
+  full_ = true;
+  return true;
+}
+
 bool Rpdo::on_frame(const Frame& frame, Time now, Time window_end, EmcyProducer& emcy) noexcept {
   if (!running_ || !record_.valid()) return false;
   if (!length_is_good(frame, emcy)) return false;
   if (synchronous_ && now > window_end) return false;
-  data_ = 0;
-  for (std::size_t i = 0; i < 8; ++i) data_ |= std::uint64_t{frame.data[i]} << (8 * i);
+  data_ = load_le<std::uint64_t>(std::span{frame.data});
   full_ = true;
   emcy.clear(overdue, static_cast<std::uint8_t>(record_.number()));
   const Time limit = record_.event_timer();

@@ -21,6 +21,10 @@ class Rpdo {
   void stop() noexcept { running_ = false; }
   void reconfigure() noexcept;
 
+  /// Keeps the data of an ordinary synchronous frame until SYNC. Returns false, and keeps nothing,
+  /// if on_frame() has more to do: monitor a deadline, report an error or end one.
+  bool keep_until_sync(const Frame& frame, Time now, Time window_end,
+                       const EmcyProducer& emcy) noexcept;
   /// Returns true if the frame acts at once; the caller then calls apply().
   bool on_frame(const Frame& frame, Time now, Time window_end, EmcyProducer& emcy) noexcept;
   /// True if received data waits for SYNC.
@@ -34,12 +38,12 @@ class Rpdo {
   bool length_is_good(const Frame& frame, EmcyProducer& emcy) noexcept;
 
   PdoRecord record_;
-  PdoMapping mapping_;
   bool running_ = false;
   bool synchronous_ = false;
   bool full_ = false;
   std::uint64_t data_ = 0;
   Time deadline_ = never;
+  PdoMapping mapping_;  ///< large, so it is the last member
 };
 
 }  // namespace takt::sim

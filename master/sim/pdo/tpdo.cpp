@@ -1,6 +1,9 @@
 #include "master/sim/pdo/tpdo.hpp"
 
 #include <algorithm>
+#include <span>
+
+#include "master/wire/bytes.hpp"
 
 namespace takt::sim {
 
@@ -35,8 +38,8 @@ bool Tpdo::only_answers() const noexcept {
   return traits_.answers_255 && type_ == 255 && record_.event_timer() == Time{};
 }
 
+/// For the transmission types 0, 254 and 255.
 bool Tpdo::has_events() const noexcept {
-  if (type_ != 0 && type_ < 254) return false;
   if (traits_.timer == DeviceTraits::Timer::alone && runs_by_timer()) return false;
   return !only_answers();
 }
@@ -96,7 +99,7 @@ void Tpdo::on_request(Time ready, Transmitter& out) noexcept {
 }
 
 void Tpdo::answer(Time ready, Transmitter& out) noexcept {
-  if (running_ && record_.valid() && only_answers()) send(mapping_.pack(), ready, never, out);
+  if (only_answers() && running_ && record_.valid()) send(mapping_.pack(), ready, never, out);
 }
 
 void Tpdo::look_for_event(Time now, Transmitter& out) noexcept {
@@ -129,7 +132,7 @@ void Tpdo::event(Time ready, Transmitter& out) noexcept {
 
 void Tpdo::send(std::uint64_t data, Time ready, Time expires, Transmitter& out) noexcept {
   Frame frame{.id = record_.id(), .length = mapping_.bytes()};
-  for (std::size_t i = 0; i < 8; ++i) frame.data[i] = static_cast<std::uint8_t>(data >> (8 * i));
+  store_le(std::span{frame.data}, data);
   out.send(frame, ready, expires);
   seen_ = last_ = data;
   if (type_ < 253) return;

@@ -40,7 +40,9 @@ class Tpdo {
   void on_time(Time now, Transmitter& out) noexcept;
   Time deadline() const noexcept { return deadline_; }
   /// True if changes of mapped values are events.
-  bool wants_events() const noexcept { return active_ && has_events(); }
+  bool wants_events() const noexcept {
+    return active_ && (type_ == 0 || type_ >= 254) && has_events();
+  }
 
  private:
   void look_for_event(Time now, Transmitter& out) noexcept;
@@ -56,7 +58,6 @@ class Tpdo {
 
   PdoRecord record_;
   DeviceTraits traits_;
-  PdoMapping mapping_;
   std::uint8_t type_ = 255;
   bool running_ = false;
   bool active_ = false;     ///< running and valid; false for a multiplexed PDO, which is not sent
@@ -71,6 +72,7 @@ class Tpdo {
   Time allowed_from_{};  ///< end of the inhibit time
   Time timer_ = never;   ///< expiry of the event timer
   Time deadline_ = never;
+  PdoMapping mapping_;  ///< large, so it is the last member
 };
 
 }  // namespace takt::sim

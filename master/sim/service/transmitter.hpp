@@ -27,9 +27,9 @@ class Transmitter {
   void shrink(std::size_t size) noexcept { size_ = size; }
 
  private:
+  std::size_t size_ = 0;
   /// Room for 512 PDOs in answer to one SYNC, and for other frames.
   std::array<Transmission, 576> items_{};
-  std::size_t size_ = 0;
 };
 
 }  // namespace takt::sim
