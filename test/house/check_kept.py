@@ -38,7 +38,7 @@ NOT_KEPT = {
                     IDLE: "runner_ requests_ own_command_ loss_to_report_"},
     "NodeStatus": {ANEW: "exchanging"},
     "NodeWatch": {PLAN: "timeout_"},
-    "OutputLimits": {PLAN: "plan_ limits_ notations_ places_ dependents_ longest_gap_ seconds_", SHARED: "image_ inputs_"},
+    "OutputLimits": {PLAN: "plan_ limits_ notations_ places_ dependents_ judged_ longest_gap_ seconds_", SHARED: "image_ inputs_"},
     "PdoInputs": {PLAN: "plan_ fields_ extended_ window_", SHARED: "image_ events_"},
     "PdoInputs::Row": {PLAN: "first count number length node_index every multiplexed deadline"},
     "PdoOutputs": {PLAN: "plan_ inputs_count_ fields_", SHARED: "image_ inputs_ events_",

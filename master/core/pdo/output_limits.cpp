@@ -27,6 +27,7 @@ OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const
       limits_{plan.limits.outputs},
       places_(plan.layout.signals.size(), no_place),
       dependents_(plan.layout.signals.size()),
+      judged_(plan.layout.signals.size()),
       slots_(limits_.size()),
       held_(plan.nodes.size(), 0),
       longest_gap_{fewest_cycles},
@@ -39,6 +40,9 @@ OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     const auto place = static_cast<std::uint16_t>(i);
     places_[limits_[i].signal] = place;
+    judged_[limits_[i].signal] = 1;
+    if (limits_[i].offset) judged_[*limits_[i].offset] = 1;
+    if (limits_[i].mode) judged_[*limits_[i].mode] = 1;
     if (limits_[i].modulus <= 0) {
       limits_[i].modulus = limits_[i].wraps ? std::ldexp(1.0, signal_of(i).bits) : 0.0;
     }

@@ -64,6 +64,9 @@ class OutputLimits {
   std::span<const std::uint16_t> dependents(SignalIndex signal) const noexcept {
     return dependents_[signal];
   }
+  /// A command to this output is judged: the output is limited, or it is the offset or the mode of
+  /// operation of a limited output.
+  bool judges(SignalIndex signal) const noexcept { return judged_[signal] != 0; }
   /// The output at `place` is an offset, and the drive certainly adds it to its target in this
   /// commanded mode, so that the check of the target covers it.
   bool covered_by_target(std::size_t place, std::int64_t mode) const noexcept;
@@ -215,6 +218,7 @@ class OutputLimits {
   std::vector<Notation> notations_;                     ///< by signal
   std::vector<std::uint16_t> places_;                   ///< place of the limits, by signal
   std::vector<std::vector<std::uint16_t>> dependents_;  ///< by signal, see dependents()
+  std::vector<std::uint8_t> judged_;                    ///< by signal, see judges()
   std::vector<Slot> slots_;                             ///< parallel to limits_
   std::vector<std::uint16_t> held_;  ///< by node: number of outputs whose commands are refused
   std::uint32_t held_nodes_ = 0;

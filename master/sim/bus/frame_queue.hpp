@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -18,62 +19,69 @@ struct QueuedFrame {
   Time expires = never;
 };
 
-/// Frames in the order of their arrival. To take the first one moves no others. Nothing allocates
-/// memory after construction.
+/// Frames in the order of their arrival. Taking the first frame moves no other frame. Nothing
+/// allocates memory after construction.
 class FrameQueue {
  public:
-  explicit FrameQueue(std::size_t capacity) { frames_.reserve(capacity); }
+  explicit FrameQueue(std::size_t capacity) : frames_(capacity) {}
 
-  bool empty() const noexcept { return first_ == frames_.size(); }
-  std::size_t size() const noexcept { return frames_.size() - first_; }
-  bool full() const noexcept { return size() == frames_.capacity(); }
+  bool empty() const noexcept { return first_ == end_; }
+  std::size_t size() const noexcept { return end_ - first_; }
+  bool full() const noexcept { return size() == frames_.size(); }
   const QueuedFrame& operator[](std::size_t position) const noexcept {
     return frames_[first_ + position];
   }
   auto begin() const noexcept { return frames_.begin() + static_cast<std::ptrdiff_t>(first_); }
-  auto end() const noexcept { return frames_.end(); }
+  auto end() const noexcept { return frames_.begin() + static_cast<std::ptrdiff_t>(end_); }
 
   /// Appends a frame and returns it, to be filled in its place. Requires that the queue is not
   /// full.
   QueuedFrame& push_back() noexcept {
-    if (frames_.size() == frames_.capacity()) close_gap();
-    return frames_.emplace_back();
+    if (end_ == frames_.size()) close_gap();
+    return frames_[end_++] = {};
   }
   /// Requires that the queue is not full.
   void push_front(const QueuedFrame& frame) noexcept {
     if (first_ == 0) {
-      frames_.insert(frames_.begin(), frame);
+      std::copy_backward(begin(), end(), at(end_ + 1));
+      ++end_;
     } else {
-      frames_[--first_] = frame;
+      --first_;
     }
+    frames_[first_] = frame;
   }
   QueuedFrame take(std::size_t position) noexcept {
     const QueuedFrame frame = (*this)[position];
     if (position != 0) {
-      frames_.erase(begin() + static_cast<std::ptrdiff_t>(position));
-    } else if (++first_ == frames_.size()) {
+      std::copy(at(first_ + position + 1), at(end_), at(first_ + position));
+      --end_;
+    } else if (++first_ == end_) {
       clear();
     }
     return frame;
   }
   template <class Condition>
   std::size_t erase_if(Condition condition) noexcept {
-    close_gap();
-    return std::erase_if(frames_, condition);
+    const auto kept = std::remove_if(at(first_), at(end_), condition);
+    const auto erased = static_cast<std::size_t>(at(end_) - kept);
+    end_ -= erased;
+    return erased;
   }
-  void clear() noexcept {
-    frames_.clear();
-    first_ = 0;
-  }
+  void clear() noexcept { first_ = end_ = 0; }
 
  private:
+  std::vector<QueuedFrame>::iterator at(std::size_t position) noexcept {
+    return frames_.begin() + static_cast<std::ptrdiff_t>(position);
+  }
   void close_gap() noexcept {
-    frames_.erase(frames_.begin(), begin());
+    std::copy(at(first_), at(end_), at(0));
+    end_ -= first_;
     first_ = 0;
   }
 
   std::vector<QueuedFrame> frames_;
   std::size_t first_ = 0;  ///< the frames before it were taken
+  std::size_t end_ = 0;
 };
 
 }  // namespace takt::sim

@@ -180,8 +180,7 @@ void World::deliver(std::size_t index, const Frame& frame) noexcept {
   HostedDevice& hosted = *devices_[index];
   if (!bus_.node(static_cast<BusNodeIndex>(index)).on_bus()) return;
   if (!fits_bus(hosted.device)) return;
-  hosted.device.on_frame(frame, hosted.clock.local(now_));
-  after_call(index);
+  if (hosted.device.on_frame(frame, hosted.clock.local(now_))) after_call(index);
 }
 
 void World::report_bus_changes() noexcept {

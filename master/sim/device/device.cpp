@@ -136,12 +136,12 @@ void Device::send_bootup(Time now) noexcept {
   if (!faults_.no_bootup) out_.send(make_frame(CobId::base(0x700u + address_.value()), {0}), now);
 }
 
-void Device::on_frame(const Frame& frame, Time now) noexcept {
+bool Device::on_frame(const Frame& frame, Time now) noexcept {
   auto route = std::ranges::lower_bound(routes_, frame.id, {}, &Route::id);
-  if (route == routes_.end() || route->id != frame.id) return;
+  if (route == routes_.end() || route->id != frame.id) return false;
   const auto next = route + 1;
   const bool alone = next == routes_.end() || next->id != frame.id;
-  if (alone && keep_until_sync(*route, frame, now)) return;
+  if (alone && keep_until_sync(*route, frame, now)) return false;
   std::array<Route, 8> taken;  // a handler may rebuild the routes
   std::size_t count = 0;
   bool services = frame.rtr;
@@ -151,6 +151,7 @@ void Device::on_frame(const Frame& frame, Time now) noexcept {
   }
   for (std::size_t i = 0; i < count; ++i) dispatch(taken[i], frame, now);
   services ? finish_call(now) : finish_exchange(now);
+  return true;
 }
 
 void Device::dispatch(const Route& route, const Frame& frame, Time now) noexcept {

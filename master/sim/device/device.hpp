@@ -64,13 +64,14 @@ class Device final : private Dictionary {
 
   void power_on(Time now) noexcept;
   void power_off() noexcept;
-  void on_frame(const Frame& frame, Time now) noexcept;
+  /// Returns false if the frame has changed neither the deadline nor out().
+  bool on_frame(const Frame& frame, Time now) noexcept;
   void on_time(Time now) noexcept;
   Time deadline() const noexcept { return deadline_; }
   Transmitter& out() noexcept { return out_; }
 
-  /// Visits the identifiers that the device receives. take_routes_changed() tells whether they have
-  /// changed since its last call.
+  /// Visits the identifiers that the device receives. take_routes_changed() reports whether they
+  /// have changed since its last call.
   template <class Visit>
   void visit_ids(Visit visit) const {
     for (const Route& route : routes_) visit(route.id);
