@@ -160,7 +160,6 @@ TEST_F(Bus, CountsErrorsUpToBusOffAndRecovers) {
 TEST_F(Bus, CountsOneDownWithEachGoodFrame) {
   bus_.node(0).faults.error = 1.0;
   bus_.queue(0, frame(0x100), 0ns);
-  const WireFrame& wire = bus_.wire();
   while (!bus_.step(bus_.next_event())) {
   }
   bus_.node(0).faults.error = 0.0;
