@@ -1,5 +1,3 @@
-#include "eds_parser/plan/axis_compiler.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,13 +7,13 @@
 #include <string_view>
 
 #include "eds_parser/plan/image/signal_rules.hpp"
+#include "eds_parser/plan/network_parts.hpp"
+#include "eds_parser/table/little_endian.hpp"
 #include "eds_parser/table/waits.hpp"
 
 namespace takt {
 namespace {
 
-constexpr std::uint16_t axis_step = 0x800;
-constexpr std::uint8_t axes_per_node = 8;
 constexpr double no_limit = 0x7FFF'FFFF;  // This value and all above it mean "no limit".
 
 /// The numeric values of a device after its boot.
@@ -45,11 +43,7 @@ class BootedValues {
  private:
   void set(ObjectKey key, const std::vector<std::byte>& bytes) {
     if (bytes.empty() || bytes.size() > 4) return;
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-      value |= std::to_integer<std::uint32_t>(bytes[i]) << (8 * i);
-    }
-    values_[key] = value;
+    values_[key] = static_cast<std::uint32_t>(from_little_endian(bytes));
   }
 
   std::map<ObjectKey, std::uint32_t> values_;
@@ -64,11 +58,10 @@ class AxisCompiler {
     AxisPlan axis{.number = number_, .quick_stop_option = option()};
     const auto limit = velocity_limit();
     const std::uint16_t ramp = ramp_object(axis.quick_stop_option);
-    if (limit && ramp != 0) {
-      if (const auto deceleration = values_.positive(at(ramp))) {
-        axis.ramp_object = ramp;
-        axis.stopping_time = seconds(*limit / (*deceleration * acceleration_ratio()));
-      }
+    const auto deceleration = ramp == 0 ? std::nullopt : values_.positive(at(ramp));
+    if (limit && deceleration) {
+      axis.ramp_object = ramp;
+      axis.stopping_time = seconds(*limit / (*deceleration * acceleration_ratio()));
     }
     if (const auto window = standstill_velocity(limit)) set_windows(axis, *window);
     return axis;
@@ -78,7 +71,7 @@ class AxisCompiler {
 
  private:
   ObjectKey at(unsigned index, std::uint8_t sub = 0) const {
-    return {static_cast<std::uint16_t>(index + number_ * axis_step), sub};
+    return axis_object(number_, index, sub);
   }
 
   static Time seconds(double value) {
@@ -99,14 +92,10 @@ class AxisCompiler {
   }
 
   /// Returns the number of velocity units that one acceleration unit adds in a second.
-  double acceleration_ratio() const {
-    if (!units_.acceleration || !units_.velocity) return 1;
-    return *units_.acceleration->scale / *units_.velocity->scale;
-  }
-
-  double positions_in_velocity() const {
-    if (!units_.position || !units_.velocity) return 1;
-    return *units_.position->scale / *units_.velocity->scale;
+  double acceleration_ratio() const { return in_velocities(units_.acceleration); }
+  double positions_in_velocity() const { return in_velocities(units_.position); }
+  double in_velocities(const std::optional<UnitSpec>& unit) const {
+    return unit && units_.velocity ? *unit->scale / *units_.velocity->scale : 1;
   }
 
   /// Returns the velocity limit of the axis in units of 0x606C. It is the lowest of 0x607F, of
@@ -124,13 +113,13 @@ class AxisCompiler {
 
   /// Returns `limits: {velocity}` of the network file in units of 0x606C.
   std::optional<double> commanded_velocity() const {
-    const Sourced<double>* velocity = &limits_.all.velocity;
+    Sourced<double> velocity = limits_.all.velocity;
     for (const AxisOverrideSpec& own : limits_.axes) {
-      if (own.axis == number_ + 1 && own.limits.velocity.given) velocity = &own.limits.velocity;
+      if (own.axis == number_ + 1 && own.limits.velocity.given) velocity = own.limits.velocity;
     }
-    if (!velocity->given || *(*velocity) <= 0) return std::nullopt;
+    if (!velocity.given || *velocity <= 0) return std::nullopt;
     const auto& unit = units_.velocity ? units_.velocity : units_.position;
-    return *(*velocity) / (unit ? std::abs(*unit->scale) : 1.0);
+    return *velocity / (unit ? std::abs(*unit->scale) : 1.0);
   }
 
   /// Returns the number of position units for each revolution of the motor: 0x6092 divided by
@@ -196,35 +185,29 @@ class AxisCompiler {
 
 /// Returns the unit of `units:` for an object of an axis.
 RawUnit unit_of(const NodeSource& source, std::uint8_t number, unsigned index) {
-  Signal signal{.name = {},
-                .node = source.id,
-                .object = {static_cast<std::uint16_t>(index + number * axis_step), 0},
-                .unit = {},
-                .safe_value = {},
-                .seeded_from = {}};
+  Signal signal{.node = source.id, .object = axis_object(number, index)};
   apply_units(source, signal);
   return {.scale = signal.scale, .unit = signal.unit};
 }
 
 std::string seconds_text(Time time) {
   const auto tenths = (time + std::chrono::milliseconds{99}) / std::chrono::milliseconds{100};
-  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " s";
+  return joined(tenths / 10, ".", tenths % 10, " s");
 }
 
 std::string axis_name(const NodePlan& node, const AxisPlan& axis) {
-  return "`" + node.name + "`" +
-         (axis.number == 0 ? "" : " (axis " + std::to_string(axis.number + 1) + ")");
+  return joined("`", node.name, "`",
+                axis.number == 0 ? "" : joined(" (axis ", axis.number + 1, ")"));
 }
 
 void report_guess(const NodePlan& node, const AxisPlan& axis, const NodeSpec& spec,
                   NetworkReport& report) {
-  report.note(spec.pos, "standstill",
-              "drive " + axis_name(node, axis) +
-                  " has no velocity threshold (606F) and no velocity limit (607F, 6080): the "
-                  "ordered stop treats up to " +
-                  std::to_string(axis.velocity_window) +
-                  " raw units of 606C as standstill; write `limits: {velocity: ...}`, and a "
-                  "thousandth of this limit applies instead");
+  report.note(spec.pos, "standstill", "drive ", axis_name(node, axis),
+              " has no velocity threshold (606F) and no velocity limit (607F, 6080): the ordered "
+              "stop treats up to ",
+              axis.velocity_window,
+              " raw units of 606C as standstill; write `limits: {velocity: ...}`, and a thousandth "
+              "of this limit applies instead");
 }
 
 }  // namespace
@@ -235,9 +218,8 @@ std::vector<AxisPlan> compile_axes(const NodePlan& node, const DeviceTable& devi
   std::vector<AxisPlan> axes;
   if (!node.cia402) return axes;
   const BootedValues values{node, device};
-  for (std::uint8_t number = 0; number < axes_per_node; ++number) {
-    const auto controlword = static_cast<std::uint16_t>(0x6040 + number * axis_step);
-    if (!values.has({controlword, 0})) continue;
+  for (std::uint8_t number = 0; number < most_axes; ++number) {
+    if (!values.has(axis_object(number, 0x6040))) continue;
     const AxisCompiler axis{values, spec, number};
     axes.push_back(axis.run());
     axes.back().velocity_unit = unit_of(source, number, 0x606C);
@@ -262,28 +244,25 @@ void judge_stop(const BusPlan& plan, const NetworkSpec& spec, NetworkReport& rep
     const SourcePos pos = source == spec.nodes.end() ? SourcePos{} : source->pos;
     for (const AxisPlan& axis : node.axes) {
       if (axis.quick_stop_option == 0) {
-        report.warning(pos, "stop-time",
-                       "drive " + axis_name(node, axis) +
-                           " coasts in an ordered stop (605A:00 is 0): taktd never sees the drive "
-                           "at standstill before it disables the drive, and ends with exit code 6; "
-                           "write `sdo: [{index: 0x605A, value: 2}]` for a ramp");
+        report.warning(pos, "stop-time", "drive ", axis_name(node, axis),
+                       " coasts in an ordered stop (605A:00 is 0): taktd never sees the drive at "
+                       "standstill before it disables the drive, and ends with exit code 6; write "
+                       "`sdo: [{index: 0x605A, value: 2}]` for a ramp");
       }
       if (axis.stopping_time <= given) continue;
       const Time needed = axis.stopping_time * 5 / 4 * 10 / 8;
       const auto ms = (needed + std::chrono::milliseconds{99}) / std::chrono::milliseconds{100};
-      const std::string ramp =
-          hex(static_cast<std::uint16_t>(axis.ramp_object + axis.number * axis_step)).substr(2);
+      const std::string ramp = hex(axis_object(axis.number, axis.ramp_object).index).substr(2);
       const bool possible = needed <= std::chrono::seconds{60};
       report.warning(
-          pos, "stop-time",
-          "drive " + axis_name(node, axis) + " needs " + seconds_text(axis.stopping_time) +
-              " to stop from its velocity limit (607F, 6080, `limits:`) along the ramp " + ramp +
-              ":00; the ordered stop waits " + seconds_text(given) +
-              " and then disables the drive while it moves. " +
-              (possible ? "Write `master: {stop_timeout: " + std::to_string(ms * 100) +
-                              "}`, or a steeper ramp"
-                        : "Write a steeper ramp") +
-              " (`sdo: [{index: 0x" + ramp + ", value: ...}]`)");
+          pos, "stop-time", "drive ", axis_name(node, axis), " needs ",
+          seconds_text(axis.stopping_time),
+          " to stop from its velocity limit (607F, 6080, `limits:`) along the ramp ", ramp,
+          ":00; the ordered stop waits ", seconds_text(given),
+          " and then disables the drive while it moves. ",
+          possible ? joined("Write `master: {stop_timeout: ", ms * 100, "}`, or a steeper ramp")
+                   : "Write a steeper ramp",
+          " (`sdo: [{index: 0x", ramp, ", value: ...}]`)");
     }
   }
 }

@@ -19,9 +19,7 @@ constexpr Time longest_window = std::chrono::milliseconds{50};
 constexpr Time shortest_margin = std::chrono::microseconds{20};
 constexpr Time longest_margin = std::chrono::microseconds{200};
 
-std::int64_t us(Time time) {
-  return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
-}
+std::int64_t us(Time time) { return time / std::chrono::microseconds{1}; }
 
 Time row_time(const PdoRow& row, std::uint32_t bitrate) {
   return wire_time(worst_frame_bits(row.length, row.cob_id.is_extended()), bitrate);
@@ -73,10 +71,9 @@ class CycleCompiler {
     if (spec_.receive_window_us.given) {
       cycle_.receive_window = std::chrono::microseconds{*spec_.receive_window_us};
       if (cycle_.receive_window >= cycle_.period) {
-        report_.error(spec_.receive_window_us.pos, "out-of-range",
-                      "`receive_window_us` of " + std::to_string(us(cycle_.receive_window)) +
-                          " us is not shorter than the period of " +
-                          std::to_string(us(cycle_.period)) + " us");
+        report_.error(spec_.receive_window_us.pos, "out-of-range", "`receive_window_us` of ",
+                      us(cycle_.receive_window), " us is not shorter than the period of ",
+                      us(cycle_.period), " us");
       }
       return;
     }
@@ -100,24 +97,21 @@ class CycleCompiler {
 
   void judge(const TimeBudget& wire) {
     if (!plan_.cycle.sync) return;
-    const std::string frames = std::to_string(us(wire.inputs_wire)) + " us of SYNC and TPDOs and " +
-                               std::to_string(us(wire.outputs_wire)) + " us of RPDOs at " +
-                               std::to_string(plan_.bitrate / 1000) + " kbit/s";
+    const std::string frames =
+        joined(us(wire.inputs_wire), " us of SYNC and TPDOs and ", us(wire.outputs_wire),
+               " us of RPDOs at ", plan_.bitrate / 1000, " kbit/s");
     if (!fits_period(plan_)) {
-      report_.error(period_pos(), "does-not-fit",
-                    frames + ", and " + std::to_string(us(cycle_.quiet_before_sync)) +
-                        " us of quiet before SYNC, do not fit into a period of " +
-                        std::to_string(us(cycle_.period)) +
-                        " us: a longer `sync_period`, fewer or shorter PDOs, or slower types (n "
-                        "SYNCs)");
+      report_.error(
+          period_pos(), "does-not-fit", frames, ", and ", us(cycle_.quiet_before_sync),
+          " us of quiet before SYNC, do not fit into a period of ", us(cycle_.period),
+          " us: a longer `sync_period`, fewer or shorter PDOs, or slower types (n SYNCs)");
       return;
     }
     const TimeBudget budget = time_budget(plan_);
     if (!budget.next_sync) {
-      report_.warning(period_pos(), "no-time-budget",
-                      frames + " leave no time for an application in a period of " +
-                          std::to_string(us(cycle_.period)) +
-                          " us: what the application computes from SYNC k acts at SYNC k+2");
+      report_.warning(period_pos(), "no-time-budget", frames,
+                      " leave no time for an application in a period of ", us(cycle_.period),
+                      " us: what the application computes from SYNC k acts at SYNC k+2");
     }
   }
 
@@ -139,11 +133,9 @@ class CycleCompiler {
       if (window <= 0 || std::chrono::microseconds{window} >= sent) continue;
       report_.warning(
           spec_.master.sync_window_us.given ? spec_.master.sync_window_us.pos : node.node.spec->pos,
-          "sync-window",
-          "node `" + node.node.spec->name + "` accepts synchronous RPDOs until " +
-              std::to_string(window) + " us after SYNC (0x1007), but the outputs go out " +
-              "between " + std::to_string(us(cycle_.output_deadline)) + " and " +
-              std::to_string(us(sent)) + " us");
+          "sync-window", "node `", node.node.spec->name, "` accepts synchronous RPDOs until ",
+          window, " us after SYNC (0x1007), but the outputs go out between ",
+          us(cycle_.output_deadline), " and ", us(sent), " us");
     }
   }
 
@@ -152,11 +144,10 @@ class CycleCompiler {
     for (const NodePdos& node : nodes_) {
       for (const EffectivePdo& pdo : node.pdos) {
         if (pdo.use != PdoUse::exchanged || !pdo.synchronous()) continue;
-        report_.warning(pdo.pos, "no-sync",
-                        pdo.label() + " of node `" + node.node.spec->name +
-                            "` is synchronous (type " + std::to_string(pdo.transmission) +
-                            "), but the network has no SYNC: set `sync_period` of `master`, or "
-                            "transmission 255");
+        report_.warning(
+            pdo.pos, "no-sync", pdo.label(*node.node.spec), " is synchronous (type ",
+            pdo.transmission,
+            "), but the network has no SYNC: set `sync_period` of `master`, or transmission 255");
       }
     }
   }

@@ -1,5 +1,3 @@
-#include "eds_parser/plan/drive_questions.hpp"
-
 #include <algorithm>
 #include <array>
 #include <set>
@@ -10,6 +8,7 @@
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/dictionary/profile_of.hpp"
 #include "eds_parser/plan/device/node_objects.hpp"
+#include "eds_parser/plan/network_parts.hpp"
 #include "eds_parser/specification/object_units.hpp"
 
 namespace takt {
@@ -40,27 +39,20 @@ ObjectKey mode_of(ObjectKey object) {
 
 bool is_sent(const NodePdos& node, ObjectKey object) {
   return std::ranges::any_of(node.pdos, [object](const EffectivePdo& pdo) {
-    const bool sent = !pdo.is_tpdo && (pdo.use == PdoUse::exchanged || pdo.use == PdoUse::linked);
-    return sent &&
-           std::ranges::find(pdo.mapping, object, &EffectiveEntry::object) != pdo.mapping.end();
+    return !pdo.is_tpdo && pdo.is_used() && pdo.maps(object);
   });
 }
 
 bool is_received(const NodePdos& node, ObjectKey object) {
   return std::ranges::any_of(node.pdos, [object](const EffectivePdo& pdo) {
-    return pdo.is_tpdo && pdo.use == PdoUse::exchanged &&
-           std::ranges::find(pdo.mapping, object, &EffectiveEntry::object) != pdo.mapping.end();
+    return pdo.is_tpdo && pdo.use == PdoUse::exchanged && pdo.maps(object);
   });
-}
-
-bool has_sdo_entry(const NodeSpec& node, ObjectKey object) {
-  return std::ranges::find(node.sdo, object, &SdoSpec::object) != node.sdo.end();
 }
 
 /// Returns true if the boot or a DCF sets the object to a mode. The value 0 is no mode.
 bool is_set(const NodePdos& node, ObjectKey mode) {
   const NodeSpec& spec = *node.node.spec;
-  if (*spec.boot && has_sdo_entry(spec, mode)) return written_object(node.node, mode) != 0;
+  if (*spec.boot && spec.written(mode) != nullptr) return written_object(node.node, mode) != 0;
   const SubObject* sub = node.node.dictionary->find(mode);
   if (!node.node.dictionary->is_dcf || sub == nullptr) return false;
   return integer_of(sub->parameter_value).value_or(0) != 0;
@@ -68,7 +60,7 @@ bool is_set(const NodePdos& node, ObjectKey mode) {
 
 std::string lack_of(const NodeSpec& node, ObjectKey mode) {
   const std::string text = "the mode of operation, " + to_string(mode);
-  if (!has_sdo_entry(node, mode)) return "nothing sets " + text;
+  if (node.written(mode) == nullptr) return "nothing sets " + text;
   return *node.boot ? "`sdo` sets " + text + ", to 0, which is no mode"
                     : "nothing sets " + text + " (`boot: false` writes no `sdo`)";
 }
@@ -80,13 +72,13 @@ std::string advice_for(const NodePdos& node, const Target& target, ObjectKey mod
   const ObjectKey display{static_cast<std::uint16_t>(mode.index + 1), 0};
   const bool is_hidden =
       node.node.dictionary->find(display) != nullptr && !is_received(node, display);
-  return map + ", or write `sdo: [{index: " + hex(mode.index, 4) +
-         ", value: " + std::to_string(target.mode) + "}]` (" + std::string{target.mode_name} + ")" +
-         (is_hidden ? " and map " + hex(display.index, 4) + " into a TPDO" : "");
+  return joined(map, ", or write `sdo: [{index: ", hex(mode.index, 4), ", value: ", target.mode,
+                "}]` (", target.mode_name, ")",
+                is_hidden ? " and map " + hex(display.index, 4) + " into a TPDO" : "");
 }
 
 void ask_for_mode(const NodePdos& node, NetworkReport& report) {
-  if (node.node.spec->has_rpdo_errors) return;  // the mode may stand where the error is
+  if (node.node.spec->has_rpdo_errors) return;  // The faulty part of `rpdo` may set the mode.
   std::vector<ObjectKey> asked;
   for (const EffectivePdo& pdo : node.pdos) {
     if (pdo.is_tpdo || pdo.use != PdoUse::exchanged) continue;
@@ -97,11 +89,9 @@ void ask_for_mode(const NodePdos& node, NetworkReport& report) {
                         !is_sent(node, mode) && !is_set(node, mode);
       if (!open || std::ranges::find(asked, mode) != asked.end()) continue;
       asked.push_back(mode);
-      report.warning(entry.pos, "mode",
-                     pdo.label() + " of node `" + node.node.spec->name + "` carries " +
-                         to_string(entry.object) + ", but " + lack_of(*node.node.spec, mode) +
-                         ": the drive may ignore the set-points. " +
-                         advice_for(node, *target, mode));
+      report.warning(entry.pos, "mode", pdo.label(*node.node.spec), " carries ", entry.object,
+                     ", but ", lack_of(*node.node.spec, mode),
+                     ": the drive may ignore the set-points. ", advice_for(node, *target, mode));
     }
   }
 }
@@ -118,15 +108,12 @@ void ask_for_loss(std::span<const NodePdos> nodes, NetworkReport& report) {
     names += (names.empty() ? "`" : ", `") + node.node.spec->name + "`";
   }
   if (drives < 2 || first == nullptr) return;
-  report.warning(first->pos, "on-loss",
-                 "the file does not say what the other drives do when one of " + names +
-                     " is lost: they would continue. Write `on_loss: quick_stop` for them (the "
-                     "drives of its group stop; without `group` all drives), or `on_loss: report` "
-                     "if they shall continue");
+  report.warning(
+      first->pos, "on-loss", "the file does not say what the other drives do when one of ", names,
+      " is lost: they would continue. Write `on_loss: quick_stop` for them (the drives of its "
+      "group stop; without `group` all drives), or `on_loss: report` if they shall continue");
 }
 
-constexpr std::uint16_t axis_step = 0x800;
-constexpr unsigned most_axes = 8;
 constexpr std::int64_t quick_stop_command = 3;  // value of 0x6007, CiA 402-2
 
 /// Returns the object 0x6007 of each axis of the node for which it is not configured as 3. NMT stop
@@ -134,10 +121,8 @@ constexpr std::int64_t quick_stop_command = 3;  // value of 0x6007, CiA 402-2
 std::vector<ObjectKey> axes_without_quick_stop(const NodeSource& node) {
   std::vector<ObjectKey> objects;
   for (unsigned axis = 0; axis < most_axes; ++axis) {
-    const auto offset = static_cast<std::uint16_t>(axis * axis_step);
-    const ObjectKey option{static_cast<std::uint16_t>(0x6007 + offset), 0};
-    const ObjectKey controlword{static_cast<std::uint16_t>(0x6040 + offset), 0};
-    if (node.dictionary->find(controlword) == nullptr) continue;
+    const ObjectKey option = axis_object(axis, 0x6007);
+    if (node.dictionary->find(axis_object(axis, 0x6040)) == nullptr) continue;
     if (configured_object(node, option) != quick_stop_command) objects.push_back(option);
   }
   return objects;
@@ -168,26 +153,23 @@ void ask_for_stopped_drives(const NodeSpec& lost, std::span<const NodePdos> node
   for (const NodePdos& node : nodes) {
     if (!is_cia402(node.node) || !is_stopped_with(*node.node.spec, lost)) continue;
     const std::string name = "`" + node.node.spec->name + "`";
-    bool lacks = false;
     const std::vector<ObjectKey> axes = axes_without_quick_stop(node.node);
+    const auto is_missing = [&](ObjectKey object) {
+      return node.node.dictionary->find(object) == nullptr;
+    };
     for (const ObjectKey object : axes) {
-      if (node.node.dictionary->find(object) == nullptr) {
-        lacks = true;
-      } else {
-        writable.insert(object.index);
-      }
+      if (!is_missing(object)) writable.insert(object.index);
     }
     if (!axes.empty()) names += (names.empty() ? "" : ", ") + name;
-    if (lacks) missing += (missing.empty() ? "" : ", ") + name;
+    if (std::ranges::any_of(axes, is_missing)) missing += (missing.empty() ? "" : ", ") + name;
   }
   if (names.empty()) return;
   if (!missing.empty()) missing = " (not in the device file of " + missing + ")";
-  report.warning(lost.on_loss.pos, "on-loss",
-                 "when node `" + lost.name + "` is lost, the master sends NMT stop to " + names +
-                     " at once, without a quick stop: a moving drive reacts as its 0x6007 says" +
-                     missing +
-                     ", and takt does not know whether this object is 3 (quick stop). Write " +
-                     written_as_quick_stop(writable) + "`on_loss: quick_stop`");
+  report.warning(lost.on_loss.pos, "on-loss", "when node `", lost.name,
+                 "` is lost, the master sends NMT stop to ", names,
+                 " at once, without a quick stop: a moving drive reacts as its 0x6007 says",
+                 missing, ", and takt does not know whether this object is 3 (quick stop). Write ",
+                 written_as_quick_stop(writable), "`on_loss: quick_stop`");
 }
 
 }  // namespace

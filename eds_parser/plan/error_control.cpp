@@ -90,10 +90,8 @@ GuardPlan ErrorControl::guard(const NodeSource& node) {
 
 void ErrorControl::report_unused_retry_factor() const {
   if (!spec_.retry_factor.given || *spec_.retry_factor == 0 || uses_retry_factor_) return;
-  report_.note(
-      spec_.retry_factor.pos, "guarding",
-      std::string{"`retry_factor` of `options` has no effect: "} +
-          (guards_ ? "each guarded node has its own `retry_factor`" : "no node is guarded"));
+  report_.note(spec_.retry_factor.pos, "guarding", "`retry_factor` of `options` has no effect: ",
+               guards_ ? "each guarded node has its own `retry_factor`" : "no node is guarded");
 }
 
 /// Reports settings that ask for guarding of a node that is not guarded. Settings of 0 ask for no
@@ -102,7 +100,7 @@ void ErrorControl::leave_alone(const NodeSpec& spec, const std::string& why,
                                const std::string& remedy) const {
   const auto announce = [&](const auto& key, const std::string& word) {
     if (!key.given || *key == 0) return;
-    report_.note(key.pos, "guarding", why + ": `" + word + "` has no effect" + remedy);
+    report_.note(key.pos, "guarding", why, ": `", word, "` has no effect", remedy);
   };
   announce(spec.guard_time, "guard_time");
   announce(spec.life_time_factor, "life_time_factor");
@@ -112,10 +110,9 @@ void ErrorControl::leave_alone(const NodeSpec& spec, const std::string& why,
 void check_keep_alive(const NodeSpec& spec, const NodePlan& node, NetworkReport& report) {
   const bool shows_life = node.heartbeat_timeout != Time{} || node.guard.period != Time{};
   if (*spec.reset != ResetPolicy::keep_alive || !node.boot || shows_life) return;
-  report.error(spec.reset.pos, "keep-alive",
-               "node `" + spec.name +
-                   "` shall be kept running, but shows its state neither by heartbeat nor by "
-                   "guarding: write `heartbeat_producer`, `guard_time` or `reset: none`");
+  report.error(spec.reset.pos, "keep-alive", "node `", spec.name,
+               "` shall be kept running, but shows its state neither by heartbeat nor by guarding: "
+               "write `heartbeat_producer`, `guard_time` or `reset: none`");
 }
 
 }  // namespace takt

@@ -1,8 +1,7 @@
-#include "eds_parser/plan/lss_compiler.hpp"
-
 #include <algorithm>
 
 #include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/plan/network_parts.hpp"
 
 namespace takt {
 namespace {
@@ -40,24 +39,22 @@ std::optional<LssPlan> compile_lss(const NodeSpec& node, const ObjectDictionary&
                                    std::span<const NodePlan> others, NetworkReport& report) {
   if (!*node.lss) return {};
   if (!*node.boot) {
-    report.error(
-        node.lss.pos, "lss",
-        "node `" + node.name + "` is only watched (`boot: false`), so it can't get its id by LSS");
+    report.error(node.lss.pos, "lss", "node `", node.name,
+                 "` is only watched (`boot: false`), so it can't get its id by LSS");
     return {};
   }
   const LssPlan lss = lss_plan(node, dictionary);
   if (lss.known[1] == 0) {
-    report.error(node.lss.pos, "lss",
-                 "LSS finds node `" + node.name + "` by its identity, and " + dictionary.file +
-                     " has no product code in 1018:02: write `vendor_id` and `product_code`, and "
-                     "preferably `serial_number`");
+    report.error(node.lss.pos, "lss", "LSS finds node `", node.name, "` by its identity, and ",
+                 dictionary.file,
+                 " has no product code in 1018:02: write `vendor_id` and `product_code`, and "
+                 "preferably `serial_number`");
   }
   for (const NodePlan& other : others) {
     if (!other.lss || !may_be_same(*other.lss, lss)) continue;
-    report.warning(node.lss.pos, "lss",
-                   "LSS can't tell nodes `" + other.name + "` and `" + node.name +
-                       "` apart: the device with the lower serial number becomes `" + other.name +
-                       "`; write `serial_number` to identify each device");
+    report.warning(node.lss.pos, "lss", "LSS can't tell nodes `", other.name, "` and `", node.name,
+                   "` apart: the device with the lower serial number becomes `", other.name,
+                   "`; write `serial_number` to identify each device");
   }
   return lss;
 }

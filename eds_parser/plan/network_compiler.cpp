@@ -7,32 +7,24 @@
 
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/dictionary/profile_of.hpp"
-#include "eds_parser/plan/axis_compiler.hpp"
 #include "eds_parser/plan/boot/boot_compiler.hpp"
 #include "eds_parser/plan/cycle_compiler.hpp"
 #include "eds_parser/plan/device/device_compiler.hpp"
-#include "eds_parser/plan/device/device_notes.hpp"
 #include "eds_parser/plan/device/device_rules.hpp"
-#include "eds_parser/plan/device/device_watch.hpp"
-#include "eds_parser/plan/drive_questions.hpp"
+#include "eds_parser/plan/device/node_objects.hpp"
 #include "eds_parser/plan/error_control.hpp"
 #include "eds_parser/plan/image/layout_compiler.hpp"
-#include "eds_parser/plan/image/node_values.hpp"
 #include "eds_parser/plan/image/signal_rules.hpp"
 #include "eds_parser/plan/limits/limits_compiler.hpp"
-#include "eds_parser/plan/lss_compiler.hpp"
+#include "eds_parser/plan/network_parts.hpp"
 #include "eds_parser/plan/pdo/pdo_compiler.hpp"
-#include "eds_parser/plan/pdo_times.hpp"
 #include "eds_parser/plan/sdo_servers.hpp"
-#include "eds_parser/plan/service_ids.hpp"
-#include "eds_parser/plan/sync_source.hpp"
 #include "eds_parser/table/waits.hpp"
 
 namespace takt {
 namespace {
 
 constexpr std::uint32_t default_sdo_timeout_ms = 500;
-constexpr std::uint32_t default_boot_timeout_ms = 3000;
 constexpr Time storing_timeout = std::chrono::seconds{5};
 constexpr std::uint32_t default_reboot_delay_ms = 1000;
 constexpr std::uint32_t default_reboot_delay_max_ms = 30'000;
@@ -42,17 +34,16 @@ constexpr int stop_cycles = 10;            // An ordered stop without axes takes
 
 Time milliseconds(std::uint32_t value) { return std::chrono::milliseconds{value}; }
 
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
+Time sdo_timeout(const NodeSpec& node) {
+  return milliseconds(node.sdo_timeout_ms.value_or(default_sdo_timeout_ms));
 }
 
 /// Returns the form by which names are compared. LCM channels contain the names in capitals.
-std::string channel_form(const std::string& name) {
-  std::string out = lower(name);
-  std::ranges::replace(out, '-', '_');
-  return out;
+std::string channel_form(std::string name) {
+  std::ranges::transform(name, name.begin(), [](unsigned char c) {
+    return c == '-' ? '_' : static_cast<char>(std::tolower(c));
+  });
+  return name;
 }
 
 class NetworkCompiler {
@@ -118,14 +109,14 @@ class NetworkCompiler {
     bus.time = {.period = milliseconds(*master.time_period_ms),
                 .cob_id = CobId::base(*master.time_cob_id & 0x7FF)};
     if (*master.time_period_ms != 0 && is_restricted(*master.time_cob_id & 0x7FF)) {
-      report_.error(master.time_cob_id.pos, "cob-id",
-                    "`time_cob_id` " + hex(*master.time_cob_id & 0x7FF, 3) +
-                        " is reserved by CiA 301; 0x100 is its default");
+      report_.error(master.time_cob_id.pos, "cob-id", "`time_cob_id` ",
+                    hex(*master.time_cob_id & 0x7FF, 3),
+                    " is reserved by CiA 301; 0x100 is its default");
     }
     bus.cycle.sync_window = std::chrono::microseconds{*master.sync_window_us};
     if (*master.sync_cob_id != 0x80 && is_restricted(*master.sync_cob_id)) {
-      report_.error(master.sync_cob_id.pos, "cob-id",
-                    "`sync_cob_id` " + hex(*master.sync_cob_id, 3) + " is reserved by CiA 301");
+      report_.error(master.sync_cob_id.pos, "cob-id", "`sync_cob_id` ", hex(*master.sync_cob_id, 3),
+                    " is reserved by CiA 301");
     }
   }
 
@@ -173,41 +164,35 @@ class NetworkCompiler {
 
   bool check_id(const NodeSpec& node, std::map<unsigned, const NodeSpec*>& by_id) {
     const auto [first, is_new] = by_id.emplace(*node.id, &node);
+    const auto refuse = [&](const auto&... why) {
+      report_.error(node.id.pos, "node-id-clash", "node id ", *node.id, " of `", node.name, "` ",
+                    why...);
+      return false;
+    };
     if (!is_new) {
-      report_.error(node.id.pos, "node-id-clash",
-                    "node id " + std::to_string(*node.id) + " of `" + node.name + "` belongs to `" +
-                        first->second->name + "` (line " +
-                        std::to_string(first->second->id.pos.line) + ") already");
-      return false;
+      return refuse("belongs to `", first->second->name, "` (line ", first->second->id.pos.line,
+                    ") already");
     }
-    if (*node.id == *spec_.master.node_id) {
-      report_.error(node.id.pos, "node-id-clash",
-                    "node id " + std::to_string(*node.id) + " of `" + node.name +
-                        "` is the master's" +
-                        (spec_.master.node_id.given
-                             ? " (line " + std::to_string(spec_.master.node_id.pos.line) + ")"
-                             : " by default: write `master: {node_id: ...}`"));
-      return false;
-    }
-    return true;
+    const Sourced<std::uint8_t>& master = spec_.master.node_id;
+    if (*node.id != *master) return true;
+    return refuse("is the master's", master.given ? joined(" (line ", master.pos.line, ")")
+                                                  : " by default: write `master: {node_id: ...}`");
   }
 
   void check_name(const NodeSpec& node, std::map<std::string, const NodeSpec*>& by_name) {
     const auto [first, is_new] = by_name.emplace(channel_form(node.name), &node);
     if (is_new) return;
-    report_.error(node.pos, "name",
-                  "`" + node.name + "` and `" + first->second->name + "` (line " +
-                      std::to_string(first->second->pos.line) +
-                      ") would share their LCM channels: names have to differ by more than case");
+    report_.error(node.pos, "name", "`", node.name, "` and `", first->second->name, "` (line ",
+                  first->second->pos.line,
+                  ") would share their LCM channels: names have to differ by more than case");
   }
 
   Time longest_reboot_delay(const NodeSpec& spec, Time first) {
     const Time longest =
         milliseconds(spec.reboot_delay_max_ms.value_or(default_reboot_delay_max_ms));
     if (spec.reboot_delay_max_ms.given && longest < first) {
-      report_.error(spec.reboot_delay_max_ms.pos, "range",
-                    "`reboot_delay_max_ms` of node `" + spec.name +
-                        "` is shorter than its `reboot_delay_ms`, which is the first pause");
+      report_.error(spec.reboot_delay_max_ms.pos, "range", "`reboot_delay_max_ms` of node `",
+                    spec.name, "` is shorter than its `reboot_delay_ms`, which is the first pause");
     }
     return std::max(first, longest);
   }
@@ -224,7 +209,7 @@ class NetworkCompiler {
         .mandatory = *spec.mandatory,
         .cia402 = is_cia402(source.node),
         .boot_plan = {},
-        .sdo_timeout = milliseconds(spec.sdo_timeout_ms.value_or(default_sdo_timeout_ms)),
+        .sdo_timeout = sdo_timeout(spec),
         .reboot_delay = milliseconds(spec.reboot_delay_ms.value_or(default_reboot_delay_ms))};
     node.longest_reboot_delay = longest_reboot_delay(spec, node.reboot_delay);
     node.heartbeat_timeout = error_control_.heartbeat_timeout(source.node);
@@ -240,10 +225,9 @@ class NetworkCompiler {
     add_device_data(source, node);
     node.sdo = sdo_access(source.node);
     if (!spec.profile.given && is_drive_by_objects(dictionary)) {
-      report_.note(spec.pos, "profile",
-                   "node `" + spec.name + "`: " + dictionary.file +
-                       " has no value for 1000:00; because of 6040:00 and 6041:00 takt treats the "
-                       "device as a drive (write `profile: none` if it is not a drive)");
+      report_.note(spec.pos, "profile", "node `", spec.name, "`: ", dictionary.file,
+                   " has no value for 1000:00; because of 6040:00 and 6041:00 takt treats the "
+                   "device as a drive (write `profile: none` if it is not a drive)");
     }
     check_fallback(source.node, node.cia402, report_);
     check_sdo_channel(source.node, report_);
@@ -260,7 +244,7 @@ class NetworkCompiler {
     node.device_notes = device_notes(source);
     node.on_sync_loss = data.on_sync_loss;
     node.firmware = firmware_plan(data, source.node.firmware);
-    for (const EmcyMeaning& emcy : data.emcy) node.emcy_texts.push_back({emcy.code, emcy.text});
+    node.emcy_texts = data.emcy;
   }
 
   std::uint8_t group(const std::string& name) {
@@ -276,10 +260,9 @@ class NetworkCompiler {
   static std::vector<SdoObjectTimeout> stated_timeouts(const NodeSource& node) {
     std::vector<SdoObjectTimeout> list = node.spec->sdo_timeouts;
     if (node.data == nullptr) return list;
-    const Time own = milliseconds(node.spec->sdo_timeout_ms.value_or(default_sdo_timeout_ms));
     for (const TimeoutEdit& edit : node.data->timeouts) {
       list.push_back(edit.timeout);
-      list.back().timeout = std::max(own, edit.timeout.timeout);
+      list.back().timeout = std::max(sdo_timeout(*node.spec), edit.timeout.timeout);
     }
     return list;
   }
@@ -291,11 +274,9 @@ class NetworkCompiler {
     SdoAccess access{.block = spec.sdo_block.value_or(SdoBlockUse::automatic),
                      .timeouts = stated_timeouts(node)};
     if (spec.sdo_channel.given) access.channel = *spec.sdo_channel;
-    for (const std::uint16_t index : {std::uint16_t{0x1010}, std::uint16_t{0x1011}}) {
-      const Time own = milliseconds(spec.sdo_timeout_ms.value_or(default_sdo_timeout_ms));
-      const Time otherwise = std::max<Time>(storing_timeout, own);
-      access.timeouts.push_back({.index = index, .timeout = otherwise});
-    }
+    const Time storing = std::max(storing_timeout, sdo_timeout(spec));
+    access.timeouts.push_back({.index = 0x1010, .timeout = storing});
+    access.timeouts.push_back({.index = 0x1011, .timeout = storing});
     return access;
   }
 
@@ -304,11 +285,9 @@ class NetworkCompiler {
     const std::uint32_t kbit = *spec_.master.baudrate_kbit;
     if (rates.empty() || std::ranges::find(rates, kbit) != rates.end()) return;
     std::string list;
-    for (const std::uint16_t rate : rates)
-      list += (list.empty() ? "" : ", ") + std::to_string(rate);
-    report_.warning(node.spec->pos, "bit-rate",
-                    "node `" + node.spec->name + "` supports " + list + " kbit/s according to " +
-                        node.dictionary->file + ", but the bus runs at " + std::to_string(kbit));
+    for (const std::uint16_t rate : rates) list += joined(list.empty() ? "" : ", ", rate);
+    report_.warning(node.spec->pos, "bit-rate", "node `", node.spec->name, "` supports ", list,
+                    " kbit/s according to ", node.dictionary->file, ", but the bus runs at ", kbit);
   }
 
   void add_boot(std::size_t index) {
@@ -328,30 +307,12 @@ class NetworkCompiler {
   }
 
   void compile_boot_of(const NodePdos& source, NodePlan& node, std::uint8_t node_index) {
-    const MasterSpec& master = spec_.master;
-    const std::uint16_t master_ms = *master.heartbeat_producer;
-    const BootContext context{
-        .master_id = out_.plan.master_id,
-        .master_heartbeat_ms = master_ms,
-        .master_consumer_ms = error_control_.master_consumer_ms(source.node),
-        .producer_ms = error_control_.producer_ms(source.node),
-        .heartbeat_timeout = node.heartbeat_timeout,
-        .guard = node.guard,
-        .sync = out_.plan.cycle.sync,
-        .sync_cob_id = *master.sync_cob_id,
-        .sync_source = out_.plan.cycle.sync_followed ? *master.sync_source : "the master",
-        .makes_sync = out_.plan.cycle.sync_producer == source.node.id,
-        .sync_period_us = *master.sync_period_us,
-        .sync_overflow = *master.sync_overflow,
-        .sync_window_us = master.sync_window_us,
-        .start_nodes = *master.start_nodes,
-        .start_all = *master.start_all_nodes,
-        .cia402 = node.cia402,
-        .limits = out_.plan.limits.device,
-        .node_index = node_index,
-        .sdo_timeout = node.sdo_timeout,
-        .boot_timeout =
-            milliseconds(source.node.spec->boot_timeout_ms.value_or(default_boot_timeout_ms))};
+    const BootContext context{.master = spec_.master,
+                              .plan = out_.plan,
+                              .node = node,
+                              .master_consumer_ms = error_control_.master_consumer_ms(source.node),
+                              .producer_ms = error_control_.producer_ms(source.node),
+                              .node_index = node_index};
     node.boot_plan = compile_boot(source, context, report_);
     const SdoAccess stated{.timeouts = stated_timeouts(source.node)};
     for (BootStep& step : node.boot_plan.steps) {

@@ -1,10 +1,9 @@
-#include "eds_parser/plan/pdo_times.hpp"
-
 #include <algorithm>
 #include <string>
 
-#include "eds_parser/plan/device/device_notes.hpp"
+#include "eds_parser/plan/device/device_rules.hpp"
 #include "eds_parser/plan/frame_time.hpp"
+#include "eds_parser/plan/network_parts.hpp"
 #include "eds_parser/specification/device_data.hpp"
 
 namespace takt {
@@ -38,44 +37,33 @@ class TimeJudge {
   }
 
  private:
-  std::string label(const EffectivePdo& pdo) const {
-    return pdo.label() + " of node `" + node_.node.spec->name + "`";
-  }
-
-  const PdoSpec* spec_of(const EffectivePdo& pdo) const {
-    const auto& list = pdo.is_tpdo ? node_.node.spec->tpdos : node_.node.spec->rpdos;
-    const auto found = std::ranges::find(list, pdo.number, &PdoSpec::number);
-    return found == list.end() ? nullptr : &*found;
-  }
+  std::string label(const EffectivePdo& pdo) const { return pdo.label(*node_.node.spec); }
 
   /// Returns the place of the value in the network file, else that of the PDO.
   SourcePos pos(const EffectivePdo& pdo, Sourced<std::uint16_t> PdoSpec::* member) const {
-    const PdoSpec* spec = spec_of(pdo);
+    const PdoSpec* spec = node_.node.spec->pdo(pdo.is_tpdo, pdo.number);
     return spec != nullptr && (spec->*member).given ? (spec->*member).pos : pdo.pos;
   }
 
   void timer(const EffectivePdo& pdo, const SenderTimes& times) {
     if (times.timer_us == 0 || times.timer_us >= times.inhibit_us) return;
     const std::string inhibit = time_text(times.inhibit_us);
-    report_.warning(pos(pdo, &PdoSpec::event_timer), "event-timer",
-                    "the event timer of " + label(pdo) + " (" + time_text(times.timer_us) +
-                        ") is shorter than its inhibit time (" + inhibit +
-                        "): the device sends the PDO every " + inhibit +
-                        ". Write `event_timer` of at least " +
-                        std::to_string((times.inhibit_us + 999) / 1000) +
-                        " (ms), or a shorter `inhibit_time` (in 100 us)");
+    report_.warning(
+        pos(pdo, &PdoSpec::event_timer), "event-timer", "the event timer of ", label(pdo), " (",
+        time_text(times.timer_us), ") is shorter than its inhibit time (", inhibit,
+        "): the device sends the PDO every ", inhibit, ". Write `event_timer` of at least ",
+        (times.inhibit_us + 999) / 1000, " (ms), or a shorter `inhibit_time` (in 100 us)");
   }
 
   void deadline(const EffectivePdo& pdo, const SenderTimes& times) {
     const std::uint64_t wanted = pdo.master_timer * 1000ULL;
     const std::uint64_t period = std::max(times.inhibit_us, times.timer_us);
     if (!pdo.is_tpdo || wanted == 0 || wanted >= period) return;
-    report_.warning(pos(pdo, &PdoSpec::event_deadline), "event-timer",
-                    "`event_deadline` of " + label(pdo) + " (" + time_text(wanted) +
-                        ") is shorter than the time between two of its frames (" +
-                        time_text(period) + " by " +
-                        (period == times.inhibit_us ? "its inhibit time" : "its event timer") +
-                        "): good frames count as missing");
+    report_.warning(pos(pdo, &PdoSpec::event_deadline), "event-timer", "`event_deadline` of ",
+                    label(pdo), " (", time_text(wanted),
+                    ") is shorter than the time between two of its frames (", time_text(period),
+                    " by ", period == times.inhibit_us ? "its inhibit time" : "its event timer",
+                    "): good frames count as missing");
   }
 
   void frame(const EffectivePdo& pdo, const SenderTimes& times) {
@@ -84,12 +72,11 @@ class TimeJudge {
         std::chrono::ceil<std::chrono::microseconds>(wire_time(bits, bitrate_)).count());
     if (times.inhibit_us >= longest) return;
     report_.warning(
-        pos(pdo, &PdoSpec::inhibit_time), "inhibit-time",
-        "the inhibit time of " + label(pdo) + " (" + time_text(times.inhibit_us) +
-            ") is shorter than its frame (up to " + time_text(longest) + " at " +
-            std::to_string(bitrate_ / 1000) +
-            " kbit/s): the PDO can fill the bus. The inhibit time runs from the first attempt to "
-            "send, so write more than the longest wait for the bus, or 0 for no inhibit time");
+        pos(pdo, &PdoSpec::inhibit_time), "inhibit-time", "the inhibit time of ", label(pdo), " (",
+        time_text(times.inhibit_us), ") is shorter than its frame (up to ", time_text(longest),
+        " at ", bitrate_ / 1000,
+        " kbit/s): the PDO can fill the bus. The inhibit time runs from the first attempt to send, "
+        "so write more than the longest wait for the bus, or 0 for no inhibit time");
   }
 
   const NodePdos& node_;

@@ -6,6 +6,7 @@
 
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/specification/device_data.hpp"
+#include "eds_parser/table/little_endian.hpp"
 
 namespace takt {
 namespace {
@@ -37,7 +38,7 @@ std::optional<std::int64_t> number_of_file(const ObjectDictionary& dictionary, O
 std::optional<CobId> cob_id_of(std::int64_t value) {
   const auto raw = static_cast<std::uint32_t>(value);
   if (value <= 0 || (raw & off_flag) != 0) return std::nullopt;
-  const CobId id = (raw & extended_flag) != 0 ? CobId::extended(raw) : CobId::base(raw);
+  const CobId id = CobId::of_object(raw);
   return id.id() == 0 ? std::nullopt : std::optional{id};
 }
 
@@ -64,8 +65,7 @@ class SdoServers {
     const SdoSpec* own = own_request != nullptr ? own_request : own_answer;
     return DeviceSdoServer{.index = index,
                            .channel = {.request = *request, .answer = *answer},
-                           .pos = own != nullptr ? own->pos : node_.spec->pos,
-                           .doubt = {}};
+                           .pos = own != nullptr ? own->pos : node_.spec->pos};
   }
 
   /// Returns the server that the device has at delivery according to its device data, unless a DCF
@@ -87,11 +87,9 @@ class SdoServers {
   /// Returns the last write of the object. Entries of `configuration_file` come before those of
   /// `sdo`.
   const SdoSpec* written(ObjectKey key) const {
-    const SdoSpec* last_one = nullptr;
-    for (const SdoSpec& sdo : node_.spec->sdo) {
-      if (sdo.object == key) last_one = &sdo;
-    }
-    return last_one;
+    const auto& list = node_.spec->sdo;
+    const auto last = std::ranges::find(list.rbegin(), list.rend(), key, &SdoSpec::object);
+    return last == list.rend() ? nullptr : &*last;
   }
 
   std::optional<CobId> cob_id(ObjectKey key, const SdoSpec* own) const {
@@ -103,12 +101,8 @@ class SdoServers {
   static std::int64_t number_of(const decltype(SdoSpec::value)& value) {
     if (const auto* number = std::get_if<std::int64_t>(&value)) return *number;
     const auto* bytes = std::get_if<std::vector<std::byte>>(&value);
-    if (bytes == nullptr || bytes->size() != 4) return 0;
-    std::uint32_t number = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      number |= std::to_integer<std::uint32_t>((*bytes)[i]) << (8 * i);
-    }
-    return number;
+    const bool is_cob_id = bytes != nullptr && bytes->size() == 4;
+    return is_cob_id ? static_cast<std::int64_t>(from_little_endian(*bytes)) : 0;
   }
 
   const NodeSource& node_;
@@ -173,22 +167,18 @@ void check_sdo_channel(const NodeSource& node, NetworkReport& report) {
   const std::string start = "`sdo_channel` of node `" + node.spec->name + "`: ";
   const std::string& file = node.dictionary->file;
   if (servers.first() == 0) {
-    report.warning(
-        wanted.pos, "no-sdo-server",
-        start + file +
-            " has no SDO server besides the first (no 0x1201 to 0x127F), so the device may not "
-            "answer on " +
-            request +
-            "; leave `sdo_channel` out, or name a device file that contains such a server");
+    report.warning(wanted.pos, "no-sdo-server", start, file,
+                   " has no SDO server besides the first (no 0x1201 to 0x127F), so the device may "
+                   "not answer on ",
+                   request,
+                   "; leave `sdo_channel` out, or name a device file that contains such a server");
     return;
   }
   const std::string object = hex(servers.first(), 4);
-  report.warning(
-      wanted.pos, "no-sdo-server",
-      start + "no SDO server of " + file + " is on " + request + " and " +
-          to_string(wanted->answer) + " (" + servers.list() +
-          "); correct `sdo_channel`, or leave it out and switch the server on by `sdo` (" + object +
-          ":01 and 02) and store it in the device (`store_configuration`)");
+  report.warning(wanted.pos, "no-sdo-server", start, "no SDO server of ", file, " is on ", request,
+                 " and ", wanted->answer, " (", servers.list(),
+                 "); correct `sdo_channel`, or leave it out and switch the server on by `sdo` (",
+                 object, ":01 and 02) and store it in the device (`store_configuration`)");
 }
 
 }  // namespace takt

@@ -15,7 +15,7 @@ struct DeviceSdoServer {
   SdoChannel channel;
   SourcePos pos;  ///< place in the network file
   /// Statement of the device data if only these say that the server is on, else empty.
-  std::string doubt;
+  std::string doubt{};
 };
 
 /// Returns the further SDO servers that are on according to the network file, else the device file,

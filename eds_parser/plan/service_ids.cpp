@@ -1,7 +1,6 @@
-#include "eds_parser/plan/service_ids.hpp"
-
 #include <algorithm>
 
+#include "eds_parser/plan/network_parts.hpp"
 #include "eds_parser/plan/sdo_servers.hpp"
 
 namespace takt {
@@ -9,7 +8,6 @@ namespace {
 
 constexpr std::uint32_t predefined_time = 0x100;
 constexpr std::uint32_t off_flag = 0x8000'0000;
-constexpr std::uint32_t extended_flag = 0x2000'0000;
 
 class ServiceIdCollector {
  public:
@@ -33,7 +31,7 @@ class ServiceIdCollector {
   void enter(CobId id, std::string is, const std::string& key, SourcePos pos) {
     const auto [other, is_new] = ids_.try_emplace(id, std::move(is));
     if (is_new) return;
-    report_.error(pos, "cob-id-clash", key + " " + to_string(id) + " " + other->second);
+    report_.error(pos, "cob-id-clash", key, " ", id, " ", other->second);
   }
 
   void emcy(const NodeSource& node) {
@@ -66,8 +64,8 @@ class ServiceIdCollector {
   }
 
   void enter(const NodeSource& node, const DeviceSdoServer& server, CobId id) {
-    const std::string channel = "the SDO channel " + std::to_string(server.index - 0x1200 + 1) +
-                                " (" + hex(server.index, 4) + ") of node `" + node.spec->name + "`";
+    const std::string channel = joined("the SDO channel ", server.index - 0x1200 + 1, " (",
+                                       hex(server.index, 4), ") of node `", node.spec->name, "`");
     const bool certain = server.doubt.empty();
     const auto other = ids_.find(id);
     const NodeSource* of_default = other == ids_.end() ? user_of_default(node, id) : nullptr;
@@ -78,12 +76,11 @@ class ServiceIdCollector {
                                   : other->second;
     const std::string clash = to_string(id) + " " + whose;
     if (certain) {
-      return report_.error(server.pos, "cob-id-clash",
-                           channel + " is on: " + clash + switched_off_by(node, server));
+      return report_.error(server.pos, "cob-id-clash", channel, " is on: ", clash,
+                           switched_off_by(node, server));
     }
-    report_.warning(server.pos, "cob-id-clash",
-                    channel + " may be on" + server.doubt + ", and then the two would collide: " +
-                        clash + switched_off_by(node, server));
+    report_.warning(server.pos, "cob-id-clash", channel, " may be on", server.doubt,
+                    ", and then the two would collide: ", clash, switched_off_by(node, server));
   }
 
   static std::string switched_off_by(const NodeSource& node, const DeviceSdoServer& server) {
@@ -97,26 +94,21 @@ class ServiceIdCollector {
   }
 
   static bool of_own_channel(const NodeSpec& spec, CobId id) {
-    return spec.sdo_channel.given &&
-           (id == spec.sdo_channel->request || id == spec.sdo_channel->answer);
+    return spec.sdo_channel.given && spec.sdo_channel->has(id);
   }
 
   static std::string in_channel_of(const NodeSource& node, const SdoChannel& channel) {
-    return "is in the SDO channel of node `" + node.spec->name + "` (" +
-           to_string(channel.request) + ", " + to_string(channel.answer) + ")";
+    return joined("is in the SDO channel of node `", node.spec->name, "` (", channel.request, ", ",
+                  channel.answer, ")");
   }
 
-  static bool of_own_default(NodeId node, CobId id) {
-    const SdoChannel own = default_sdo_channel(node);
-    return id == own.request || id == own.answer;
-  }
+  static bool of_own_default(NodeId node, CobId id) { return default_sdo_channel(node).has(id); }
 
   void clash_with_default(const NodeSource& node, CobId id) {
     const NodeSource* other = user_of_default(node, id);
     if (other == nullptr) return;
-    report_.error(node.spec->sdo_channel.pos, "cob-id-clash",
-                  "`sdo_channel` of `" + node.spec->name + "`: " + to_string(id) + " " +
-                      in_channel_of(*other, default_sdo_channel(other->id)));
+    report_.error(node.spec->sdo_channel.pos, "cob-id-clash", "`sdo_channel` of `", node.spec->name,
+                  "`: ", id, " ", in_channel_of(*other, default_sdo_channel(other->id)));
   }
 
   /// Returns the other node whose default channel has the identifier `id`. A node uses its default
@@ -143,8 +135,7 @@ std::optional<CobId> emcy_cob_id(const NodeSource& node) {
                               : cob_id_of_file(*node.dictionary, {0x1014, 0});
   const bool off = (id & off_flag) != 0;
   if (id <= 0 || off || id == 0x80 + node.id.value()) return std::nullopt;
-  const auto raw = static_cast<std::uint32_t>(id);
-  return (raw & extended_flag) != 0 ? CobId::extended(raw) : CobId::base(raw);
+  return CobId::of_object(static_cast<std::uint32_t>(id));
 }
 
 ServiceIds service_ids(const NetworkSpec& spec, std::span<const NodePdos> nodes,

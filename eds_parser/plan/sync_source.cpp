@@ -1,8 +1,7 @@
-#include "eds_parser/plan/sync_source.hpp"
-
 #include <algorithm>
 #include <string_view>
 
+#include "eds_parser/plan/network_parts.hpp"
 #include "eds_parser/report/suggest.hpp"
 
 namespace takt {
@@ -12,12 +11,10 @@ void check_producer(const NodeSource& node, SourcePos pos, NetworkReport& report
   if (!*node.spec->boot) return;  // Another tool configures the node.
   for (const ObjectKey key : {ObjectKey{0x1005, 0}, ObjectKey{0x1006, 0}}) {
     const SubObject* object = node.dictionary->find(key);
-    if (object != nullptr && object->access != Access::ro && object->access != Access::constant) {
-      continue;
-    }
-    report.error(pos, "sync-source",
-                 "node `" + node.spec->name + "` can't produce SYNC: " + node.dictionary->file +
-                     " does not have " + to_string(key) + " as a writable object");
+    if (object != nullptr && object->is_writable()) continue;
+    report.error(pos, "sync-source", "node `", node.spec->name,
+                 "` can't produce SYNC: ", node.dictionary->file, " does not have ", key,
+                 " as a writable object");
     return;
   }
 }
@@ -46,10 +43,9 @@ void compile_sync_source(const NetworkSpec& spec, const std::vector<NodePdos>& n
   std::vector<std::string_view> names{"master", "external"};
   for (const NodeSpec& node : spec.nodes) names.push_back(node.name);
   const std::string hint = did_you_mean(*source, names);
-  report.error(source.pos, "sync-source",
-               "`sync_source: " + *source + "`: there is no such node" + hint +
-                   (hint.empty() ? "; a" : " A") +
-                   " device outside of this file has the name `external`");
+  report.error(source.pos, "sync-source", "`sync_source: ", *source, "`: there is no such node",
+               hint, hint.empty() ? "; a" : " A",
+               " device outside of this file has the name `external`");
 }
 
 }  // namespace takt

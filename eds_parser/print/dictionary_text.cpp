@@ -6,7 +6,7 @@
 #include "eds_parser/print/names.hpp"
 #include "eds_parser/print/print_dictionary.hpp"
 #include "eds_parser/report/text.hpp"
-#include "eds_parser/table/access_name.hpp"
+#include "eds_parser/table/device_table.hpp"
 
 namespace takt {
 namespace {

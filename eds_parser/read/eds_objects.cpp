@@ -5,7 +5,7 @@
 #include "eds_parser/dictionary/standard_types.hpp"
 #include "eds_parser/read/object_words.hpp"
 #include "eds_parser/report/text.hpp"
-#include "eds_parser/table/access_name.hpp"
+#include "eds_parser/table/device_table.hpp"
 
 namespace takt {
 namespace {

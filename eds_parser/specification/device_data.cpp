@@ -48,10 +48,9 @@ const DeviceData* by_name(std::span<const DeviceData> entries, const NodeSpec& n
   for (const DeviceData& entry : entries) known.push_back(entry.id);
   std::string list;
   for (const std::string_view name : known) list += (list.empty() ? "" : ", ") + std::string{name};
-  report.error(node.device.pos, "unknown-value",
-               "`device: " + node.device->substr(0, 60) + "` of node `" + node.name +
-                   "` is not an entry of the device data; the entries are " + list +
-                   did_you_mean(*node.device, known));
+  report.error(node.device.pos, "unknown-value", "`device: ", node.device->substr(0, 60),
+               "` of node `", node.name, "` is not an entry of the device data; the entries are ",
+               list, did_you_mean(*node.device, known));
   return nullptr;
 }
 

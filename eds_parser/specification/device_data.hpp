@@ -80,6 +80,10 @@ struct InhibitRule {
   std::uint32_t unit_us = 100;
   std::uint32_t least = 0;    ///< in units of unit_us; the device uses this value for shorter times
   std::uint32_t factory = 0;  ///< default in units of unit_us; 0 means unknown
+
+  constexpr std::uint64_t us(std::uint32_t units) const noexcept {
+    return std::uint64_t{units} * unit_us;
+  }
 };
 
 struct TimerRule {
@@ -150,11 +154,6 @@ struct BootTweaks {
   std::uint32_t pause_before_start_ms = 0;
 };
 
-struct EmcyMeaning {
-  std::uint16_t code = 0;
-  std::string text;
-};
-
 /// One entry of the device data: the deviations of a device family from CiA 301 or from its EDS.
 struct DeviceData {
   std::string id;      ///< file name without extension: "lenze8400"
@@ -176,7 +175,7 @@ struct DeviceData {
   std::vector<ObjectEdit> objects;
   std::vector<SdoServerFact> sdo_servers;
   BootTweaks boot;
-  std::vector<EmcyMeaning> emcy;
+  std::vector<EmcyText> emcy;
   std::string on_sync_loss;  ///< behaviour of the outputs when 0x1006 has expired; empty if unknown
 
   /// Returns the rule of a PDO, or nullptr if the PDO behaves as CiA 301 says.

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -19,7 +21,7 @@ namespace takt {
 template <class T>
 struct Sourced {
   T value{};
-  SourcePos pos;
+  SourcePos pos{};
   bool given = false;
 
   const T& operator*() const noexcept { return value; }
@@ -29,8 +31,8 @@ struct Sourced {
 
 /// One entry of `mapping: [{index: 0x6041, sub_index: 0}]`.
 struct MappingSpec {
-  ObjectKey object;
-  std::optional<std::uint8_t> bits;  ///< empty means the width of the object
+  ObjectKey object{};
+  std::optional<std::uint8_t> bits{};  ///< empty means the width of the object
   SourcePos pos;
 };
 
@@ -42,7 +44,7 @@ enum class Mpdo : std::uint8_t { none, dam, sam };
 struct PdoSpec {
   std::uint16_t number = 1;  ///< 1..512
   SourcePos pos;
-  Sourced<bool> enabled{.value = true, .pos = {}};
+  Sourced<bool> enabled{.value = true};
   /// COB-ID with the flags of bits 29..31 as in 0x1800:01. Empty means `auto`.
   Sourced<std::optional<std::uint32_t>> cob_id;
   Sourced<std::uint8_t> transmission;
@@ -67,11 +69,14 @@ struct SdoSpec {
   SourcePos value_pos;
   std::optional<std::string> quoted{};  ///< text as written, if it is in quotes
   bool again = false;                   ///< The object is repeated on purpose.
+
+  /// Returns nullptr if the value is no integer.
+  const std::int64_t* integer() const noexcept { return std::get_if<std::int64_t>(&value); }
 };
 
 /// SI value = sign * counts * scale + offset.
 struct UnitSpec {
-  Sourced<double> scale{.value = 1.0, .pos = {}};
+  Sourced<double> scale{.value = 1.0};
   double offset = 0.0;
   int sign = 1;
   std::string unit;
@@ -93,21 +98,12 @@ struct UnitsSpec {
   std::optional<UnitSpec> acceleration;
   std::optional<UnitSpec> torque;
   std::vector<ObjectUnitSpec> objects;  ///< `objects: [{index, sub_index, scale, unit}]`
-  /// The section has errors or is misspelled. A missing unit is then no error of its own.
+  /// The section has errors or is misspelled. A missing unit is then not reported as another error.
   bool has_errors = false;
 
   const std::optional<UnitSpec>& of(Quantity quantity) const noexcept {
-    switch (quantity) {
-      case Quantity::position:
-        return position;
-      case Quantity::velocity:
-        return velocity;
-      case Quantity::acceleration:
-        return acceleration;
-      case Quantity::torque:
-        return torque;
-    }
-    return position;
+    return *std::array{&position, &velocity, &acceleration,
+                       &torque}[static_cast<std::size_t>(quantity)];
   }
 };
 
@@ -194,9 +190,9 @@ struct NodeSpec {
 
   Sourced<bool> lss;  ///< The node gets its node-ID by LSS if it has none.
   /// The node stores the node-ID that it gets by LSS.
-  Sourced<bool> lss_store{.value = true, .pos = {}};
+  Sourced<bool> lss_store{.value = true};
 
-  Sourced<bool> boot{.value = true, .pos = {}};
+  Sourced<bool> boot{.value = true};
   Sourced<bool> mandatory;
   Sourced<ResetPolicy> reset;
   Sourced<std::uint8_t> restore;            ///< sub-index of 0x1011; 0 means no restore
@@ -218,7 +214,7 @@ struct NodeSpec {
   std::vector<SdoObjectTimeout> sdo_timeouts;
 
   /// The device watches the heartbeat of the master.
-  Sourced<bool> heartbeat_consumer{.value = true, .pos = {}};
+  Sourced<bool> heartbeat_consumer{.value = true};
   Sourced<std::uint16_t> heartbeat_producer;  ///< ms
   Sourced<double> heartbeat_multiplier;
   Sourced<std::uint16_t> guard_time;         ///< ms; 0x100C
@@ -240,39 +236,56 @@ struct NodeSpec {
   SimSpec sim;
   std::vector<PdoSpec> tpdos;
   std::vector<PdoSpec> rpdos;
-  /// `rpdo` has errors or is misspelled. A missing output is then no error of its own.
+  /// `rpdo` has errors or is misspelled. A missing output is then not reported as another error.
   bool has_rpdo_errors = false;
   std::vector<SdoSpec> sdo;
+
+  /// Returns the first entry of `sdo` for the object, or nullptr if there is none.
+  const SdoSpec* written(ObjectKey object) const noexcept {
+    const auto found = std::ranges::find(sdo, object, &SdoSpec::object);
+    return found == sdo.end() ? nullptr : &*found;
+  }
+  /// Returns the value of that entry, or nullptr if it is no integer or there is no entry.
+  const std::int64_t* written_integer(ObjectKey object) const noexcept {
+    const SdoSpec* entry = written(object);
+    return entry == nullptr ? nullptr : entry->integer();
+  }
+  /// Returns the entry of `tpdo` or `rpdo`, or nullptr if there is none.
+  const PdoSpec* pdo(bool is_tpdo, std::uint16_t number) const noexcept {
+    const auto& list = is_tpdo ? tpdos : rpdos;
+    const auto found = std::ranges::find(list, number, &PdoSpec::number);
+    return found == list.end() ? nullptr : &*found;
+  }
 };
 
 struct MasterSpec {
   SourcePos pos;
-  Sourced<std::uint8_t> node_id{.value = 127, .pos = {}};
-  Sourced<std::uint32_t> baudrate_kbit{.value = 1000, .pos = {}};
+  Sourced<std::uint8_t> node_id{.value = 127};
+  Sourced<std::uint32_t> baudrate_kbit{.value = 1000};
   Sourced<std::uint32_t> sync_period_us;
   Sourced<std::uint32_t> sync_window_us;
   Sourced<std::uint8_t> sync_overflow;
-  Sourced<std::uint32_t> sync_cob_id{.value = 0x80, .pos = {}};
+  Sourced<std::uint32_t> sync_cob_id{.value = 0x80};
   Sourced<std::string> sync_source;        ///< "master", "external" or the name of a node
   Sourced<std::uint32_t> sync_timeout_us;  ///< timeout of a SYNC that another device produces
-  Sourced<SyncLoss> on_sync_loss{.value = SyncLoss::fallback, .pos = {}};
+  Sourced<SyncLoss> on_sync_loss{.value = SyncLoss::fallback};
   /// Cycle of the process image if there is no SYNC.
-  Sourced<std::uint32_t> cycle_us{.value = 10'000, .pos = {}};
-  Sourced<std::uint16_t> heartbeat_producer{.value = 100, .pos = {}};  ///< ms; 0 means no heartbeat
+  Sourced<std::uint32_t> cycle_us{.value = 10'000};
+  Sourced<std::uint16_t> heartbeat_producer{.value = 100};  ///< ms; 0 means no heartbeat
   Sourced<double> heartbeat_multiplier;
   /// The master watches the heartbeat of the nodes.
-  Sourced<bool> heartbeat_consumer{.value = true, .pos = {}};
+  Sourced<bool> heartbeat_consumer{.value = true};
   Sourced<std::uint32_t> time_period_ms;  ///< period of TIME; 0 means that the master produces none
-  Sourced<std::uint32_t> time_cob_id{.value = 0x100, .pos = {}};  ///< same format as in 0x1012
-  Sourced<bool> start_nodes{.value = true, .pos = {}};
-  Sourced<bool> start{.value = true, .pos = {}};  ///< The master becomes OPERATIONAL by itself.
+  Sourced<std::uint32_t> time_cob_id{.value = 0x100};  ///< same format as in 0x1012
+  Sourced<bool> start_nodes{.value = true};
+  Sourced<bool> start{.value = true};  ///< The master becomes OPERATIONAL by itself.
   Sourced<bool> start_all_nodes;
   Sourced<bool> reset_all_nodes;  ///< applies if a mandatory node is lost
   Sourced<bool> stop_all_nodes;   ///< applies if a mandatory node is lost
   Sourced<std::uint32_t> boot_time_ms;
   Sourced<std::uint16_t> nmt_inhibit_time;  ///< 100 us
   Sourced<std::uint32_t> stop_timeout_ms;   ///< if not given, the value is derived from the drives
-  Sourced<StopDisarm> stop_disarm{.value = StopDisarm::sdo, .pos = {}};
+  Sourced<StopDisarm> stop_disarm{.value = StopDisarm::sdo};
   Sourced<std::uint16_t> service_frames;  ///< largest number of SDO and NMT frames in one cycle
 };
 
@@ -281,13 +294,13 @@ struct BusSpec {
   Sourced<std::string> interface;
 };
 
-/// The content of a network file as written. It contains no data of the devices yet.
+/// The content of a network file as written. The data of the devices are not part of it.
 struct NetworkSpec {
   std::string file;
   BusSpec bus;
   Sourced<std::string> dcf_path;
-  Sourced<double> heartbeat_multiplier{.value = 3.0, .pos = {}};
-  Sourced<std::uint8_t> retry_factor{.value = 3, .pos = {}};  ///< default for guarding
+  Sourced<double> heartbeat_multiplier{.value = 3.0};
+  Sourced<std::uint8_t> retry_factor{.value = 3};  ///< default for guarding
   MasterSpec master;
   RealtimeOptions realtime;
   Sourced<std::uint32_t> receive_window_us;

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <string_view>
 
 namespace takt {
@@ -61,10 +62,18 @@ constexpr bool is_time(DataType type) noexcept {
   return type == DataType::time_of_day || type == DataType::time_difference;
 }
 
-/// Whether a value is a byte sequence of any length: strings, domains and unknown codes.
+/// Returns true if a value is a byte sequence of any length: strings, domains and unknown codes.
 constexpr bool is_bytes(DataType type) noexcept { return bit_width(type) == 0; }
 
 /// Returns the name in CiA 301, for example `INTEGER32`, or `unknown` for other codes.
 std::string_view name(DataType type) noexcept;
+
+/// Returns true if this number is finite but too large for a REAL32, in which it would become
+/// infinite.
+constexpr bool exceeds_real32(double value) noexcept {
+  constexpr double most = std::numeric_limits<float>::max();
+  constexpr double largest = std::numeric_limits<double>::max();
+  return (value > most && value <= largest) || (value < -most && value >= -largest);
+}
 
 }  // namespace takt

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "eds_parser/table/data_type.hpp"
@@ -13,15 +14,18 @@ namespace takt {
 /// SDO access of an object. CiA 306, 4.6.3.2.
 enum class Access : std::uint8_t { ro, wo, rw, rwr, rww, constant };
 
+/// Returns the access type as an EDS writes it, for example "ro" or "const".
+std::string_view access_name(Access access) noexcept;
+
 /// One object or sub-object of a simulated device.
 struct DeviceObject {
   ObjectKey key;
   DataType type = DataType::unknown;
   Access access = Access::rw;
   bool pdo_mappable = false;
-  std::vector<std::byte> value;  ///< power-on value, little endian; strings without terminator
-  std::optional<std::int64_t> low_limit;
-  std::optional<std::int64_t> high_limit;
+  std::vector<std::byte> value{};  ///< power-on value, little endian; strings without terminator
+  std::optional<std::int64_t> low_limit{};
+  std::optional<std::int64_t> high_limit{};
 };
 
 /// The object dictionary with which a simulated device starts, from an EDS or DCF. $NODEID is
@@ -29,12 +33,12 @@ struct DeviceObject {
 struct DeviceTable {
   NodeId node;
   std::string name;
-  std::vector<DeviceObject> objects;  ///< in ascending order of their keys
-  std::uint8_t granularity = 8;       ///< of PDO mapping, in bits; 0 = the mapping is fixed
-  std::uint8_t dummy_usage = 0;       ///< bit n set: data type n may be mapped as a dummy
-  std::string model;                  ///< "drive402", "io401", "lenze8400", "plain" ...
-  std::vector<std::string> quirks;    ///< "late_bootup", ...
-  std::string firmware{};             ///< "15.02.00"; empty = the newest that the model knows
+  std::vector<DeviceObject> objects{};  ///< in ascending order of their keys
+  std::uint8_t granularity = 8;         ///< of PDO mapping, in bits; 0 = the mapping is fixed
+  std::uint8_t dummy_usage = 0;         ///< bit n set: data type n may be mapped as a dummy
+  std::string model;                    ///< "drive402", "io401", "lenze8400", "plain" ...
+  std::vector<std::string> quirks;      ///< "late_bootup", ...
+  std::string firmware{};               ///< "15.02.00"; empty = the newest that the model knows
 };
 
 }  // namespace takt

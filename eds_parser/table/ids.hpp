@@ -39,6 +39,10 @@ class CobId {
   static constexpr CobId extended(std::uint32_t id) noexcept {
     return CobId{(id & 0x1FFF'FFFF) | extended_flag};
   }
+  /// Makes the identifier of an object such as 0x1800:01: bit 29 marks an identifier of 29 bits.
+  static constexpr CobId of_object(std::uint32_t value) noexcept {
+    return (value & 0x2000'0000) != 0 ? extended(value) : base(value);
+  }
   constexpr std::uint32_t id() const noexcept { return raw_ & ~extended_flag; }
   constexpr bool is_extended() const noexcept { return (raw_ & extended_flag) != 0; }
   constexpr auto operator<=>(const CobId&) const noexcept = default;
@@ -55,6 +59,14 @@ struct ObjectKey {
   std::uint8_t sub = 0;
   constexpr auto operator<=>(const ObjectKey&) const noexcept = default;
 };
+
+/// Number of axes that a device may have. CiA 402-1.
+inline constexpr unsigned most_axes = 8;
+
+/// Returns an object of an axis, which counts from 0, by its index on the first axis.
+constexpr ObjectKey axis_object(unsigned axis, unsigned index, std::uint8_t sub = 0) noexcept {
+  return {static_cast<std::uint16_t>(index + axis * 0x800), sub};
+}
 
 /// Formats a value as `0x6041`, with at least `digits` digits.
 std::string hex(std::uint32_t value, int digits = 4);

@@ -22,7 +22,7 @@ enum class TimeToLiveKey : std::uint8_t { after, after_cycles };
 
 /// One value of the process image: its place, its meaning and its unit.
 struct Signal {
-  std::string name;  ///< EDS name in snake_case, unique in its node: "position_actual_value"
+  std::string name{};  ///< EDS name in snake_case, unique in its node: "position_actual_value"
   NodeId node;
   std::uint8_t node_index = 0;  ///< position in BusPlan::nodes
   ObjectKey object;
@@ -33,15 +33,15 @@ struct Signal {
 
   double scale = 1.0;  ///< SI value = raw * scale + offset
   double offset = 0.0;
-  std::string unit;  ///< "rad", "rad/s"; empty = raw count
+  std::string unit{};  ///< "rad", "rad/s"; empty = raw count
 
   // outputs only
   Fallback fallback = Fallback::hold;
   std::int64_t fallback_value = 0;
   std::uint32_t fallback_cycles = 0;  ///< time to live of a command in cycles; 0 = no limit
   TimeToLiveKey fallback_key = TimeToLiveKey::after;
-  std::optional<std::int64_t> safe_value;  ///< value to send before the first command
-  std::optional<SignalIndex> seeded_from;  ///< input that provides the first value (6064 -> 607A)
+  std::optional<std::int64_t> safe_value{};  ///< value to send before the first command
+  std::optional<SignalIndex> seeded_from{};  ///< input that provides the first value (6064 -> 607A)
 };
 
 /// Shortest time to live of commands that a network file can configure.

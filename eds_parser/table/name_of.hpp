@@ -4,7 +4,8 @@
 
 namespace takt {
 
-/// Whether `Value` is a named enumerator: compilers print other values as a cast, "(Kind)7".
+/// Returns true if `Value` is a named enumerator: compilers print other values as a cast,
+/// "(Kind)7".
 template <auto Value>
 consteval bool is_enumerator() noexcept {
   const std::string_view text{__PRETTY_FUNCTION__};

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "eds_parser/table/name_of.hpp"
+
 namespace takt {
 
 std::vector<LimitSum> sums_of(const LimitsPlan& limits, const LimitLine& line) {
@@ -14,6 +16,17 @@ std::vector<LimitSum> sums_of(const LimitsPlan& limits, const LimitLine& line) {
     sums.push_back({.target = row.signal, .offset = *row.offset});
   }
   return sums;
+}
+
+std::string_view name(LimitKind kind) noexcept {
+  static constexpr std::string_view names[]{"position", "velocity", "acceleration", "jerk",
+                                            "step",     "torque",   "range"};
+  return name_of(kind, names, "limit");
+}
+
+std::string_view name(LimitSource source) noexcept {
+  static constexpr std::string_view names[]{"none", "file", "device"};
+  return name_of(source, names, "none");
 }
 
 }  // namespace takt

@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "eds_parser/table/ids.hpp"
@@ -85,7 +86,7 @@ enum class DeviceBound : std::uint8_t {
 };
 
 /// A limit that the master reads from a device in each boot. The master uses it only if it is
-/// plausible, see limit_names.hpp.
+/// plausible, see plausible_range() and plausible_size().
 struct DeviceLimit {
   std::uint8_t node_index = 0;
   ObjectKey object{};
@@ -121,5 +122,28 @@ struct LimitSum {
 
 /// Returns the sums that a limit holds for.
 std::vector<LimitSum> sums_of(const LimitsPlan& limits, const LimitLine& line);
+
+/// Returns the key of the limit in `limits:` of the network file.
+std::string_view name(LimitKind kind) noexcept;
+/// Returns `file`, `device` or `none`.
+std::string_view name(LimitSource source) noexcept;
+
+/// Returns true if this end of a range bounds nothing, because it is the end of INTEGER32.
+constexpr bool open_end(std::int64_t end) noexcept {
+  return end <= -0x7FFF'FFFFLL || end >= 0x7FFF'FFFFLL;
+}
+
+/// Returns true if the range that a device reports is a real limit: the range is not empty and does
+/// not cover the whole of an INTEGER16 or INTEGER32. One end may be open.
+constexpr bool plausible_range(std::int64_t low, std::int64_t high) noexcept {
+  const bool whole16 = low <= -0x7FFF && high == 0x7FFF;
+  return low < high && !whole16 && !(open_end(low) && open_end(high));
+}
+
+/// Returns true if a reported magnitude is a real limit: it is neither 0 nor the highest value of a
+/// type (0xFFFF, or 0x7FFF'FFFF and above).
+constexpr bool plausible_size(std::int64_t value) noexcept {
+  return value > 0 && value != 0xFFFF && value < 0x7FFF'FFFF;
+}
 
 }  // namespace takt

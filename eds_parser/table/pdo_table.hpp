@@ -1,6 +1,8 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "eds_parser/table/ids.hpp"
@@ -65,5 +67,19 @@ struct PdoTable {
     return empty;
   }();
 };
+
+/// Returns the TPDO that carries an input, or null if there is none.
+inline const PdoRow* tpdo_of(const PdoTable& pdos, SignalIndex input) noexcept {
+  for (const PdoRow& pdo : pdos.tpdos) {
+    const auto fields = std::span{pdos.fields}.subspan(pdo.first_field, pdo.field_count);
+    if (std::ranges::find(fields, input, &PdoField::signal) != fields.end()) return &pdo;
+  }
+  return nullptr;
+}
+
+/// Returns true if the device sends this TPDO only on events, so that the first one may never come.
+constexpr bool comes_by_event_alone(const PdoRow& tpdo) noexcept {
+  return tpdo.transmission >= 254 && tpdo.event_timer == Time{};
+}
 
 }  // namespace takt

@@ -14,6 +14,7 @@ struct SdoChannel {
   CobId answer;   ///< server to client
 
   constexpr bool operator==(const SdoChannel&) const noexcept = default;
+  constexpr bool has(CobId id) const noexcept { return id == request || id == answer; }
 };
 
 /// The default SDO channel of a device. CiA 301, 7.3.3.
@@ -21,7 +22,7 @@ constexpr SdoChannel default_sdo_channel(NodeId server) noexcept {
   return {CobId::base(0x600U + server.value()), CobId::base(0x580U + server.value())};
 }
 
-/// Whether the master uses block transfers for large values.
+/// States whether the master uses block transfers for large values.
 enum class SdoBlockUse : std::uint8_t {
   automatic,  ///< if the device supports them
   off,

@@ -1,7 +1,7 @@
 #include "eds_parser/write/object_sections.hpp"
 
 #include "eds_parser/report/message.hpp"
-#include "eds_parser/table/access_name.hpp"
+#include "eds_parser/table/device_table.hpp"
 
 namespace takt {
 namespace {

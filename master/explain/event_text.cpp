@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <string>
 
-#include "eds_parser/table/tpdo_of.hpp"
+#include "eds_parser/table/pdo_table.hpp"
 #include "master/core/command_limit.hpp"
 #include "master/core/lss/lss_command.hpp"
 #include "master/explain/boot_report.hpp"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
-#include "eds_parser/table/limit_names.hpp"
+#include "eds_parser/table/output_limits.hpp"
 #include "eds_parser/table/raw_number.hpp"
 #include "master/explain/event_text.hpp"
 #include "master/wire/bytes.hpp"

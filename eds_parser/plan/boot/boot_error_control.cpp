@@ -11,25 +11,23 @@ class ErrorControlSteps : BootPart {
   explicit ErrorControlSteps(const BootPart& part) : BootPart{part} {}
 
   void append() {
-    if (context.producer_ms != 0 && steps.writable({0x1017, 0})) {
-      steps.integer(BootAction::write_if_differs, {0x1017, 0}, context.producer_ms,
-                    "heartbeat every " + std::to_string(context.producer_ms) + " ms");
-    } else if (spec.heartbeat_producer.given && *spec.heartbeat_producer == 0 &&
-               steps.writable({0x1017, 0})) {
-      steps.integer(BootAction::write_if_differs, {0x1017, 0}, 0, "no heartbeat");
-    } else if (spec.heartbeat_producer.given && *spec.heartbeat_producer != 0 &&
-               !steps.has({0x1017, 0})) {
-      report.error(spec.heartbeat_producer.pos, "no-such-object",
-                   "`heartbeat_producer` of node `" + spec.name + "` needs 1017:00, which " +
-                       dictionary.file + " does not have");
+    const ObjectKey producer{0x1017, 0};
+    const Sourced<std::uint16_t>& wanted = spec.heartbeat_producer;
+    if (context.producer_ms != 0 && steps.writable(producer)) {
+      steps.integer(BootAction::write_if_differs, producer, context.producer_ms,
+                    joined("heartbeat every ", context.producer_ms, " ms"));
+    } else if (wanted.given && *wanted == 0 && steps.writable(producer)) {
+      steps.integer(BootAction::write_if_differs, producer, 0, "no heartbeat");
+    } else if (wanted.given && *wanted != 0 && !steps.has(producer)) {
+      report.error(wanted.pos, "no-such-object", "`heartbeat_producer` of node `", spec.name,
+                   "` needs 1017:00, which ", dictionary.file, " does not have");
     }
     watch_master();
     guarding();
     for (const SdoSpec& sdo : spec.error_behavior) {
       if (!steps.has(sdo.object)) {
-        report.error(sdo.pos, "no-such-object",
-                     "`error_behavior` of node `" + spec.name + "` needs " + to_string(sdo.object) +
-                         ", which " + dictionary.file + " does not have");
+        report.error(sdo.pos, "no-such-object", "`error_behavior` of node `", spec.name, "` needs ",
+                     sdo.object, ", which ", dictionary.file, " does not have");
         continue;
       }
       steps.integer(BootAction::write_if_differs, sdo.object, std::get<std::int64_t>(sdo.value),
@@ -45,22 +43,21 @@ class ErrorControlSteps : BootPart {
     const auto entry = entry_for_master(*object);
     if (!entry) {
       report.warning(spec.heartbeat_consumer.pos.line != 0 ? spec.heartbeat_consumer.pos : spec.pos,
-                     "heartbeat-consumer",
-                     "node `" + spec.name + "`: all entries of 0x1016 in " + dictionary.file +
-                         " watch other nodes, so the device will not watch the master");
+                     "heartbeat-consumer", "node `", spec.name, "`: all entries of 0x1016 in ",
+                     dictionary.file,
+                     " watch other nodes, so the device will not watch the master");
       return;
     }
     const ObjectKey key{0x1016, *entry};
     if (!steps.writable(key)) return;
     const std::int64_t value =
-        (std::int64_t{context.master_id.value()} << 16) | context.master_consumer_ms;
+        (std::int64_t{context.plan.master_id.value()} << 16) | context.master_consumer_ms;
     if (!takes(key, value, spec.heartbeat_consumer.pos, "the device would not watch the master")) {
       return;
     }
     steps.integer(BootAction::write_if_differs, key, value,
-                  "the device watches the master (node " +
-                      std::to_string(context.master_id.value()) + ") for " +
-                      std::to_string(context.master_consumer_ms) + " ms");
+                  joined("the device watches the master (node ", context.plan.master_id.value(),
+                         ") for ", context.master_consumer_ms, " ms"));
   }
 
   /// Selects the entry of 0x1016 for the master: the entry that already names the master, else the
@@ -74,7 +71,7 @@ class ErrorControlSteps : BootPart {
       const auto configured = configured_consumer(sub);
       const auto value = configured.value_or(integer_of(sub.default_value).value_or(0));
       const auto watched = (value >> 16) & 0xFF;
-      if (watched == context.master_id.value()) return sub.sub;
+      if (watched == context.plan.master_id.value()) return sub.sub;
       const bool off = watched == 0 || watched > 127 || (value & 0xFFFF) == 0;
       if (off && !unused) unused = sub.sub;
       if (!configured && !by_default) by_default = sub.sub;
@@ -84,23 +81,22 @@ class ErrorControlSteps : BootPart {
 
   /// Returns the value that the network file, else a DCF, gives to an entry of 0x1016.
   std::optional<std::int64_t> configured_consumer(const SubObject& sub) const {
-    const auto own = std::ranges::find(spec.sdo, ObjectKey{0x1016, sub.sub}, &SdoSpec::object);
-    const auto* value = own == spec.sdo.end() ? nullptr : std::get_if<std::int64_t>(&own->value);
-    if (value != nullptr) return *value;
+    const std::int64_t* own = spec.written_integer({0x1016, sub.sub});
+    if (own != nullptr) return *own;
     return dictionary.is_dcf ? integer_of(sub.parameter_value) : std::nullopt;
   }
 
   /// Writes 0x100C and 0x100D for the life guarding of the device.
   void guarding() {
-    if (context.guard.period == Time{}) return;
-    const auto ms = context.guard.period / std::chrono::milliseconds{1};
+    if (context.node.guard.period == Time{}) return;
+    const auto ms = context.node.guard.period / std::chrono::milliseconds{1};
     if (steps.writable({0x100C, 0})) {
       steps.integer(BootAction::write_if_differs, {0x100C, 0}, ms,
                     "guard time " + std::to_string(ms) + " ms", 2);
     } else if (spec.guard_time.given) {
-      report.note(spec.guard_time.pos, "guard-object",
-                  "the master guards node `" + spec.name + "`, but can't write the guard time: " +
-                      dictionary.file + " has no writable 100C:00");
+      report.note(spec.guard_time.pos, "guard-object", "the master guards node `", spec.name,
+                  "`, but can't write the guard time: ", dictionary.file,
+                  " has no writable 100C:00");
     }
     if (!spec.life_time_factor.given) return;
     if (!steps.writable({0x100D, 0})) return no_life_guarding();
@@ -116,14 +112,11 @@ class ErrorControlSteps : BootPart {
     const std::string lacks =
         "100D:00, which " + dictionary.file + " does not have as a writable object";
     if (*spec.life_time_factor == 0) {
-      return report.note(spec.life_time_factor.pos, "guarding",
-                         "node `" + spec.name +
-                             "` does not need `life_time_factor: 0`: takt would write it to " +
-                             lacks);
+      return report.note(spec.life_time_factor.pos, "guarding", "node `", spec.name,
+                         "` does not need `life_time_factor: 0`: takt would write it to ", lacks);
     }
-    report.warning(spec.life_time_factor.pos, "guard-object",
-                   "`life_time_factor` of node `" + spec.name + "` needs " + lacks +
-                       ": the device will not watch the master");
+    report.warning(spec.life_time_factor.pos, "guard-object", "`life_time_factor` of node `",
+                   spec.name, "` needs ", lacks, ": the device will not watch the master");
   }
 };
 
@@ -141,7 +134,7 @@ class Emergency : BootPart {
       const std::string text = "EMCY on " + hex(static_cast<std::uint32_t>(value), 3);
       steps.integer(BootAction::compare, id, value, text);
       const std::size_t skip = steps.skip_if_same("EMCY already has this COB-ID");
-      if (has_off_bit()) steps.integer(BootAction::disable_pdo, id, 0, "EMCY off").value.clear();
+      if (has_off_bit()) steps.bytes(BootAction::disable_pdo, id, {}, "EMCY off");
       steps.integer(BootAction::enable_pdo, id, value, text);
       steps.land(skip);
     }

@@ -4,27 +4,15 @@
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/plan/boot/boot_sections.hpp"
 #include "eds_parser/plan/pdo/mapping_compiler.hpp"
+#include "eds_parser/table/little_endian.hpp"
 
 namespace takt {
 namespace {
 
-struct Limits {
-  std::optional<std::int64_t> low;
-  std::optional<std::int64_t> high;
-
-  bool hold(std::int64_t value) const {
-    return (!low || value >= *low) && (!high || value <= *high);
-  }
-  /// Returns false for limits that are both 0 or inverted. An editor fills them in; they are not
-  /// meant.
-  bool mean_something() const { return !low || !high || *low < *high; }
-  std::string text() const {
-    return (low ? std::to_string(*low) : "") + ".." + (high ? std::to_string(*high) : "");
-  }
-};
-
-Limits limits_of(const SubObject& sub) {
-  return {integer_of(sub.low_limit), integer_of(sub.high_limit)};
+/// Returns false for limits that are both 0 or inverted. An editor fills them in; they are not
+/// meant.
+bool mean_something(const ObjectLimits& limits) {
+  return !limits.low || !limits.high || *limits.low < *limits.high;
 }
 
 /// Returns true for a step that writes a parameter, but not for the store and restore commands.
@@ -38,10 +26,7 @@ bool writes(const BootStep& step) {
 /// Returns the number in `bytes`, or std::nullopt if the type is no integer.
 std::optional<std::int64_t> number_of(std::span<const std::byte> bytes, DataType type) {
   if (is_real(type) || is_bytes(type) || bytes.empty() || bytes.size() > 8) return {};
-  std::uint64_t number = 0;
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    number |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
-  }
+  const std::uint64_t number = from_little_endian(bytes);
   const unsigned unused = 64 - 8 * static_cast<unsigned>(bytes.size());
   if (!is_signed(type)) return static_cast<std::int64_t>(number);
   return static_cast<std::int64_t>(number << unused) >> unused;
@@ -56,25 +41,19 @@ class LimitJudge {
     const SubObject* sub = dictionary_.find(step.object);
     if (sub == nullptr) return;
     const auto value = number_of(step.value, sub->type);
-    const Limits limits = limits_of(*sub);
-    if (!value || limits.hold(*value) || !limits.mean_something()) return;
+    const ObjectLimits limits{*sub};
+    if (!value || limits.hold(*value) || !mean_something(limits)) return;
     if (integer_of(sub->default_value) == value) return;
     step.purpose += " (outside the limits " + limits.text() + " of the device file)";
     if (!reported_.insert(step.object).second) return;
-    report_.warning(pos_of(step.object), "limits",
-                    source(*sub, step.object, *value) + label(dictionary_, step.object) + " = " +
-                        std::to_string(*value) + " is outside the limits " + limits.text() +
-                        " of " + dictionary_.file + "; the device may refuse it");
+    report_.warning(pos_of(step.object), "limits", source(*sub, step.object, *value),
+                    label(dictionary_, step.object), " = ", *value, " is outside the limits ",
+                    limits.text(), " of ", dictionary_.file, "; the device may refuse it");
   }
 
  private:
-  const SdoSpec* configured(ObjectKey key) const {
-    const auto found = std::ranges::find(spec_.sdo, key, &SdoSpec::object);
-    return found == spec_.sdo.end() ? nullptr : &*found;
-  }
-
   SourcePos pos_of(ObjectKey key) const {
-    if (const SdoSpec* sdo = configured(key)) return sdo->value_pos;
+    if (const SdoSpec* sdo = spec_.written(key)) return sdo->value_pos;
     for (const EffectivePdo& pdo : node_.pdos) {
       if (pdo.communication_index() == key.index || pdo.mapping_index() == key.index) {
         return pdo.pos;
@@ -85,11 +64,10 @@ class LimitJudge {
 
   std::string source(const SubObject& sub, ObjectKey key, std::int64_t value) const {
     const std::string node = "node `" + spec_.name + "`";
-    if (configured(key) != nullptr) return "`sdo` of " + node + ": ";
-    const bool of_dcf = integer_of(sub.parameter_value) == value;
-    if (!of_dcf) return node + ": ";
-    return node + ", ParameterValue in line " + std::to_string(sub.parameter_pos.line) + " of " +
-           dictionary_.file + ": ";
+    if (spec_.written(key) != nullptr) return "`sdo` of " + node + ": ";
+    if (integer_of(sub.parameter_value) != value) return node + ": ";
+    return joined(node, ", ParameterValue in line ", sub.parameter_pos.line, " of ",
+                  dictionary_.file, ": ");
   }
 
   const NodePdos& node_;

@@ -6,53 +6,52 @@ namespace {
 constexpr std::uint32_t all_but_rtr = 0xBFFF'FFFF;
 constexpr std::uint32_t valid_bit = 0x8000'0000;
 
-class PdoBoot {
+class PdoBoot : BootPart {
  public:
-  PdoBoot(const ObjectDictionary& dictionary, const EffectivePdo& pdo, BootSteps& steps)
-      : dictionary_{dictionary}, pdo_{pdo}, steps_{steps} {}
+  PdoBoot(const BootPart& part, const EffectivePdo& pdo) : BootPart{part}, pdo_{pdo} {}
 
   /// Compares and configures first the mapping, then the communication parameters. A write of the
   /// mapping switches the PDO off. The COB-ID then differs, and the second half switches the PDO on
   /// again.
   void exchange() {
-    const std::size_t first = steps_.size();
+    const std::size_t first = steps.size();
     append_exchange();
     mark_running(first);
   }
 
   void switch_off() {
-    if (!steps_.has(cob_id_key())) return;
-    steps_.integer(BootAction::compare, cob_id_key(), valid_bit, pdo_.label() + " off?").mask =
+    if (!steps.has(cob_id_key())) return;
+    steps.integer(BootAction::compare, cob_id_key(), valid_bit, pdo_.label() + " off?").mask =
         valid_bit;
-    const std::size_t skip = steps_.skip_if_same(pdo_.label() + " is off");
+    const std::size_t skip = steps.skip_if_same(pdo_.label() + " is off");
     disable();
-    steps_.land(skip);
+    steps.land(skip);
   }
 
  private:
   void append_exchange() {
     if (!pdo_.fixed_mapping) {
       mapping_steps(BootAction::compare, "");
-      const std::size_t skip = steps_.skip_if_same(pdo_.label() + " already has this mapping");
+      const std::size_t skip = steps.skip_if_same(pdo_.label() + " already has this mapping");
       disable();
       write_mapping();
-      steps_.land(skip);
+      steps.land(skip);
     }
     compare_communication();
     if (pdo_.fixed_mapping) mapping_steps(BootAction::compare, "");
-    const std::size_t skip = steps_.skip_if_same(pdo_.label() + " is already configured");
+    const std::size_t skip = steps.skip_if_same(pdo_.label() + " is already configured");
     disable();
     write_parameters();
-    if (steps_.writable(cob_id_key())) {
+    if (steps.writable(cob_id_key())) {
       // If the master polls the PDO by remote request, bit 30 must be clear. Otherwise the bit
       // keeps the value of the device.
-      steps_.integer(pdo_.rtr ? BootAction::write : BootAction::enable_pdo, cob_id_key(),
-                     cob_id_value(),
-                     pdo_.label() + " on, COB-ID " + to_string(pdo_.cob_id) +
-                         (pdo_.rtr ? ", remote requests allowed" : ""));
+      steps.integer(pdo_.rtr ? BootAction::write : BootAction::enable_pdo, cob_id_key(),
+                    cob_id_value(),
+                    pdo_.label() + " on, COB-ID " + to_string(pdo_.cob_id) +
+                        (pdo_.rtr ? ", remote requests allowed" : ""));
     }
     read_back();
-    steps_.land(skip);
+    steps.land(skip);
   }
 
   ObjectKey communication(std::uint8_t sub) const { return {pdo_.communication_index(), sub}; }
@@ -65,22 +64,20 @@ class PdoBoot {
   }
   std::string entry_text(std::size_t number) const {
     const EffectiveEntry& entry = pdo_.mapping[number - 1];
-    return pdo_.label() + " entry " + std::to_string(number) + ": " +
-           (entry.dummy ? "gap" : label(dictionary_, entry.object)) + ", " +
-           std::to_string(entry.bits) + " bits";
+    return joined(pdo_.label(), " entry ", number, ": ",
+                  entry.dummy ? "gap" : label(dictionary, entry.object), ", ", entry.bits, " bits");
   }
   std::string count_text() const {
     if (pdo_.mpdo == Mpdo::sam) return "by source address (SAM)";
     if (pdo_.mpdo == Mpdo::dam) return "by destination address (DAM)";
-    return std::to_string(pdo_.mapping.size()) +
-           (pdo_.mapping.size() == 1 ? " object" : " objects");
+    return joined(pdo_.mapping.size(), pdo_.mapping.size() == 1 ? " object" : " objects");
   }
   std::uint32_t cob_id_mask() const { return pdo_.rtr ? 0xFFFF'FFFF : all_but_rtr; }
   std::string type_text() const {
-    const std::string text = pdo_.label() + " type " + std::to_string(pdo_.transmission);
+    const std::string text = joined(pdo_.label(), " type ", pdo_.transmission);
     if (pdo_.transmission == 0) return text + ": after SYNC, on change";
     if (pdo_.transmission == 1) return text + ": every SYNC";
-    if (pdo_.synchronous()) return text + ": every " + std::to_string(pdo_.transmission) + " SYNCs";
+    if (pdo_.synchronous()) return joined(text, ": every ", pdo_.transmission, " SYNCs");
     if (pdo_.transmission == 252) return text + ": on remote request, sampled at SYNC";
     if (pdo_.transmission == 253) return text + ": on remote request";
     return text + ": by event";
@@ -88,18 +85,18 @@ class PdoBoot {
 
   std::string unit_text() const {
     const std::uint32_t us = pdo_.inhibit_unit_us;
-    return us % 1000 == 0 ? std::to_string(us / 1000) + " ms" : std::to_string(us) + " us";
+    return us % 1000 == 0 ? joined(us / 1000, " ms") : joined(us, " us");
   }
 
   void compare_communication() {
-    if (steps_.has(cob_id_key())) {
-      steps_
+    if (steps.has(cob_id_key())) {
+      steps
           .integer(BootAction::compare, cob_id_key(), cob_id_value(),
                    pdo_.label() + " COB-ID " + to_string(pdo_.cob_id))
           .mask = cob_id_mask();
     }
-    if (steps_.has(communication(2))) {
-      steps_.integer(BootAction::compare, communication(2), pdo_.transmission, type_text());
+    if (steps.has(communication(2))) {
+      steps.integer(BootAction::compare, communication(2), pdo_.transmission, type_text());
     }
     parameters(BootAction::compare);
   }
@@ -107,8 +104,8 @@ class PdoBoot {
   /// Marks the comparisons of a PDO. If they fail on a node that stays in operation, the PDO can't
   /// be used.
   void mark_running(std::size_t first) {
-    for (std::size_t i = first; i < steps_.size(); ++i) {
-      BootStep& step = steps_.steps()[i];
+    for (std::size_t i = first; i < steps.size(); ++i) {
+      BootStep& step = steps.steps()[i];
       if (step.action == BootAction::compare) step.running_letter = 'L';
     }
   }
@@ -117,32 +114,31 @@ class PdoBoot {
   /// entries, which the plan leaves out.
   void mapping_steps(BootAction action, const std::string& suffix) {
     if (!pdo_.fixed_mapping) {
-      steps_.integer(action, mapping(0), pdo_.mapping_count(),
-                     pdo_.label() + " maps " + count_text() + suffix, 1);
+      steps.integer(action, mapping(0), pdo_.mapping_count(),
+                    pdo_.label() + " maps " + count_text() + suffix, 1);
     }
     for (std::size_t i = 1; i <= pdo_.entries().size(); ++i) {
-      steps_.integer(action, mapping(i), pdo_.entries()[i - 1].raw(), entry_text(i) + suffix);
+      steps.integer(action, mapping(i), pdo_.entries()[i - 1].raw(), entry_text(i) + suffix);
     }
   }
 
   void disable() {
-    if (!steps_.writable(cob_id_key())) return;
-    steps_.integer(BootAction::disable_pdo, cob_id_key(), 0, pdo_.label() + " off").value.clear();
+    if (!steps.writable(cob_id_key())) return;
+    steps.bytes(BootAction::disable_pdo, cob_id_key(), {}, pdo_.label() + " off");
   }
 
   void write_mapping() {
-    steps_.integer(BootAction::write, mapping(0), 0, pdo_.label() + " mapping off", 1);
+    steps.integer(BootAction::write, mapping(0), 0, pdo_.label() + " mapping off", 1);
     for (std::size_t i = 1; i <= pdo_.entries().size(); ++i) {
-      steps_.integer(BootAction::write, mapping(i), pdo_.entries()[i - 1].raw(), entry_text(i));
+      steps.integer(BootAction::write, mapping(i), pdo_.entries()[i - 1].raw(), entry_text(i));
     }
-    steps_.integer(BootAction::write, mapping(0), pdo_.mapping_count(),
-                   pdo_.label() + " mapping on, " + count_text(), 1);
+    steps.integer(BootAction::write, mapping(0), pdo_.mapping_count(),
+                  pdo_.label() + " mapping on, " + count_text(), 1);
   }
 
   void write_parameters() {
-    if (steps_.writable(communication(2))) {
-      steps_.integer(BootAction::write_if_differs, communication(2), pdo_.transmission,
-                     type_text());
+    if (steps.writable(communication(2))) {
+      steps.integer(BootAction::write_if_differs, communication(2), pdo_.transmission, type_text());
     }
     parameters(BootAction::write_if_differs);
   }
@@ -151,19 +147,18 @@ class PdoBoot {
   void parameters(BootAction action) {
     const auto step = [&](bool has, std::uint8_t sub, std::int64_t value, const std::string& text) {
       if (!has) return;
-      steps_.integer(action, communication(sub), value, pdo_.label() + " " + text).optional = true;
+      steps.integer(action, communication(sub), value, pdo_.label() + " " + text).optional = true;
     };
     step(pdo_.has_inhibit, 3, pdo_.inhibit_time,
-         "inhibit time " + std::to_string(pdo_.inhibit_time) + " x " + unit_text());
+         joined("inhibit time ", pdo_.inhibit_time, " x ", unit_text()));
     step(pdo_.has_event_timer, 5, pdo_.event_timer,
-         (pdo_.is_tpdo ? "event timer " : "deadline ") + std::to_string(pdo_.event_timer) + " ms");
-    step(pdo_.has_sync_start, 6, pdo_.sync_start,
-         "SYNC start value " + std::to_string(pdo_.sync_start));
+         joined(pdo_.is_tpdo ? "event timer " : "deadline ", pdo_.event_timer, " ms"));
+    step(pdo_.has_sync_start, 6, pdo_.sync_start, joined("SYNC start value ", pdo_.sync_start));
   }
 
   void read_back() {
-    if (steps_.has(cob_id_key())) {
-      steps_
+    if (steps.has(cob_id_key())) {
+      steps
           .integer(BootAction::verify, cob_id_key(), cob_id_value(),
                    pdo_.label() + " COB-ID read back")
           .mask = cob_id_mask();
@@ -171,26 +166,15 @@ class PdoBoot {
     mapping_steps(BootAction::verify, ", read back");
   }
 
-  const ObjectDictionary& dictionary_;
   const EffectivePdo& pdo_;
-  BootSteps& steps_;
 };
 
 }  // namespace
 
-void append_pdo(const ObjectDictionary& dictionary, const EffectivePdo& pdo, BootSteps& steps) {
-  PdoBoot boot{dictionary, pdo, steps};
-  switch (pdo.use) {
-    case PdoUse::exchanged:
-    case PdoUse::linked:
-      boot.exchange();
-      break;
-    case PdoUse::off:
-      boot.switch_off();
-      break;
-    case PdoUse::ignored:
-      break;
-  }
+void append_pdo(const BootPart& part, const EffectivePdo& pdo) {
+  PdoBoot boot{part, pdo};
+  if (pdo.is_used()) boot.exchange();
+  if (pdo.use == PdoUse::off) boot.switch_off();
 }
 
 }  // namespace takt

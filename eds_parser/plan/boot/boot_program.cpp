@@ -15,22 +15,21 @@ constexpr Time segment_time = std::chrono::seconds{5};
 
 enum class Command : std::uint8_t { stop = 0, start = 1, clear = 3 };
 
-class ProgramSteps {
+class ProgramSteps : BootPart {
  public:
-  ProgramSteps(const NodeSpec& node, BootSteps& steps) : node_{node}, steps_{steps} {}
+  explicit ProgramSteps(const BootPart& part) : BootPart{part} {}
 
   void check_and_update() {
-    const std::string text = "software version " + hex(*node_.software_version, 8);
-    BootStep& check =
-        steps_.integer(node_.program.empty() ? BootAction::expect : BootAction::compare, version,
-                       *node_.software_version, text);
+    const std::string text = "software version " + hex(*spec.software_version, 8);
+    BootStep& check = steps.integer(spec.program.empty() ? BootAction::expect : BootAction::compare,
+                                    version, *spec.software_version, text);
     check.letter = 'H';
     check.unread_letter = 'G';
     check.running_letter = 'H';
-    if (node_.program.empty()) return;
-    const std::size_t skip = steps_.skip_if_same(text + " is installed");
+    if (spec.program.empty()) return;
+    const std::size_t skip = steps.skip_if_same(text + " is installed");
     update(text);
-    steps_.land(skip);
+    steps.land(skip);
   }
 
  private:
@@ -41,85 +40,76 @@ class ProgramSteps {
     await_flash("program memory is clear");
     download();
     await_flash("program is written");
-    BootStep& good =
-        steps_.integer(BootAction::expect, flash, 0, "flash status after the download");
+    BootStep& good = steps.integer(BootAction::expect, flash, 0, "flash status after the download");
     good.mask = 0xFE;
     good.optional = true;
     good.letter = 'I';
-    steps_.integer(BootAction::expect, version, *node_.software_version, text + ", read back")
+    steps.integer(BootAction::expect, version, *spec.software_version, text + ", read back")
         .letter = 'I';
     command(BootAction::write, Command::start, "start the program");
-    BootStep& runs = steps_.integer(BootAction::await_value, control,
-                                    static_cast<std::int64_t>(Command::start), "program runs", 1);
-    runs.timeout = start_time;
-    runs.letter = 'I';
-    runs.may_restart = true;
+    BootStep& runs = steps.integer(BootAction::await_value, control,
+                                   static_cast<std::int64_t>(Command::start), "program runs", 1);
+    set_restart(runs, start_time);
+  }
+
+  /// Marks a step in which the device may restart.
+  static void set_restart(BootStep& step, Time timeout) {
+    step.letter = 'I';
+    step.timeout = timeout;
+    step.may_restart = true;
   }
 
   void command(BootAction action, Command what, const std::string& text) {
-    BootStep& step = steps_.integer(action, control, static_cast<std::int64_t>(what), text, 1);
-    step.letter = 'I';
-    step.may_restart = true;
-    step.timeout = flash_time;
+    set_restart(steps.integer(action, control, static_cast<std::int64_t>(what), text, 1),
+                flash_time);
   }
 
   /// Waits until the boot loader answers; it may need time to start.
   void await_answer() {
-    BootStep& step = steps_.integer(BootAction::probe, {0x1000, 0}, 0, "the boot loader answers");
-    step.value.clear();
-    step.letter = 'I';
-    step.timeout = start_time;
-    step.may_restart = true;
+    set_restart(steps.bytes(BootAction::probe, {0x1000, 0}, {}, "the boot loader answers"),
+                start_time);
   }
 
   void await_flash(const std::string& text) {
-    BootStep& step = steps_.integer(BootAction::await_value, flash, 0, text);
+    BootStep& step = steps.integer(BootAction::await_value, flash, 0, text);
     step.mask = 1;
     step.optional = true;
-    step.letter = 'I';
-    step.timeout = flash_time;
-    step.may_restart = true;
+    set_restart(step, flash_time);
   }
 
   void download() {
-    BootStep& step = steps_.bytes(
-        BootAction::download_program, data, node_.program,
-        "program " + *node_.software_file + ", " + std::to_string(node_.program.size()) + " bytes");
+    BootStep& step =
+        steps.bytes(BootAction::download_program, data, spec.program,
+                    joined("program ", *spec.software_file, ", ", spec.program.size(), " bytes"));
     step.letter = 'I';
     step.timeout = segment_time;
   }
-
-  const NodeSpec& node_;
-  BootSteps& steps_;
 };
 
-void needs(const NodeSpec& node, SourcePos pos, std::string_view key, ObjectKey object,
-           NetworkReport& report) {
-  report.error(pos, "no-such-object",
-               "`" + std::string{key} + "` of node `" + node.name + "` needs " + to_string(object) +
-                   ", which its device file does not have");
+void needs(const BootPart& part, SourcePos pos, std::string_view key, ObjectKey object) {
+  part.report.error(pos, "no-such-object", "`", key, "` of node `", part.spec.name, "` needs ",
+                    object, ", which its device file does not have");
 }
 
 }  // namespace
 
-void append_program(const NodeSpec& node, BootSteps& steps, NetworkReport& report) {
+void append_program(const BootPart& part) {
+  const NodeSpec& node = part.spec;
   if (*node.software_version == 0) {
-    if (node.software_file.given) {
-      report.error(node.software_file.pos, "missing-key",
-                   "`software_file` of node `" + node.name +
-                       "` needs `software_version`, the value of 1F56:01 while this program runs");
-    }
-    return;
+    if (!node.software_file.given) return;
+    return part.report.error(
+        node.software_file.pos, "missing-key", "`software_file` of node `", node.name,
+        "` needs `software_version`, the value of 1F56:01 while this program runs");
   }
-  if (!steps.has(version)) {
-    return needs(node, node.software_version.pos, "software_version", version, report);
+  if (!part.steps.has(version)) {
+    return needs(part, node.software_version.pos, "software_version", version);
   }
   for (const ObjectKey object : {data, control}) {
-    if (node.software_file.given && !steps.writable(object)) {
-      return needs(node, node.software_file.pos, "software_file", object, report);
+    if (node.software_file.given && !part.steps.writable(object)) {
+      return needs(part, node.software_file.pos, "software_file", object);
     }
   }
-  ProgramSteps{node, steps}.check_and_update();
+  ProgramSteps{part}.check_and_update();
 }
 
 }  // namespace takt

@@ -1,14 +1,29 @@
 #pragma once
+#include <cstdint>
+#include <string>
+
 #include "eds_parser/plan/boot/boot_compiler.hpp"
-#include "eds_parser/plan/boot/boot_part.hpp"
 #include "eds_parser/plan/boot/boot_steps.hpp"
-#include "eds_parser/plan/pdo/cob_ids.hpp"
-#include "eds_parser/plan/pdo/effective_pdo.hpp"
-#include "eds_parser/report/network_report.hpp"
-#include "eds_parser/specification/network_spec.hpp"
-#include "eds_parser/table/boot_plan.hpp"
 
 namespace takt {
+
+/// The data that all parts of a boot plan share: the node, its dictionary, and the list that takes
+/// their steps.
+struct BootPart {
+  const NodeSource& node;
+  const NodeSpec& spec;
+  const ObjectDictionary& dictionary;
+  const BootContext& context;
+  BootSteps& steps;
+  NetworkReport& report;
+
+  /// Reports that `key` of the network file needs an object that can't be written.
+  void missing(SourcePos pos, const std::string& key, ObjectKey object) const;
+  /// Returns false and warns if the limits of the device exclude `value`. Values that takt derives
+  /// from the plan are not forced upon such a device.
+  bool takes(ObjectKey key, std::int64_t value, SourcePos pos,
+             const std::string& consequence) const;
+};
 
 // The sections of the boot of a node, in the order in which they are appended.
 
@@ -29,18 +44,17 @@ void append_emergency(const BootPart& part);
 /// Appends the steps for one PDO. They compare the PDO with its settings in the device. If anything
 /// differs, they configure the PDO in the order that devices accept (CiA 301, 7.5.2.36) and read it
 /// back. A fixed mapping is only checked.
-void append_pdo(const ObjectDictionary& dictionary, const EffectivePdo& pdo, BootSteps& steps);
+void append_pdo(const BootPart& part, const EffectivePdo& pdo);
 
 /// Appends steps that check the version of the device's software and download another version if it
 /// differs: 0x1F56 is compared with 0x1F55, then 0x1F51, 0x1F50 and 0x1F57 are used. CiA 302-2 and
 /// 302-3.
-void append_program(const NodeSpec& node, BootSteps& steps, NetworkReport& report);
+void append_program(const BootPart& part);
 
 /// Appends steps that write values: the ParameterValues of a DCF, the interpolation period of
 /// drives, the values of the device data, then the list `sdo:` in its order. Each value is checked
 /// against the type, access and limits of the EDS.
-void append_values(const NodeSource& node, const BootContext& context, BootSteps& steps,
-                   NetworkReport& report);
+void append_values(const BootPart& part);
 
 /// Warns of every number that the boot writes and that lies outside the limits of the device file.
 /// The purpose of the step then mentions the limits as well. A value that the file itself has as

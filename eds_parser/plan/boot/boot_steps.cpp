@@ -1,17 +1,17 @@
 #include "eds_parser/plan/boot/boot_steps.hpp"
 
 #include "eds_parser/dictionary/integer_of.hpp"
-#include "eds_parser/table/access_name.hpp"
+#include "eds_parser/table/device_table.hpp"
+#include "eds_parser/table/little_endian.hpp"
 
 namespace takt {
-namespace {
 
-std::string limit(const std::optional<Value>& value) {
-  const auto integer = integer_of(value);
-  return integer ? std::to_string(*integer) : "";
+ObjectLimits::ObjectLimits(const SubObject& sub) noexcept
+    : low{integer_of(sub.low_limit)}, high{integer_of(sub.high_limit)} {}
+
+std::string ObjectLimits::text() const {
+  return (low ? std::to_string(*low) : "") + ".." + (high ? std::to_string(*high) : "");
 }
-
-}  // namespace
 
 BootStep& BootSteps::add(BootAction action, std::string purpose) {
   BootStep& step = plan_.steps.emplace_back();
@@ -64,7 +64,7 @@ void BootSteps::land(std::size_t skip) {
 
 bool BootSteps::writable(ObjectKey object) const noexcept {
   const SubObject* sub = dictionary_.find(object);
-  return sub != nullptr && sub->access != Access::ro && sub->access != Access::constant;
+  return sub != nullptr && sub->is_writable();
 }
 
 bool BootSteps::readable(ObjectKey object) const noexcept {
@@ -75,22 +75,13 @@ bool BootSteps::readable(ObjectKey object) const noexcept {
 std::string BootSteps::eds_note(ObjectKey object) const {
   const SubObject* sub = dictionary_.find(object);
   if (sub == nullptr) return dictionary_.file + " does not have " + to_string(object);
-  std::string note = dictionary_.file + " line " + std::to_string(sub->pos.line) + ": " +
-                     takt::label(dictionary_, object) + ", " + std::string{takt::name(sub->type)} +
-                     ", " + std::string{access_name(sub->access)};
+  std::string note =
+      joined(dictionary_.file, " line ", sub->pos.line, ": ", label(dictionary_, object), ", ",
+             name(sub->type), ", ", access_name(sub->access));
   if (!sub->default_text.empty()) note += ", default " + sub->default_text;
-  const std::string low = limit(sub->low_limit);
-  const std::string high = limit(sub->high_limit);
-  if (!low.empty() || !high.empty()) note += ", limits " + low + ".." + high;
+  const ObjectLimits limits{*sub};
+  if (limits.low || limits.high) note += ", limits " + limits.text();
   return note;
-}
-
-std::vector<std::byte> little_endian(std::int64_t value, unsigned width) {
-  std::vector<std::byte> out;
-  for (unsigned i = 0; i < width; ++i) {
-    out.push_back(static_cast<std::byte>((static_cast<std::uint64_t>(value) >> (8 * i)) & 0xFF));
-  }
-  return out;
 }
 
 }  // namespace takt

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,20 @@
 #include "eds_parser/table/boot_plan.hpp"
 
 namespace takt {
+
+/// The limits of an object in the device file.
+struct ObjectLimits {
+  explicit ObjectLimits(const SubObject& sub) noexcept;
+
+  bool hold(std::int64_t value) const noexcept {
+    return (!low || value >= *low) && (!high || value <= *high);
+  }
+  /// Returns the limits as `-10..10`; a limit that is missing gives no number.
+  std::string text() const;
+
+  std::optional<std::int64_t> low;
+  std::optional<std::int64_t> high;
+};
 
 /// Appends steps to a boot plan. The class knows the dictionary, so that each step can describe
 /// what it does.
@@ -45,8 +60,5 @@ class BootSteps {
   Time sdo_timeout_;
   BootPlan plan_;
 };
-
-/// Returns `value` in `width` bytes, little endian.
-std::vector<std::byte> little_endian(std::int64_t value, unsigned width);
 
 }  // namespace takt

@@ -8,57 +8,57 @@ class SyncSteps : BootPart {
   explicit SyncSteps(const BootPart& part) : BootPart{part} {}
 
   void append() {
-    if (!context.sync) return;
+    if (!context.plan.cycle.sync) return;
+    const MasterSpec& master = context.master;
+    const std::uint32_t period = *master.sync_period_us;
     if (steps.writable({0x1005, 0})) {
-      const std::string from = context.makes_sync ? "this node" : context.sync_source;
+      const std::string from = context.makes_sync()               ? "this node"
+                               : context.plan.cycle.sync_followed ? *master.sync_source
+                                                                  : "the master";
       steps
-          .integer(BootAction::write_if_differs, {0x1005, 0}, context.sync_cob_id,
-                   "SYNC comes from " + from + ", on " + hex(context.sync_cob_id, 3))
-          .mask = context.makes_sync ? 0x3FFF'FFFF : 0x7FFF'FFFF;
+          .integer(BootAction::write_if_differs, {0x1005, 0}, *master.sync_cob_id,
+                   "SYNC comes from " + from + ", on " + hex(*master.sync_cob_id, 3))
+          .mask = context.makes_sync() ? 0x3FFF'FFFF : 0x7FFF'FFFF;
     }
     sync_counter();
-    if (steps.writable({0x1006, 0}) && takes({0x1006, 0}, context.sync_period_us, {}, "")) {
-      steps.integer(BootAction::write_if_differs, {0x1006, 0}, context.sync_period_us,
-                    "SYNC period " + std::to_string(context.sync_period_us) + " us");
+    if (steps.writable({0x1006, 0}) && takes({0x1006, 0}, period, {}, "")) {
+      steps.integer(BootAction::write_if_differs, {0x1006, 0}, period,
+                    joined("SYNC period ", period, " us"));
     }
     make_sync();
-    if (!context.sync_window_us.given) return;
-    if (steps.writable({0x1007, 0})) {
-      steps.integer(BootAction::write_if_differs, {0x1007, 0}, *context.sync_window_us,
-                    "synchronous window " + std::to_string(*context.sync_window_us) + " us");
+    if (master.sync_window_us.given && steps.writable({0x1007, 0})) {
+      steps.integer(BootAction::write_if_differs, {0x1007, 0}, *master.sync_window_us,
+                    joined("synchronous window ", *master.sync_window_us, " us"));
     }
   }
 
  private:
   /// Sets bit 30 last: it starts SYNC, and afterwards no other bit may change. CiA 301, 7.5.2.5.
   void make_sync() {
-    if (!context.makes_sync) return;
+    if (!context.makes_sync()) return;
     steps
-        .integer(BootAction::write_if_differs, {0x1005, 0}, context.sync_cob_id | 0x4000'0000,
-                 "this node makes SYNC from now on")
+        .integer(BootAction::write_if_differs, {0x1005, 0},
+                 *context.master.sync_cob_id | 0x4000'0000, "this node makes SYNC from now on")
         .mask = 0x7FFF'FFFF;
   }
 
   /// 0x1019 may change only while 0x1006 is 0. CiA 301, 7.5.2.22.
   void sync_counter() {
     const ObjectKey key{0x1019, 0};
+    const std::uint8_t overflow = *context.master.sync_overflow;
     if (!steps.writable(key)) {
-      if (context.sync_overflow != 0 && !steps.has(key)) {
-        report.warning(spec.pos, "sync-counter",
-                       "node `" + spec.name + "` has no " + to_string(key) +
-                           ": the device may report each SYNC with a counter as a length error");
-      }
-      return;
+      if (overflow == 0 || steps.has(key)) return;
+      return report.warning(spec.pos, "sync-counter", "node `", spec.name, "` has no ", key,
+                            ": the device may report each SYNC with a counter as a length error");
     }
-    const std::string purpose = context.sync_overflow == 0
-                                    ? "SYNC without counter"
-                                    : "SYNC counter 1.." + std::to_string(context.sync_overflow);
-    steps.integer(BootAction::compare, key, context.sync_overflow, purpose, 1);
+    const std::string purpose =
+        overflow == 0 ? "SYNC without counter" : joined("SYNC counter 1..", overflow);
+    steps.integer(BootAction::compare, key, overflow, purpose, 1);
     const std::size_t skip = steps.skip_if_same("SYNC counter needs no change");
     if (steps.writable({0x1006, 0})) {
       steps.integer(BootAction::write, {0x1006, 0}, 0, "period 0, so that 1019 may change");
     }
-    steps.integer(BootAction::write, key, context.sync_overflow, purpose, 1);
+    steps.integer(BootAction::write, key, overflow, purpose, 1);
     steps.land(skip);
   }
 };

@@ -1,6 +1,7 @@
 #include "eds_parser/plan/boot/configuration_date.hpp"
 
 #include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/table/little_endian.hpp"
 
 namespace takt {
 namespace {
@@ -15,40 +16,23 @@ std::uint32_t parameter(const ObjectDictionary& dictionary, ObjectKey key) {
   return static_cast<std::uint32_t>(integer_of(sub->parameter_value).value_or(0));
 }
 
-/// FNV-1a, 64 bit.
-class Hash {
- public:
-  void add(std::uint64_t byte) noexcept { value_ = (value_ ^ (byte & 0xFF)) * 0x100'0000'01B3; }
-  std::uint64_t value() const noexcept { return value_; }
-
- private:
-  std::uint64_t value_ = 0xCBF2'9CE4'8422'2325;
-};
-
 }  // namespace
 
-ConfigurationDate::ConfigurationDate(const NodeSpec& node, const ObjectDictionary& dictionary,
-                                     BootSteps& steps, NetworkReport& report)
-    : steps_{steps} {
-  choose(node, dictionary, report);
-}
-
-void ConfigurationDate::choose(const NodeSpec& node, const ObjectDictionary& dictionary,
-                               NetworkReport& report) {
+ConfigurationDate::ConfigurationDate(const BootPart& part) : steps_{part.steps} {
+  const NodeSpec& node = part.spec;
   if (node.configuration_date.given) {
     made_ = !node.configuration_date->has_value();
     date_ = node.configuration_date->value_or(1);
     time_ = made_ || *node.configuration_time == 0 ? 1 : *node.configuration_time;
   } else {
-    date_ = parameter(dictionary, date_object);
-    time_ = parameter(dictionary, time_object);
+    date_ = parameter(part.dictionary, date_object);
+    time_ = parameter(part.dictionary, time_object);
   }
   used_ = date_ != 0 && time_ != 0 && steps_.writable(date_object) && steps_.writable(time_object);
   if (used_ || !node.configuration_date.given) return;
-  report.error(node.configuration_date.pos, "no-such-object",
-               "`configuration_date` of node `" + node.name +
-                   "` needs 1020:01 and 1020:02, which " + dictionary.file +
-                   " does not have or can't change");
+  part.report.error(node.configuration_date.pos, "no-such-object", "`configuration_date` of node `",
+                    node.name, "` needs 1020:01 and 1020:02, which ", part.dictionary.file,
+                    " does not have or can't change");
 }
 
 void ConfigurationDate::skip_if_there() {
@@ -61,17 +45,18 @@ void ConfigurationDate::skip_if_there() {
 
 /// Derives the date from the content, so that the same content always gives the same date.
 void ConfigurationDate::make_from_content() {
-  Hash hash;
+  std::uint64_t hash = 0xCBF2'9CE4'8422'2325;  // FNV-1a, 64 bit
+  const auto add = [&](std::uint64_t byte) { hash = (hash ^ (byte & 0xFF)) * 0x100'0000'01B3; };
   for (std::size_t i = skip_ + 1; i < steps_.size(); ++i) {
     const BootStep& step = steps_.steps()[i];
-    hash.add(static_cast<std::uint64_t>(step.action));
-    hash.add(step.object.index);
-    hash.add(step.object.index >> 8U);
-    hash.add(step.object.sub);
-    for (const std::byte byte : step.value) hash.add(std::to_integer<std::uint64_t>(byte));
+    add(static_cast<std::uint64_t>(step.action));
+    add(step.object.index);
+    add(step.object.index >> 8U);
+    add(step.object.sub);
+    for (const std::byte byte : step.value) add(std::to_integer<std::uint64_t>(byte));
   }
-  date_ = 1 + static_cast<std::uint32_t>(hash.value() % 0xFFFF);
-  time_ = 1 + static_cast<std::uint32_t>((hash.value() >> 16U) % (day_ms - 1));
+  date_ = 1 + static_cast<std::uint32_t>(hash % 0xFFFF);
+  time_ = 1 + static_cast<std::uint32_t>((hash >> 16U) % (day_ms - 1));
   steps_.steps()[first_].value = little_endian(date_, 4);
   steps_.steps()[first_ + 1].value = little_endian(time_, 4);
 }

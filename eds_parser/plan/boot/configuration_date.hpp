@@ -1,11 +1,8 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 
-#include "eds_parser/plan/boot/boot_steps.hpp"
-#include "eds_parser/report/network_report.hpp"
-#include "eds_parser/specification/network_spec.hpp"
+#include "eds_parser/plan/boot/boot_sections.hpp"
 
 namespace takt {
 
@@ -14,8 +11,7 @@ namespace takt {
 /// from the content that is written. CiA 302-2.
 class ConfigurationDate {
  public:
-  ConfigurationDate(const NodeSpec& node, const ObjectDictionary& dictionary, BootSteps& steps,
-                    NetworkReport& report);
+  explicit ConfigurationDate(const BootPart& part);
 
   /// Appends the comparison. Call this before the configuration steps.
   void skip_if_there();
@@ -28,7 +24,6 @@ class ConfigurationDate {
   bool used() const noexcept { return used_; }
 
  private:
-  void choose(const NodeSpec& node, const ObjectDictionary& dictionary, NetworkReport& report);
   void make_from_content();
 
   BootSteps& steps_;

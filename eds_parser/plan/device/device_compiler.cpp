@@ -11,16 +11,10 @@ namespace {
 
 std::string model_of(const NodeSource& node) {
   if (!node.spec->sim.model.empty()) return node.spec->sim.model;
-  switch (profile_of(*node.dictionary)) {
-    case 401:
-      return "io401";
-    case 402:
-      return "drive402";
-    case 406:
-      return "encoder406";
-    default:
-      return "plain";
-  }
+  const std::int64_t profile = profile_of(*node.dictionary);
+  if (profile == 401) return "io401";
+  if (profile == 402) return "drive402";
+  return profile == 406 ? "encoder406" : "plain";
 }
 
 constexpr std::uint64_t pdo_off = 0x8000'0000;
@@ -45,11 +39,9 @@ DeviceObject object_of(std::uint16_t index, const SubObject& sub) {
                       .type = sub.type,
                       .access = sub.access,
                       .pdo_mappable = sub.pdo_mappable,
-                      .value = {},
-                      .low_limit = {},
-                      .high_limit = {}};
-  const bool fixed = sub.access == Access::ro || sub.access == Access::constant;
-  const bool use_default = sub.default_value && !(fixed && sub.parameter_value);
+                      .low_limit = integer_of(sub.low_limit),
+                      .high_limit = integer_of(sub.high_limit)};
+  const bool use_default = sub.default_value && (sub.is_writable() || !sub.parameter_value);
   const auto& value = use_default ? sub.default_value : sub.parameter_value;
   if (value) {
     object.value = to_bytes(*value, sub.type);
@@ -58,29 +50,13 @@ DeviceObject object_of(std::uint16_t index, const SubObject& sub) {
   } else {
     object.value.resize(byte_width(sub.type));
   }
-  object.low_limit = integer_of(sub.low_limit);
-  object.high_limit = integer_of(sub.high_limit);
   for (const auto& own : {sub.default_value, sub.parameter_value}) widen_limits(object, own);
   return object;
 }
 
-/// Makes the simulated device report its configured firmware.
-void set_firmware(const NodeSource& node, DeviceTable& table) {
-  table.firmware = to_string(*node.firmware);
-  if (node.data == nullptr || !node.data->revision_is_firmware) return;
-  const std::uint64_t revision =
-      std::uint64_t{node.firmware->parts[0]} << 16 | node.firmware->parts[1];
+void set_value(DeviceTable& table, ObjectKey key, std::uint64_t value) {
   for (DeviceObject& object : table.objects) {
-    if (object.key == ObjectKey{0x1018, 3}) object.value = to_bytes(Value{revision}, object.type);
-  }
-}
-
-/// Gives the simulated device the serial number that the network file expects.
-void set_serial_number(const NodeSpec& node, DeviceTable& table) {
-  if (!node.serial_number.given || *node.serial_number == 0) return;
-  const std::uint64_t serial = *node.serial_number;
-  for (DeviceObject& object : table.objects) {
-    if (object.key == ObjectKey{0x1018, 4}) object.value = to_bytes(Value{serial}, object.type);
+    if (object.key == key) object.value = to_bytes(Value{value}, object.type);
   }
 }
 
@@ -90,9 +66,7 @@ DeviceTable compile_device(const NodeSource& node) {
   const ObjectDictionary& dictionary = *node.dictionary;
   DeviceTable table{.node = node.id,
                     .name = node.spec->name,
-                    .objects = {},
                     .granularity = dictionary.device.granularity,
-                    .dummy_usage = 0,
                     .model = model_of(node),
                     .quirks = node.spec->sim.quirks};
   for (unsigned n = 0; n < dictionary.dummy_usage.size(); ++n) {
@@ -101,8 +75,15 @@ DeviceTable compile_device(const NodeSource& node) {
   for (const Object& object : dictionary.objects) {
     for (const SubObject& sub : object.subs) table.objects.push_back(object_of(object.index, sub));
   }
-  if (node.firmware) set_firmware(node, table);
-  set_serial_number(*node.spec, table);
+  // The simulated device has the firmware and the serial number that the network file expects.
+  if (node.firmware) {
+    table.firmware = to_string(*node.firmware);
+    const auto& parts = node.firmware->parts;
+    if (node.data != nullptr && node.data->revision_is_firmware) {
+      set_value(table, {0x1018, 3}, std::uint64_t{parts[0]} << 16 | parts[1]);
+    }
+  }
+  if (*node.spec->serial_number != 0) set_value(table, {0x1018, 4}, *node.spec->serial_number);
   return table;
 }
 

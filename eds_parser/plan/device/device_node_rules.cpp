@@ -1,6 +1,4 @@
-#include "eds_parser/plan/device/device_node_rules.hpp"
-
-#include "eds_parser/plan/device/device_notes.hpp"
+#include "eds_parser/plan/device/device_rules.hpp"
 #include "eds_parser/specification/device_data.hpp"
 
 namespace takt {
@@ -22,10 +20,9 @@ class NodeJudge {
   void node_id() {
     const NumberRange& ids = data_.node_ids.ids;
     if (!spec_.id.given || ids.contains(*spec_.id)) return;
-    report_.error(spec_.id.pos, "device-data",
-                  "node `" + spec_.name + "` can't have node id " + std::to_string(*spec_.id) +
-                      " as " + data_.name + ", which allows only " + list_of({ids}) +
-                      data_.cite(data_.node_ids.fact));
+    report_.error(spec_.id.pos, "device-data", "node `", spec_.name, "` can't have node id ",
+                  *spec_.id, " as ", data_.name, ", which allows only ", list_of({ids}),
+                  data_.cite(data_.node_ids.fact));
   }
 
   void heartbeat() {
@@ -34,7 +31,7 @@ class NodeJudge {
   }
 
   void heartbeat_by_sdo(const SdoSpec& sdo) {
-    const auto* value = std::get_if<std::int64_t>(&sdo.value);
+    const std::int64_t* value = sdo.integer();
     const bool consumer = sdo.object.index == 0x1016 && sdo.object.sub != 0;
     const bool producer = sdo.object == ObjectKey{0x1017, 0};
     if (value == nullptr || (!consumer && !producer)) return;
@@ -46,16 +43,12 @@ class NodeJudge {
     const HeartbeatRule& rule = data_.heartbeat;
     const std::uint32_t kept = rule.kept(ms);
     if (kept == ms) return;
-    const std::string text = what + " is " + std::to_string(ms) + " ms; " + data_.name +
-                             " counts in steps of " + std::to_string(rule.multiple_of_ms) +
-                             " ms and ";
+    const std::string text = joined(what, " is ", ms, " ms; ", data_.name, " counts in steps of ",
+                                    rule.multiple_of_ms, " ms and rounds this time down to ", kept);
     if (kept == 0) {
-      report_.error(pos, "device-data",
-                    text + "rounds this time down to 0, which means off" + data_.cite(rule.fact));
+      report_.error(pos, "device-data", text, ", which means off", data_.cite(rule.fact));
     } else {
-      report_.warning(pos, "device-data",
-                      text + "rounds this time down to " + std::to_string(kept) + " ms" +
-                          data_.cite(rule.fact));
+      report_.warning(pos, "device-data", text, " ms", data_.cite(rule.fact));
     }
   }
 
@@ -67,10 +60,9 @@ class NodeJudge {
     const bool whole = *spec_.reset == ResetPolicy::node;
     const bool whole_wanted = *wanted == ResetPolicy::node;
     if (whole == whole_wanted || *spec_.reset == ResetPolicy::none) return;
-    report_.warning(spec_.reset.pos, "device-data",
-                    "node `" + spec_.name + "` should be reset with `reset: " +
-                        (whole_wanted ? "node" : "communication") + '`' +
-                        data_.cite(data_.boot.fact));
+    report_.warning(spec_.reset.pos, "device-data", "node `", spec_.name,
+                    "` should be reset with `reset: ", whole_wanted ? "node" : "communication", "`",
+                    data_.cite(data_.boot.fact));
   }
 
   const NodeSpec& spec_;

@@ -1,21 +1,11 @@
-#include "eds_parser/plan/device/device_watch.hpp"
-
-#include <span>
-
 #include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/plan/device/node_objects.hpp"
+#include "eds_parser/table/little_endian.hpp"
 
 namespace takt {
 namespace {
 
 using std::chrono::milliseconds;
-
-std::int64_t little_endian(std::span<const std::byte> bytes) noexcept {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < bytes.size() && i < sizeof value; ++i) {
-    value |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
-  }
-  return static_cast<std::int64_t>(value);
-}
 
 bool writes(const BootStep& step, ObjectKey key) noexcept {
   const bool any = step.action == BootAction::write ||
@@ -29,7 +19,7 @@ std::int64_t value_after_boot(const ObjectDictionary& dictionary, const BootPlan
                               ObjectKey key) {
   std::int64_t value = integer_of(dictionary, key).value_or(0);
   for (const BootStep& step : boot.steps) {
-    if (writes(step, key)) value = little_endian(step.value);
+    if (writes(step, key)) value = static_cast<std::int64_t>(from_little_endian(step.value));
   }
   return value;
 }

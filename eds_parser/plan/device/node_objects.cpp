@@ -1,6 +1,6 @@
 #include "eds_parser/plan/device/node_objects.hpp"
 
-#include <variant>
+#include <algorithm>
 
 #include "eds_parser/dictionary/integer_of.hpp"
 
@@ -8,10 +8,9 @@ namespace takt {
 
 std::optional<std::int64_t> written_object(const NodeSource& node, ObjectKey object) {
   const auto& list = node.spec->sdo;
-  for (auto sdo = list.rbegin(); sdo != list.rend(); ++sdo) {
-    if (sdo->object != object) continue;
-    if (const auto* value = std::get_if<std::int64_t>(&sdo->value)) return *value;
-    return std::nullopt;
+  const auto sdo = std::ranges::find(list.rbegin(), list.rend(), object, &SdoSpec::object);
+  if (sdo != list.rend()) {
+    return sdo->integer() == nullptr ? std::nullopt : std::optional{*sdo->integer()};
   }
   const SubObject* sub = node.dictionary->find(object);
   return sub == nullptr ? std::nullopt : integer_of(sub->parameter_value);

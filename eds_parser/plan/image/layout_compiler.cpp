@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "eds_parser/plan/image/signal_rules.hpp"
-#include "eds_parser/plan/pdo/mpdo_compiler.hpp"
+#include "eds_parser/plan/pdo/mapping_compiler.hpp"
 
 namespace takt {
 namespace {
@@ -165,10 +165,7 @@ class LayoutCompiler {
                   .type = candidate.entry->type,
                   .bits = candidate.entry->bits,
                   .output = candidate.output,
-                  .row = static_cast<std::uint16_t>(candidate.row),
-                  .unit = {},
-                  .safe_value = {},
-                  .seeded_from = {}};
+                  .row = static_cast<std::uint16_t>(candidate.row)};
     apply_units(node.node, signal);
     if (signal.output) {
       apply_fallback(node.node, plan_.nodes[candidate.node_index].cia402, plan_.cycle.period,

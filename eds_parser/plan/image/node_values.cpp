@@ -1,10 +1,9 @@
-#include "eds_parser/plan/image/node_values.hpp"
-
 #include <algorithm>
 #include <string>
 
+#include "eds_parser/plan/image/signal_rules.hpp"
 #include "eds_parser/plan/pdo/mapping_compiler.hpp"
-#include "eds_parser/table/real_range.hpp"
+#include "eds_parser/table/data_type.hpp"
 
 namespace takt {
 namespace {
@@ -24,8 +23,7 @@ bool fits(std::int64_t value, DataType type) {
 
 bool in_an_rpdo(const NodePdos& node, ObjectKey object) {
   return std::ranges::any_of(node.pdos, [object](const EffectivePdo& pdo) {
-    if (pdo.is_tpdo || pdo.use != PdoUse::exchanged) return false;
-    return std::ranges::find(pdo.mapping, object, &EffectiveEntry::object) != pdo.mapping.end();
+    return !pdo.is_tpdo && pdo.use == PdoUse::exchanged && pdo.maps(object);
   });
 }
 
@@ -36,22 +34,20 @@ class ValueCheck {
   void safe_value(const SdoSpec& safe) {
     const SubObject* sub = find(safe.object, safe.pos, "`safe_values`");
     if (sub == nullptr) return;
-    const auto* value = std::get_if<std::int64_t>(&safe.value);
+    const std::int64_t* value = safe.integer();
     const auto* real = std::get_if<double>(&safe.value);
     const bool too_large =
         real != nullptr && sub->type == DataType::real32 && exceeds_real32(*real);
     if ((value != nullptr && !fits(*value, sub->type)) || too_large) {
-      report_.error(safe.value_pos, "out-of-range",
-                    "`safe_values` of " + owner() + ": " + object_text(safe.object, *sub) + " (" +
-                        std::string{name(sub->type)} + ") does not hold " +
-                        (too_large ? "more than 3.4e38" : std::to_string(*value)));
+      report_.error(safe.value_pos, "out-of-range", "`safe_values` of ", owner(), ": ",
+                    object_text(safe.object, *sub), " (", name(sub->type), ") does not hold ",
+                    too_large ? "more than 3.4e38" : std::to_string(*value));
     }
     if (node_.node.spec->has_rpdo_errors || in_an_rpdo(node_, safe.object)) return;
-    report_.error(safe.pos, "not-an-output",
-                  "`safe_values` of " + owner() + ": no RPDO carries " +
-                      object_text(safe.object, *sub) +
-                      ", so the value would never be sent; map it under `rpdo:`, or write it once "
-                      "at boot under `sdo:`");
+    report_.error(safe.pos, "not-an-output", "`safe_values` of ", owner(), ": no RPDO carries ",
+                  object_text(safe.object, *sub),
+                  ", so the value would never be sent; map it under `rpdo:`, or write it once at "
+                  "boot under `sdo:`");
   }
 
   void unit(const ObjectUnitSpec& unit) { find(unit.object, unit.unit.pos, "`units: objects`"); }
@@ -62,10 +58,9 @@ class ValueCheck {
   const SubObject* find(ObjectKey object, SourcePos pos, const std::string& list) {
     const SubObject* sub = node_.node.dictionary->find(object);
     if (sub == nullptr) {
-      report_.error(pos, "no-such-object",
-                    list + " of " + owner() + ": object " + to_string(object) + " is not in " +
-                        node_.node.dictionary->file +
-                        without_0x(*node_.node.dictionary, object.index));
+      report_.error(pos, "no-such-object", list, " of ", owner(), ": object ", object,
+                    " is not in ", node_.node.dictionary->file,
+                    without_0x(*node_.node.dictionary, object.index));
     }
     return sub;
   }

@@ -1,6 +1,7 @@
 #include "eds_parser/plan/image/signal_rules.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -17,48 +18,31 @@ constexpr std::chrono::milliseconds default_time_to_live{50};
 enum class Role : std::uint8_t { other, controlword, mode, position_target, rate_target };
 
 Role role_of(ObjectKey object) {
-  switch (first_axis(object.index)) {
-    case 0x6040:
-      return Role::controlword;
-    case 0x6060:
-      return Role::mode;
-    case 0x607A:
-    case 0x60C1:
-      return Role::position_target;
-    case 0x6042:  // vl target velocity
-    case 0x6071:  // target torque
-    case 0x60B0:  // offsets of position, velocity, torque
-    case 0x60B1:
-    case 0x60B2:
-    case 0x60FF:  // target velocity
-      return Role::rate_target;
-    default:
-      return Role::other;
-  }
+  // Target velocity (vl), target torque, the offsets of position, velocity and torque, target
+  // velocity.
+  constexpr std::array<std::uint16_t, 6> rates{0x6042, 0x6071, 0x60B0, 0x60B1, 0x60B2, 0x60FF};
+  const std::uint16_t index = first_axis(object.index);
+  if (index == 0x6040) return Role::controlword;
+  if (index == 0x6060) return Role::mode;
+  if (index == 0x607A || index == 0x60C1) return Role::position_target;
+  return std::ranges::find(rates, index) != rates.end() ? Role::rate_target : Role::other;
 }
 
 /// Returns a configured value in the form of the process image: reals as their bit pattern.
 std::int64_t raw_value(const SdoSpec& sdo, DataType type) {
-  if (const auto* integer = std::get_if<std::int64_t>(&sdo.value)) {
-    if (type == DataType::real32) {
-      return std::bit_cast<std::int32_t>(static_cast<float>(*integer));
-    }
-    if (type == DataType::real64) return std::bit_cast<std::int64_t>(static_cast<double>(*integer));
-    return *integer;
-  }
-  if (const auto* real = std::get_if<double>(&sdo.value)) {
-    if (type == DataType::real32) return std::bit_cast<std::int32_t>(static_cast<float>(*real));
-    if (type == DataType::real64) return std::bit_cast<std::int64_t>(*real);
-    return std::abs(*real) < 0x1p63 ? static_cast<std::int64_t>(*real) : 0;
-  }
-  return 0;
+  const std::int64_t* integer = sdo.integer();
+  const auto* real = std::get_if<double>(&sdo.value);
+  if (integer == nullptr && real == nullptr) return 0;
+  const double number = integer != nullptr ? static_cast<double>(*integer) : *real;
+  if (type == DataType::real32) return std::bit_cast<std::int32_t>(static_cast<float>(number));
+  if (type == DataType::real64) return std::bit_cast<std::int64_t>(number);
+  if (integer != nullptr) return *integer;
+  return std::abs(number) < 0x1p63 ? static_cast<std::int64_t>(number) : 0;
 }
 
 std::optional<std::int64_t> written_value(const std::vector<SdoSpec>& list, const Signal& signal) {
-  for (auto sdo = list.rbegin(); sdo != list.rend(); ++sdo) {
-    if (sdo->object == signal.object) return raw_value(*sdo, signal.type);
-  }
-  return {};
+  const auto sdo = std::ranges::find(list.rbegin(), list.rend(), signal.object, &SdoSpec::object);
+  return sdo == list.rend() ? std::nullopt : std::optional{raw_value(*sdo, signal.type)};
 }
 
 /// Returns the value of an output before its first command: the entry of `safe_values`. Without
@@ -156,15 +140,13 @@ void check_fallback(const NodeSource& node, bool cia402, NetworkReport& report) 
   const bool needs_drive =
       *fallback == FallbackPolicy::quick_stop || *fallback == FallbackPolicy::disable;
   if (fallback.given && needs_drive && !cia402) {
-    report.error(fallback.pos, "fallback",
-                 "node `" + node.spec->name +
-                     "` is not a CiA 402 drive and has no quick stop or disable: write hold, zero "
-                     "or safe (`profile: cia402` makes the node a drive)");
+    report.error(fallback.pos, "fallback", "node `", node.spec->name,
+                 "` is not a CiA 402 drive and has no quick stop or disable: write hold, zero or "
+                 "safe (`profile: cia402` makes the node a drive)");
   }
   if (fallback.given && *fallback == FallbackPolicy::safe && node.spec->safe_values.empty()) {
-    report.error(fallback.pos, "fallback",
-                 "`fallback: safe` of node `" + node.spec->name +
-                     "` needs `safe_values: [{index: ..., sub_index: ..., value: ...}]`");
+    report.error(fallback.pos, "fallback", "`fallback: safe` of node `", node.spec->name,
+                 "` needs `safe_values: [{index: ..., sub_index: ..., value: ...}]`");
   }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "eds_parser/plan/pdo/effective_pdo.hpp"
+#include "eds_parser/plan/pdo/cob_ids.hpp"
 #include "eds_parser/report/network_report.hpp"
 #include "eds_parser/table/image_layout.hpp"
 #include "eds_parser/table/time.hpp"
@@ -21,5 +21,10 @@ std::uint16_t seed_object(std::uint16_t output_index) noexcept;
 
 /// Reports errors in `on_timeout` and `safe_values` that concern the node as a whole.
 void check_fallback(const NodeSource& node, bool cia402, NetworkReport& report);
+
+/// Reports entries of `safe_values` and `units: objects:` that would have no effect: objects that
+/// the device does not have or that no RPDO of the network file carries, and values that do not
+/// fit.
+void check_node_values(const NodePdos& node, NetworkReport& report);
 
 }  // namespace takt

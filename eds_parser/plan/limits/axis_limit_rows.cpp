@@ -5,7 +5,7 @@
 #include "eds_parser/plan/device/node_objects.hpp"
 #include "eds_parser/plan/limits/axis_limits.hpp"
 #include "eds_parser/table/axis_modes.hpp"
-#include "eds_parser/table/tpdo_of.hpp"
+#include "eds_parser/table/pdo_table.hpp"
 
 // What the bus thread needs of an axis to check its set-points, besides the limits themselves.
 
@@ -44,18 +44,17 @@ void AxisLimits::ask_for_turn(const Sourced<double>& modulo) {
   const double of_drive = turn(configured_object);
   if (of_drive == length) return;
   const ObjectKey key = object(0x607B);
-  std::string text = "`modulo` of " + owner() + " is " + std::to_string(std::llround(length)) +
-                     " counts of " + table_.signal(positions_[0]).name + ", ";
-  text += of_drive > 0 ? "but " + to_string(key) + " (position range limit) wraps after " +
-                             std::to_string(std::llround(of_drive))
-                       : "but nothing sets " + to_string(key) + " (position range limit)";
-  text += ": a drive that doesn't wrap at `modulo` moves back a whole turn at once";
+  const std::string text =
+      joined("`modulo` of ", owner(), " is ", std::llround(length), " counts of ",
+             table_.signal(positions_[0]).name, ", but ", of_drive > 0 ? "" : "nothing sets ", key,
+             " (position range limit)",
+             of_drive > 0 ? joined(" wraps after ", std::llround(of_drive)) : "",
+             ": a drive that doesn't wrap at `modulo` moves back a whole turn at once");
   if (node_.dictionary->find({key.index, 2}) == nullptr) {
-    return report_.note(modulo.pos, "limits", text + "; the device file does not have this object");
+    return report_.note(modulo.pos, "limits", text, "; the device file does not have this object");
   }
-  report_.warning(modulo.pos, "limits",
-                  text + ". Write " + to_string(ObjectKey{key.index, 1}) + " and " +
-                      to_string(ObjectKey{key.index, 2}) + " under `sdo:`");
+  report_.warning(modulo.pos, "limits", text, ". Write ", ObjectKey{key.index, 1}, " and ",
+                  ObjectKey{key.index, 2}, " under `sdo:`");
 }
 
 OutputLimit* AxisLimits::row_of(std::optional<SignalIndex> signal) {
@@ -99,11 +98,10 @@ bool AxisLimits::can_be_added(SignalIndex target, SignalIndex offset) const {
   const Signal& first = table_.signal(target);
   const Signal& second = table_.signal(offset);
   if (first.unit == second.unit) return true;
-  report_.warning(node_.spec->pos, "limits",
-                  first.name + " and " + second.name + " of " + owner() + " are in " + first.unit +
-                      " and " + second.unit +
-                      ": takt can't add them, so the limits hold for each " +
-                      "of them alone. Give them the same unit under `units:`");
+  report_.warning(node_.spec->pos, "limits", first.name, " and ", second.name, " of ", owner(),
+                  " are in ", first.unit, " and ", second.unit,
+                  ": takt can't add them, so the limits hold for each of them alone. Give them the "
+                  "same unit under `units:`");
   return false;
 }
 
@@ -128,14 +126,13 @@ void AxisLimits::warn_of_late_start(const AxisLimitsSpec& limits) {
   if (tpdo == nullptr || !comes_by_event_alone(*tpdo)) return;
   for (const auto* limit : {&limits.step, &limits.velocity, &limits.acceleration}) {
     if (!limit->given) continue;
-    const std::string name = "TPDO" + std::to_string(tpdo->number);
+    const std::string name = joined("TPDO", tpdo->number);
     return report_.warning(
-        limit->pos, "limits",
-        "limits of " + owner() + " hold its set-points back until " + to_string(object(0x6064)) +
-            " has arrived once, but " + name + " sends it only by event (transmission " +
-            std::to_string(tpdo->transmission) + " without `event_timer`): an axis at standstill " +
-            "may never send it. Give " + name +
-            " an `event_timer`, or make it synchronous (`transmission: 1`)");
+        limit->pos, "limits", "limits of ", owner(), " hold its set-points back until ",
+        object(0x6064), " has arrived once, but ", name, " sends it only by event (transmission ",
+        tpdo->transmission,
+        " without `event_timer`): an axis at standstill may never send it. Give ", name,
+        " an `event_timer`, or make it synchronous (`transmission: 1`)");
   }
 }
 

@@ -7,15 +7,9 @@
 #include <string>
 
 #include "eds_parser/plan/limits/limit_proposals.hpp"
-#include "eds_parser/table/limit_names.hpp"
+#include "eds_parser/table/output_limits.hpp"
 
 namespace takt {
-namespace {
-
-/// Distance between the objects of two axes of a device (CiA 402).
-constexpr std::uint16_t axis_objects = 0x800;
-
-}  // namespace
 
 bool is_limit_rate(std::string_view unit, const std::string& base, LimitKind kind) {
   constexpr std::array<std::string_view, 1> per_second{"/s"};
@@ -38,7 +32,7 @@ AxisLimits::AxisLimits(const NodeSource& node, std::size_t node_index, std::uint
       torques_{outputs({{0x6071, 0}, {0x60B2, 0}})} {}
 
 ObjectKey AxisLimits::object(std::uint16_t index, std::uint8_t sub) const {
-  return {static_cast<std::uint16_t>(index + (axis_ - 1) * axis_objects), sub};
+  return axis_object(axis_ - 1U, index, sub);
 }
 
 std::optional<SignalIndex> AxisLimits::output(std::uint16_t index, std::uint8_t sub) const {
@@ -59,14 +53,14 @@ std::vector<SignalIndex> AxisLimits::outputs(std::initializer_list<ObjectKey> ke
 
 std::string AxisLimits::owner() const {
   const std::string node = "node `" + node_.spec->name + "`";
-  return axis_ == 1 ? node : "axis " + std::to_string(axis_) + " of " + node;
+  return axis_ == 1 ? node : joined("axis ", axis_, " of ", node);
 }
 
 void AxisLimits::compile(const AxisLimitsSpec& limits) {
   position(limits.position);
   velocity(limits.velocity);
   acceleration(limits.acceleration);
-  jerk(limits.jerk);
+  line_of_file(LimitKind::jerk, limits.jerk, false);
   step(limits.step);
   torque(limits.torque);
   describe_rows();
@@ -85,13 +79,20 @@ double AxisLimits::cycle_seconds() const {
 }
 
 LimitLine& AxisLimits::line(LimitKind kind, LimitSource source) {
-  LimitLine& line = plan_.limits.lines.emplace_back();
-  line.node_index = static_cast<std::uint8_t>(node_index_);
-  line.axis = axis_;
-  line.kind = kind;
-  line.source = source;
-  line.unit = unit_of(kind);
-  return line;
+  return plan_.limits.lines.emplace_back(
+      LimitLine{.node_index = static_cast<std::uint8_t>(node_index_),
+                .axis = axis_,
+                .kind = kind,
+                .source = source,
+                .unit = unit_of(kind)});
+}
+
+LimitLine* AxisLimits::line_of_file(LimitKind kind, const Sourced<double>& limit, bool shown) {
+  if (!limit.given && shown) line(kind, LimitSource::none);
+  if (!limit.given) return nullptr;
+  LimitLine& entry = line(kind, LimitSource::file);
+  entry.high = *limit;
+  return &entry;
 }
 
 /// Returns the unit of `units:`, else the one that follows from the unit of positions.
@@ -119,16 +120,14 @@ std::string AxisLimits::unit_of(LimitKind kind) const {
   return base;
 }
 
-bool AxisLimits::has_unit(SignalIndex index, std::string_view kind, SourcePos pos) {
+bool AxisLimits::has_unit(SignalIndex index, LimitKind kind, SourcePos pos) {
   const Signal& signal = table_.signal(index);
   if (!signal.unit.empty() || signal.scale != 1.0 || signal.offset != 0.0) return true;
   if (node_.spec->units.has_errors) return false;
-  report_.error(
-      pos, "limits",
-      "`" + std::string{kind} + "` in `limits` of " + owner() + ": " + signal.name + " (" +
-          to_string(signal.object) +
-          ") has no unit, so the limit would apply to raw counts: write a unit under `units:` "
-          "(`{scale: 1, unit: counts}` if counts are meant)");
+  report_.error(pos, "limits", "`", name(kind), "` in `limits` of ", owner(), ": ", signal.name,
+                " (", signal.object,
+                ") has no unit, so the limit would apply to raw counts: write a unit under "
+                "`units:` (`{scale: 1, unit: counts}` if counts are meant)");
   return false;
 }
 
@@ -138,26 +137,26 @@ bool AxisLimits::follows_position(LimitKind kind) const {
   return is_limit_rate(unit, table_.signal(positions_[0]).unit, kind);
 }
 
-void AxisLimits::report_other_unit(LimitKind kind, SourcePos pos) {
-  if (node_.spec->units.has_errors) return;
+bool AxisLimits::is_comparable(LimitKind kind, SourcePos pos) {
+  if (follows_position(kind)) return true;
+  if (!has_unit(positions_[0], kind, pos) || node_.spec->units.has_errors) return false;
   report_.warning(
-      pos, "limits",
-      "`" + std::string{name(kind)} + "` of " + owner() + " is in " + unit_of(kind) +
-          ", but positions are in " + table_.signal(positions_[0]).unit +
-          ": takt can't compare this limit with position set-points; use `step` to limit them");
+      pos, "limits", "`", name(kind), "` of ", owner(), " is in ", unit_of(kind),
+      ", but positions are in ", table_.signal(positions_[0]).unit,
+      ": takt can't compare this limit with position set-points; use `step` to limit them");
+  return false;
 }
 
 void AxisLimits::position(const Sourced<RangeSpec>& range) {
   if (!range.given) {
-    if (positions_.empty() || device_position()) return;
-    line(LimitKind::position, LimitSource::none);
+    if (!positions_.empty() && !device_position()) line(LimitKind::position, LimitSource::none);
     return;
   }
   LimitLine& entry = line(LimitKind::position, LimitSource::file);
   entry.low = range->low;
   entry.high = range->high;
   for (const SignalIndex signal : positions_) {
-    if (!has_unit(signal, "position", range.pos)) return;
+    if (!has_unit(signal, LimitKind::position, range.pos)) return;
     table_.narrow(signal, table_.raw_bounds(signal, range->low, range->high), LimitKind::position,
                   range.pos);
     entry.signals.push_back(signal);
@@ -172,103 +171,72 @@ void AxisLimits::add_offset(LimitLine& entry) const {
   if (offset && !entry.signals.empty()) entry.signals.push_back(*offset);
 }
 
-void AxisLimits::magnitude(SignalIndex signal, double si, LimitKind kind, SourcePos pos) {
-  const double size = table_.raw_size(signal, si);
+void AxisLimits::magnitude(LimitLine& entry, SignalIndex signal, SourcePos pos) {
+  const double size = table_.raw_size(signal, *entry.high);
   const double raw = is_real(table_.signal(signal).type) ? size : std::round(size);
-  table_.narrow(signal, {-raw, raw}, kind, pos);
+  table_.narrow(signal, {-raw, raw}, entry.kind, pos);
+  entry.signals.push_back(signal);
+}
+
+void AxisLimits::rate(LimitLine& entry, SignalIndex signal) {
+  OutputLimit& row = table_.row(signal);
+  row.rate = table_.raw_size(signal, *entry.high) * cycle_seconds();
+  row.rate_of = entry.kind;
+  entry.signals.push_back(signal);
 }
 
 void AxisLimits::velocity(const Sourced<double>& limit) {
-  if (!limit.given) {
-    if ((positions_.empty() && velocities_.empty()) || device_velocity()) return;
-    line(LimitKind::velocity, LimitSource::none);
-    return;
-  }
-  LimitLine& entry = line(LimitKind::velocity, LimitSource::file);
-  entry.high = *limit;
-  const double seconds = cycle_seconds();
-  const bool comparable = follows_position(LimitKind::velocity);
-  if (!comparable && has_unit(positions_[0], "velocity", limit.pos)) {
-    report_other_unit(LimitKind::velocity, limit.pos);
-  }
+  constexpr LimitKind kind = LimitKind::velocity;
+  const bool moves = !positions_.empty() || !velocities_.empty();
+  LimitLine* entry = line_of_file(kind, limit, !limit.given && moves && !device_velocity());
+  if (entry == nullptr) return;
+  const bool comparable = is_comparable(kind, limit.pos);
   for (const SignalIndex signal : outputs({{0x607A, 0}, {0x60C1, 1}, {0x60B0, 0}})) {
-    if (!comparable || !has_unit(signal, "velocity", limit.pos)) continue;
-    OutputLimit& row = table_.row(signal);
-    row.rate = table_.raw_size(signal, *limit) * seconds;
-    row.rate_of = LimitKind::velocity;
-    entry.signals.push_back(signal);
+    if (comparable && has_unit(signal, kind, limit.pos)) rate(*entry, signal);
   }
   for (const SignalIndex signal : outputs({{0x60FF, 0}, {0x60B1, 0}, {0x6081, 0}})) {
-    if (!has_unit(signal, "velocity", limit.pos)) continue;
-    magnitude(signal, *limit, LimitKind::velocity, limit.pos);
-    entry.signals.push_back(signal);
+    if (has_unit(signal, kind, limit.pos)) magnitude(*entry, signal, limit.pos);
   }
 }
 
 void AxisLimits::acceleration(const Sourced<double>& limit) {
-  if (!limit.given) {
-    const bool shown = !positions_.empty() || !velocities_.empty();
-    if (shown && !device_acceleration()) line(LimitKind::acceleration, LimitSource::none);
-    return;
-  }
-  LimitLine& entry = line(LimitKind::acceleration, LimitSource::file);
-  entry.high = *limit;
+  constexpr LimitKind kind = LimitKind::acceleration;
+  const bool moves = !positions_.empty() || !velocities_.empty();
+  LimitLine* entry = line_of_file(kind, limit, !limit.given && moves && !device_acceleration());
+  if (entry == nullptr) return;
   const double seconds = cycle_seconds();
-  const bool comparable = follows_position(LimitKind::acceleration);
-  if (!comparable && has_unit(positions_[0], "acceleration", limit.pos)) {
-    report_other_unit(LimitKind::acceleration, limit.pos);
-  }
+  const bool comparable = is_comparable(kind, limit.pos);
   for (const SignalIndex signal : positions_) {
-    if (!comparable || !has_unit(signal, "acceleration", limit.pos)) continue;
+    if (!comparable || !has_unit(signal, kind, limit.pos)) continue;
     table_.row(signal).bend = table_.raw_size(signal, *limit) * seconds * seconds;
-    entry.signals.push_back(signal);
+    entry->signals.push_back(signal);
   }
-  add_offset(entry);
+  add_offset(*entry);
   for (const SignalIndex signal : velocities_) {
-    if (!has_unit(signal, "acceleration", limit.pos)) continue;
-    OutputLimit& row = table_.row(signal);
-    row.rate = table_.raw_size(signal, *limit) * seconds;
-    row.rate_of = LimitKind::acceleration;
-    entry.signals.push_back(signal);
+    if (has_unit(signal, kind, limit.pos)) rate(*entry, signal);
   }
   for (const SignalIndex signal : outputs({{0x6083, 0}, {0x6084, 0}})) {
-    if (!has_unit(signal, "acceleration", limit.pos)) continue;
-    magnitude(signal, *limit, LimitKind::acceleration, limit.pos);
-    entry.signals.push_back(signal);
+    if (has_unit(signal, kind, limit.pos)) magnitude(*entry, signal, limit.pos);
   }
 }
 
 void AxisLimits::step(const Sourced<double>& limit) {
-  if (!limit.given) {
-    if (!positions_.empty()) line(LimitKind::step, LimitSource::none);
-    return;
-  }
-  LimitLine& entry = line(LimitKind::step, LimitSource::file);
-  entry.high = *limit;
+  LimitLine* entry = line_of_file(LimitKind::step, limit, !positions_.empty());
+  if (entry == nullptr) return;
   for (const SignalIndex signal : outputs({{0x607A, 0}, {0x60C1, 1}, {0x60B0, 0}})) {
-    if (!has_unit(signal, "step", limit.pos)) return;
+    if (!has_unit(signal, LimitKind::step, limit.pos)) return;
     table_.row(signal).step = table_.raw_size(signal, *limit);
-    entry.signals.push_back(signal);
+    entry->signals.push_back(signal);
   }
 }
 
 void AxisLimits::torque(const Sourced<double>& limit) {
-  if (!limit.given) {
-    if (!torques_.empty()) line(LimitKind::torque, LimitSource::none);
-    return;
-  }
-  LimitLine& entry = line(LimitKind::torque, LimitSource::file);
-  entry.high = *limit;
+  LimitLine* entry = line_of_file(LimitKind::torque, limit, !torques_.empty());
+  if (entry == nullptr) return;
   for (const SignalIndex signal : torques_) {
-    if (!has_unit(signal, "torque", limit.pos)) return;
-    magnitude(signal, *limit, LimitKind::torque, limit.pos);
-    entry.signals.push_back(signal);
+    if (!has_unit(signal, LimitKind::torque, limit.pos)) return;
+    magnitude(*entry, signal, limit.pos);
   }
-}
-
-void AxisLimits::jerk(const Sourced<double>& limit) {
-  if (!limit.given) return;
-  line(LimitKind::jerk, LimitSource::file).high = *limit;
 }
 
 }  // namespace takt

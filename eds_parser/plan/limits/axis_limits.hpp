@@ -32,7 +32,6 @@ class AxisLimits {
   void acceleration(const Sourced<double>& limit);
   void step(const Sourced<double>& limit);
   void torque(const Sourced<double>& limit);
-  void jerk(const Sourced<double>& limit);
 
   // These functions compile limits that are read from the drive in each boot; see
   // axis_device_limits.cpp. They return false if the drive has no such object, or if no output can
@@ -48,7 +47,9 @@ class AxisLimits {
   double cycle_seconds() const;
 
   void add_offset(LimitLine& entry) const;
-  void magnitude(SignalIndex signal, double si, LimitKind kind, SourcePos pos);
+  // These functions limit one output by the value of `entry`, as a magnitude or as a rate.
+  void magnitude(LimitLine& entry, SignalIndex signal, SourcePos pos);
+  void rate(LimitLine& entry, SignalIndex signal);
   /// Returns nullptr if there is no output, or if it has no limits.
   OutputLimit* row_of(std::optional<SignalIndex> signal);
   void describe_rows();
@@ -62,13 +63,17 @@ class AxisLimits {
   void warn_of_late_start(const AxisLimitsSpec& limits);
 
   /// Returns false and reports an error if the signal has no unit and would count in raw counts.
-  bool has_unit(SignalIndex signal, std::string_view kind, SourcePos pos);
+  bool has_unit(SignalIndex signal, LimitKind kind, SourcePos pos);
   std::string unit_of(LimitKind kind) const;
   /// Returns true if the unit of `kind` is the unit of positions per second, or per second squared.
   /// Also returns true if the axis has no position output.
   bool follows_position(LimitKind kind) const;
-  void report_other_unit(LimitKind kind, SourcePos pos);
+  /// Returns the same. Warns if the limit can't be compared with positions.
+  bool is_comparable(LimitKind kind, SourcePos pos);
   LimitLine& line(LimitKind kind, LimitSource source);
+  /// Appends the line of a limit of the network file and returns it. Returns nullptr if the file
+  /// has no such limit; the plan then shows a line without a limit if `shown` is true.
+  LimitLine* line_of_file(LimitKind kind, const Sourced<double>& limit, bool shown);
   std::string owner() const;
 
   const NodeSource& node_;

@@ -10,7 +10,7 @@
 
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/plan/device/node_objects.hpp"
-#include "eds_parser/table/limit_names.hpp"
+#include "eds_parser/table/output_limits.hpp"
 
 namespace takt {
 namespace {
@@ -46,7 +46,7 @@ class Proposal {
 
  private:
   ObjectKey object(std::uint16_t index, std::uint8_t sub = 0) const {
-    return {static_cast<std::uint16_t>(index + (line_.axis - 1) * 0x800), sub};
+    return axis_object(line_.axis - 1U, index, sub);
   }
 
   void words(const std::string& because) {
@@ -104,10 +104,6 @@ class Proposal {
   const BusPlan& plan_;
   const LimitTable& table_;
 };
-
-}  // namespace
-
-namespace {
 
 /// Returns the limits of the device file in raw counts. The result is empty if one of them is
 /// missing or if they permit all values of the data type.

@@ -74,13 +74,11 @@ void LimitTable::finish() {
     const std::string owner =
         what.name + " of node `" + plan_.nodes[what.node_index].name + "` lies outside its limits";
     if (what.safe_value && outside(*what.safe_value)) {
-      report_.error(positions_[i], "limits",
-                    "the first value " + std::to_string(*what.safe_value) +
-                        " (`safe_values`, `sdo`, DCF) of " + owner);
+      report_.error(positions_[i], "limits", "the first value ", *what.safe_value,
+                    " (`safe_values`, `sdo`, DCF) of ", owner);
     } else if (what.fallback == Fallback::value && outside(what.fallback_value)) {
-      report_.error(
-          positions_[i], "limits",
-          "the value " + std::to_string(what.fallback_value) + " by `on_timeout` of " + owner);
+      report_.error(positions_[i], "limits", "the value ", what.fallback_value,
+                    " by `on_timeout` of ", owner);
     }
   }
   std::ranges::sort(rows, {}, &OutputLimit::signal);

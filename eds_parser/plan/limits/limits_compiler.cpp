@@ -12,28 +12,24 @@
 namespace takt {
 namespace {
 
-/// Returns the limits of `common`, overridden by those that `own` gives.
-AxisLimitsSpec merged(const AxisLimitsSpec& common, const AxisLimitsSpec& own) {
-  AxisLimitsSpec out = common;
-  const auto take = [](auto& to, const auto& from) {
-    if (from.given) to = from;
-  };
-  take(out.position, own.position);
-  take(out.velocity, own.velocity);
-  take(out.acceleration, own.acceleration);
-  take(out.jerk, own.jerk);
-  take(out.step, own.step);
-  take(out.torque, own.torque);
-  take(out.modulo, own.modulo);
-  return out;
+/// The limits of an axis that are single numbers.
+constexpr std::array<Sourced<double> AxisLimitsSpec::*, 6> numbers{
+    &AxisLimitsSpec::velocity, &AxisLimitsSpec::acceleration, &AxisLimitsSpec::jerk,
+    &AxisLimitsSpec::step,     &AxisLimitsSpec::torque,       &AxisLimitsSpec::modulo};
+
+/// Replaces limits by those that `own` gives.
+void override_limits(AxisLimitsSpec& limits, const AxisLimitsSpec& own) {
+  if (own.position.given) limits.position = own.position;
+  for (const auto member : numbers) {
+    if ((own.*member).given) limits.*member = own.*member;
+  }
 }
 
 /// Returns the place of the first limit of an axis, or std::nullopt if there is none.
 std::optional<SourcePos> first_place(const AxisLimitsSpec& limits) {
   if (limits.position.given) return limits.position.pos;
-  for (const auto* limit : {&limits.velocity, &limits.acceleration, &limits.jerk, &limits.step,
-                            &limits.torque, &limits.modulo}) {
-    if (limit->given) return limit->pos;
+  for (const auto member : numbers) {
+    if ((limits.*member).given) return (limits.*member).pos;
   }
   return std::nullopt;
 }
@@ -64,21 +60,19 @@ class LimitsCompiler {
     const bool complete = every_output_is_mapped(nodes_[index]);
     for (const AxisOverrideSpec& own : limits.axes) {
       if (axes.contains(own.axis) || !complete) continue;
-      report_.error(own.pos, "limits",
-                    "no RPDO of node `" + source.spec->name + "` carries a set-point of axis " +
-                        std::to_string(own.axis));
+      report_.error(own.pos, "limits", "no RPDO of node `", source.spec->name,
+                    "` carries a set-point of axis ", own.axis);
     }
     const auto place = first_place(limits.all);
     if (place && axes.empty() && complete) {
-      report_.error(*place, "limits",
-                    "no RPDO of node `" + source.spec->name +
-                        "` carries a set-point of a drive (607A, 60FF, 6071 ...): write the limits "
-                        "of other outputs under `objects: [{index: ..., min: ..., max: ...}]`");
+      report_.error(*place, "limits", "no RPDO of node `", source.spec->name,
+                    "` carries a set-point of a drive (607A, 60FF, 6071 ...): write the limits of "
+                    "other outputs under `objects: [{index: ..., min: ..., max: ...}]`");
     }
     for (const std::uint8_t axis : axes) {
       AxisLimitsSpec own = limits.all;
       for (const AxisOverrideSpec& entry : limits.axes) {
-        if (entry.axis == axis) own = merged(own, entry.limits);
+        if (entry.axis == axis) override_limits(own, entry.limits);
       }
       AxisLimits{source, index, axis, plan_, table_, report_}.compile(own);
     }
@@ -149,39 +143,33 @@ class LimitsCompiler {
     const auto signal = table_.find(node_index, limit.object, true);
     if (!signal) {
       if (!every_output_is_mapped(nodes_[node_index])) return;
-      report_.error(limit.pos, "limits",
-                    "`limits` of node `" + plan_.nodes[node_index].name + "`: no RPDO carries " +
-                        to_string(limit.object) + ", so no command can contain this object");
+      report_.error(limit.pos, "limits", "`limits` of node `", plan_.nodes[node_index].name,
+                    "`: no RPDO carries ", limit.object, ", so no command can contain this object");
       return;
     }
-    const auto bound = [](const Sourced<double>& value) {
-      return value.given ? std::optional{*value} : std::nullopt;
+    const auto add = [&](LimitKind kind, const Sourced<double>& low, const Sourced<double>& high) {
+      const auto bound = [](const Sourced<double>& value) {
+        return value.given ? std::optional{*value} : std::nullopt;
+      };
+      return plan_.limits.lines.emplace_back(
+          LimitLine{.node_index = static_cast<std::uint8_t>(node_index),
+                    .object = limit.object,
+                    .kind = kind,
+                    .source = LimitSource::file,
+                    .low = bound(low),
+                    .high = bound(high),
+                    .unit = table_.signal(*signal).unit,
+                    .signals = {*signal}});
     };
-    LimitLine& line = plan_.limits.lines.emplace_back();
-    line.node_index = static_cast<std::uint8_t>(node_index);
-    line.object = limit.object;
-    line.source = LimitSource::file;
-    line.low = bound(limit.min);
-    line.high = bound(limit.max);
-    line.unit = table_.signal(*signal).unit;
-    line.signals = {*signal};
     if (limit.min.given || limit.max.given) {
+      const LimitLine line = add(LimitKind::range, limit.min, limit.max);
       table_.narrow(*signal, table_.raw_bounds(*signal, line.low, line.high), LimitKind::range,
                     limit.pos);
-    } else {
-      plan_.limits.lines.pop_back();
     }
     if (!limit.step.given) return;
     OutputLimit& row = table_.row(*signal);
     row.step = std::min(row.step, table_.raw_size(*signal, *limit.step));
-    LimitLine& step = plan_.limits.lines.emplace_back();
-    step.node_index = static_cast<std::uint8_t>(node_index);
-    step.object = limit.object;
-    step.kind = LimitKind::step;
-    step.source = LimitSource::file;
-    step.high = *limit.step;
-    step.unit = table_.signal(*signal).unit;
-    step.signals = {*signal};
+    add(LimitKind::step, {}, limit.step);
   }
 
   std::span<const NodePdos> nodes_;

@@ -1,4 +1,4 @@
-#include "eds_parser/plan/pdo/cob_id_bits.hpp"
+#include "eds_parser/plan/pdo/pdo_rules.hpp"
 
 namespace takt {
 namespace {
@@ -12,19 +12,16 @@ constexpr std::uint32_t highest_base = 0x7FF;
 void judge_rtr_bit(const PdoSpec& spec, bool is_tpdo, const std::string& cob_id,
                    NetworkReport& report) {
   if (!is_tpdo) {
-    report.warning(
-        spec.cob_id.pos, "cob-id",
-        cob_id + " has bit 30 set, which has no meaning for an RPDO: takt ignores the bit");
+    report.warning(spec.cob_id.pos, "cob-id", cob_id,
+                   " has bit 30 set, which has no meaning for an RPDO: takt ignores the bit");
   } else if (*spec.poll_ms != 0 || *spec.poll_syncs != 0) {
-    report.error(spec.cob_id.pos, "cob-id",
-                 cob_id +
-                     " has bit 30 set (no remote requests), but the PDO is polled by remote "
-                     "request: clear the bit, or drop `poll_ms`/`poll_syncs`");
+    report.error(spec.cob_id.pos, "cob-id", cob_id,
+                 " has bit 30 set (no remote requests), but the PDO is polled by remote request: "
+                 "clear the bit, or drop `poll_ms`/`poll_syncs`");
   } else {
     report.note(
-        spec.cob_id.pos, "cob-id",
-        cob_id +
-            " has bit 30 set (no remote requests): takt leaves this bit as it is in the device");
+        spec.cob_id.pos, "cob-id", cob_id,
+        " has bit 30 set (no remote requests): takt leaves this bit as it is in the device");
   }
 }
 
@@ -37,25 +34,24 @@ FileCobId read_cob_id_bits(const PdoSpec& spec, bool is_tpdo, const std::string&
   const bool extended = (raw & extended_bit) != 0;
   const std::string cob_id = "`cob_id` " + hex(raw) + " of " + owner;
   if ((raw & off_bit) != 0) {
-    report.warning(spec.cob_id.pos, "cob-id",
-                   cob_id + " has bit 31 set: the PDO is switched off, as with `enabled: false`; " +
-                       hex(raw & ~off_bit, 3) + " switches the PDO on");
+    report.warning(spec.cob_id.pos, "cob-id", cob_id,
+                   " has bit 31 set: the PDO is switched off, as with `enabled: false`; ",
+                   hex(raw & ~off_bit, 3), " switches the PDO on");
     return {.off = true, .id = {}};
   }
   if (!extended && id > highest_base) {
-    report.error(spec.cob_id.pos, "cob-id",
-                 cob_id +
-                     " needs 29 bits: set bit 29 (0x2...) for an extended frame, or use an id up "
-                     "to 0x7FF");
+    report.error(
+        spec.cob_id.pos, "cob-id", cob_id,
+        " needs 29 bits: set bit 29 (0x2...) for an extended frame, or use an id up to 0x7FF");
     return {};
   }
   if (extended && id <= highest_base) {
-    report.warning(spec.cob_id.pos, "cob-id",
-                   cob_id + " has bit 29 set: this is the 29-bit identifier " + hex(id, 8) +
-                       ", which is another identifier on the bus than " + hex(id, 3));
+    report.warning(spec.cob_id.pos, "cob-id", cob_id,
+                   " has bit 29 set: this is the 29-bit identifier ", hex(id, 8),
+                   ", which is another identifier on the bus than ", hex(id, 3));
   }
   if ((raw & no_rtr_bit) != 0) judge_rtr_bit(spec, is_tpdo, cob_id, report);
-  return {.off = false, .id = extended ? CobId::extended(id) : CobId::base(id)};
+  return {.off = false, .id = CobId::of_object(raw)};
 }
 
 }  // namespace takt

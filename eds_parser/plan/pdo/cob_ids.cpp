@@ -9,16 +9,22 @@ namespace {
 constexpr std::uint32_t first_free = 0x181;
 constexpr std::uint32_t last_free = 0x57F;
 
-std::uint32_t predefined(const EffectivePdo& pdo, NodeId node) {
-  const std::uint32_t base = pdo.is_tpdo ? 0x180U : 0x200U;
-  return base + 0x100U * (pdo.number - 1U) + node.value();
-}
-
+/// A PDO that claims a COB-ID.
 struct User {
   EffectivePdo* pdo = nullptr;
   const NodeSource* node = nullptr;
-  std::string text() const { return pdo->label() + " of node `" + node->spec->name + "`"; }
+
+  std::uint32_t predefined() const {
+    return (pdo->is_tpdo ? 0x180U : 0x200U) + 0x100U * (pdo->number - 1U) + node->id.value();
+  }
+  bool has_predefined() const {
+    return pdo->number <= 4 && pdo->cob_id == CobId::base(predefined());
+  }
+  bool has(CobIdOrigin origin) const { return pdo->has_cob_id && pdo->origin == origin; }
+  const std::string& file() const { return node->dictionary->file; }
 };
+
+std::string to_string(const User& user) { return user.pdo->label(*user.node->spec); }
 
 class CobIdAssigner {
  public:
@@ -27,29 +33,28 @@ class CobIdAssigner {
       : nodes_{nodes}, services_{services}, report_{report} {}
 
   void run() {
-    each([&](NodePdos& n, EffectivePdo& p) {
-      if (p.has_cob_id && p.origin == CobIdOrigin::network_file) claim_of_file(n, p);
+    each([&](User user) {
+      if (user.has(CobIdOrigin::network_file)) claim_of_file(user);
     });
-    const auto device = [](const EffectivePdo& p) {
-      return p.has_cob_id && p.origin == CobIdOrigin::device_file;
-    };
-    each([&](NodePdos& n, EffectivePdo& p) {
-      if (device(p) && is_own(n, p)) claim_of_device(n, p);
+    each([&](User user) {
+      if (user.has(CobIdOrigin::device_file) && user.has_predefined()) claim_of_device(user);
     });
-    each([&](NodePdos& n, EffectivePdo& p) {
-      if (!p.has_cob_id && p.is_tpdo && p.number <= 4) claim_predefined(n, p);
+    each([&](User user) {
+      const EffectivePdo& pdo = *user.pdo;
+      if (!pdo.has_cob_id && pdo.is_tpdo && pdo.number <= 4) claim_predefined(user);
     });
     // TPDOs come first, so that an RPDO finds its sender.
     for (const bool is_tpdo : {true, false}) {
-      each([&](NodePdos& n, EffectivePdo& p) {
-        if (device(p) && !is_own(n, p) && p.is_tpdo == is_tpdo) claim_of_device(n, p);
+      each([&](User user) {
+        const bool open = user.has(CobIdOrigin::device_file) && !user.has_predefined();
+        if (open && user.pdo->is_tpdo == is_tpdo) claim_of_device(user);
       });
     }
-    each([&](NodePdos& n, EffectivePdo& p) {
-      if (!p.has_cob_id && p.number <= 4) claim_automatic(n, p);
+    each([&](User user) {
+      if (!user.pdo->has_cob_id && user.pdo->number <= 4) claim_automatic(user);
     });
-    each([&](NodePdos& n, EffectivePdo& p) {
-      if (!p.has_cob_id) claim_automatic(n, p);
+    each([&](User user) {
+      if (!user.pdo->has_cob_id) claim_automatic(user);
     });
   }
 
@@ -58,13 +63,9 @@ class CobIdAssigner {
   void each(F&& f) {
     for (NodePdos& node : nodes_) {
       for (EffectivePdo& pdo : node.pdos) {
-        if (pdo.use == PdoUse::exchanged) f(node, pdo);
+        if (pdo.use == PdoUse::exchanged) f(User{&pdo, &node.node});
       }
     }
-  }
-
-  static bool is_own(const NodePdos& node, const EffectivePdo& pdo) {
-    return pdo.number <= 4 && pdo.cob_id == CobId::base(predefined(pdo, node.node.id));
   }
 
   /// Returns why no PDO may have this COB-ID. The result is empty if a PDO may have it.
@@ -75,184 +76,157 @@ class CobIdAssigner {
     return reserved ? "is reserved by CiA 301 (table 40)" : "";
   }
 
-  void take(NodePdos& node, EffectivePdo& pdo, CobId id) {
-    pdo.cob_id = id;
-    pdo.has_cob_id = true;
-    used_[id] = {&pdo, &node.node};
+  void take(User user, CobId id) {
+    user.pdo->cob_id = id;
+    user.pdo->has_cob_id = true;
+    used_[id] = user;
   }
 
-  void claim_of_file(NodePdos& node, EffectivePdo& pdo) {
-    const User user{&pdo, &node.node};
+  void claim_of_file(User user) {
+    const EffectivePdo& pdo = *user.pdo;
+    const auto refuse = [&](std::string_view rule, const auto&... why) {
+      report_.error(pdo.cob_id_pos, rule, "`cob_id` ", pdo.cob_id, " of ", user, " ", why...,
+                    "; `auto` would give ", hex(automatic(user), 3));
+    };
     if (const std::string service = service_at(pdo.cob_id); !service.empty()) {
-      report_.error(pdo.cob_id_pos, "cob-id",
-                    "`cob_id` " + to_string(pdo.cob_id) + " of " + user.text() + " " + service +
-                        "; `auto` would give " + hex(automatic(node, pdo), 3));
-      return;
+      return refuse("cob-id", service);
     }
     const auto other = used_.find(pdo.cob_id);
-    if (other == used_.end()) {
-      take(node, pdo, pdo.cob_id);
-    } else if (other->second.pdo->is_tpdo != pdo.is_tpdo) {
-      link(pdo, other->second, user);
-    } else {
-      report_.error(pdo.cob_id_pos, "cob-id-clash",
-                    "`cob_id` " + to_string(pdo.cob_id) + " of " + user.text() + " belongs to " +
-                        other->second.text() + " (line " +
-                        std::to_string(other->second.pdo->cob_id_pos.line) + ") already; `auto` " +
-                        "would give " + hex(automatic(node, pdo), 3));
-    }
+    if (other == used_.end()) return take(user, pdo.cob_id);
+    if (other->second.pdo->is_tpdo != pdo.is_tpdo) return link(user, other->second);
+    refuse("cob-id-clash", "belongs to ", other->second, " (line ",
+           other->second.pdo->cob_id_pos.line, ") already");
   }
 
   /// Links a TPDO and an RPDO with the same COB-ID. The devices then communicate directly, and the
   /// master only listens.
-  void link(EffectivePdo& pdo, User other, User user) {
-    EffectivePdo& receiver = pdo.is_tpdo ? *other.pdo : pdo;
-    const User& sender = pdo.is_tpdo ? user : other;
-    const User& fed = pdo.is_tpdo ? other : user;
-    receiver.use = PdoUse::linked;
-    used_[pdo.cob_id] = sender;
-    const bool stated = receiver.origin == CobIdOrigin::device_file;
+  void link(User user, User other) {
+    const CobId id = user.pdo->cob_id;
+    const auto& [sender, receiver] =
+        user.pdo->is_tpdo ? std::pair{user, other} : std::pair{other, user};
+    receiver.pdo->use = PdoUse::linked;
+    used_[id] = sender;
+    const bool stated = receiver.pdo->origin == CobIdOrigin::device_file;
     report_.note(
-        pdo.cob_id_pos, "linked",
-        fed.text() + " receives " + sender.text() + " (both " + to_string(pdo.cob_id) +
-            (stated ? ", which " + fed.node->dictionary->file + " sets" : "") +
-            "); the master does not send this RPDO" +
-            (stated ? ". Write `cob_id: auto` for it under `rpdo:` if the master shall send it"
-                    : ""));
+        user.pdo->cob_id_pos, "linked", receiver, " receives ", sender, " (both ", id,
+        stated ? ", which " + receiver.file() + " sets" : "",
+        "); the master does not send this RPDO",
+        stated ? ". Write `cob_id: auto` for it under `rpdo:` if the master shall send it" : "");
   }
 
-  void claim_of_device(NodePdos& node, EffectivePdo& pdo) {
-    const User user{&pdo, &node.node};
-    const std::string service = service_at(pdo.cob_id);
-    const auto other = used_.find(pdo.cob_id);
-    if (service.empty() && other == used_.end()) {
-      take(node, pdo, pdo.cob_id);
-    } else if (service.empty() && is_link(node, pdo, other->second)) {
-      link(pdo, other->second, user);
-    } else {
-      move(node, pdo, service.empty() ? &other->second : nullptr, service);
-    }
+  void claim_of_device(User user) {
+    const CobId id = user.pdo->cob_id;
+    const std::string service = service_at(id);
+    const auto other = used_.find(id);
+    if (!service.empty()) return move(user, nullptr, service);
+    if (other == used_.end()) return take(user, id);
+    if (is_link(user, other->second)) return link(user, other->second);
+    move(user, &other->second, service);
   }
 
-  /// Returns true if `pdo` and `other`, which have the same COB-ID, form a link that a device file
+  /// Returns true if `user` and `other`, which have the same COB-ID, form a link that a device file
   /// states together with the network file or another device file. There is no link if the master
   /// is to send the RPDO (the network file mentions it without a COB-ID), or if both COB-IDs are
   /// only the predefined ones of their nodes.
-  static bool is_link(const NodePdos& node, const EffectivePdo& pdo, const User& other) {
-    if (pdo.is_tpdo == other.pdo->is_tpdo || other.node == &node.node) return false;
+  static bool is_link(const User& user, const User& other) {
+    const EffectivePdo& pdo = *user.pdo;
+    if (pdo.is_tpdo == other.pdo->is_tpdo || other.node == user.node) return false;
     if (other.pdo->origin == CobIdOrigin::network_file) return pdo.is_tpdo || !pdo.named;
-    return !pdo.is_tpdo && !pdo.named && !is_own(node, pdo);
-  }
-
-  /// Returns true if the network file gives one PDO the COB-ID with which another PDO is sent
-  /// according to its device file.
-  static bool is_clash(const EffectivePdo& pdo, const User* other) {
-    return pdo.is_tpdo && other != nullptr && other->pdo->origin == CobIdOrigin::network_file;
-  }
-
-  void report_clash(const User& user, const User& other, std::uint32_t free) {
-    report_.error(other.pdo->cob_id_pos, "cob-id-clash",
-                  "`cob_id` " + to_string(other.pdo->cob_id) + " of " + other.text() +
-                      " is also used by " + user.text() + " in " + user.node->dictionary->file +
-                      ": write `cob_id: auto` for one of them (" + user.text() + " would get " +
-                      hex(free, 3) + ")");
+    return !pdo.is_tpdo && !pdo.named && !user.has_predefined();
   }
 
   /// Gives a PDO another COB-ID. `other` is the PDO that already has the current one; if it is
-  /// nullptr, `service` says why no PDO may have it.
-  void move(NodePdos& node, EffectivePdo& pdo, const User* other, const std::string& service) {
-    const User user{&pdo, &node.node};
+  /// nullptr, `service` is the reason why no PDO may have it.
+  void move(User user, const User* other, const std::string& service) {
+    EffectivePdo& pdo = *user.pdo;
     const CobId was = pdo.cob_id;
-    const std::uint32_t free = automatic(node, pdo);
-    if (free == 0) return none_free(user, pdo);
+    const std::uint32_t free = automatic(user);
+    if (free == 0) return none_free(user);
     const CobId id = CobId::base(free);
-    if (is_clash(pdo, other)) {
-      report_clash(user, *other, free);
+    // The network file gives one PDO the COB-ID with which another PDO is sent according to its
+    // device file.
+    const bool is_clash =
+        pdo.is_tpdo && other != nullptr && other->pdo->origin == CobIdOrigin::network_file;
+    if (is_clash) {
+      report_.error(other->pdo->cob_id_pos, "cob-id-clash", "`cob_id` ", was, " of ", *other,
+                    " is also used by ", user, " in ", user.file(),
+                    ": write `cob_id: auto` for one of them (", user, " would get ", hex(free, 3),
+                    ")");
       pdo.origin = CobIdOrigin::automatic;
-      return take(node, pdo, id);
+      return take(user, id);
     }
-    const std::string text = user.text() + " has COB-ID " + to_string(was) + " in " +
-                             node.node.dictionary->file + ", which " +
-                             (other == nullptr ? service : "is used by " + other->text()) +
-                             "; takt uses " + to_string(id);
+    const std::string text =
+        joined(user, " has COB-ID ", was, " in ", user.file(), ", which ",
+               other == nullptr ? service : "is used by " + to_string(*other), "; takt uses ", id);
     const bool cut =
-        other != nullptr && other->node != &node.node && other->pdo->is_tpdo != pdo.is_tpdo;
+        other != nullptr && other->node != user.node && other->pdo->is_tpdo != pdo.is_tpdo;
     if (cut) {
-      report_.warning(pdo.cob_id_pos, "cob-id-moved",
-                      text +
-                          ". If the two devices shall exchange data with this id, write "
-                          "`cob_id: " +
-                          to_string(was) +
-                          "` for both PDOs; if not, `cob_id: " + "auto` for this one");
+      report_.warning(pdo.cob_id_pos, "cob-id-moved", text,
+                      ". If the two devices shall exchange data with this id, write `cob_id: ", was,
+                      "` for both PDOs; if not, `cob_id: auto` for this one");
     } else {
       report_.note(pdo.cob_id_pos, "cob-id-moved", text);
     }
     pdo.origin = CobIdOrigin::automatic;
-    take(node, pdo, id);
+    take(user, id);
   }
 
-  void none_free(const User& user, const EffectivePdo& pdo) {
-    report_.error(pdo.cob_id_pos, "cob-id",
-                  "no COB-ID is free for " + user.text() + " in 0x181..0x57F");
+  void none_free(const User& user) {
+    report_.error(user.pdo->cob_id_pos, "cob-id", "no COB-ID is free for ", user,
+                  " in 0x181..0x57F");
   }
 
   /// Gives a TPDO its predefined COB-ID. If an RPDO of another device has this COB-ID in the
   /// network file, they are a link. Otherwise a COB-ID that is taken remains with its owner.
-  void claim_predefined(NodePdos& node, EffectivePdo& pdo) {
-    const CobId id = CobId::base(predefined(pdo, node.node.id));
+  void claim_predefined(User user) {
+    const CobId id = CobId::base(user.predefined());
     if (!service_at(id).empty()) return;
     const auto other = used_.find(id);
-    if (other == used_.end()) return take(node, pdo, id);
-    if (!is_link(node, pdo, other->second)) return;
-    pdo.cob_id = id;
-    pdo.has_cob_id = true;
-    link(pdo, other->second, {&pdo, &node.node});
+    if (other == used_.end()) return take(user, id);
+    if (!is_link(user, other->second)) return;
+    user.pdo->cob_id = id;
+    user.pdo->has_cob_id = true;
+    link(user, other->second);
   }
 
-  void claim_automatic(NodePdos& node, EffectivePdo& pdo) {
-    const std::uint32_t id = automatic(node, pdo);
-    if (id == 0) return none_free({&pdo, &node.node}, pdo);
-    if (pdo.number <= 4 && id != predefined(pdo, node.node.id)) report_taken(node, pdo, id);
-    take(node, pdo, CobId::base(id));
+  void claim_automatic(User user) {
+    const std::uint32_t id = automatic(user);
+    if (id == 0) return none_free(user);
+    if (user.pdo->number <= 4 && id != user.predefined()) report_taken(user, id);
+    take(user, CobId::base(id));
   }
 
   /// Reports that a PDO can't have its predefined COB-ID. This is an error if the network file
   /// gives it to two TPDOs: to one by its number, to the other one by `auto`.
-  void report_taken(const NodePdos& node, EffectivePdo& pdo, std::uint32_t free) {
-    const User user{&pdo, &node.node};
-    const CobId own = CobId::base(predefined(pdo, node.node.id));
+  void report_taken(const User& user, std::uint32_t free) {
+    const CobId own = CobId::base(user.predefined());
     const auto other = used_.find(own);
-    const bool is_twice = other != used_.end() && pdo.is_tpdo && other->second.pdo->is_tpdo &&
+    const bool is_twice = other != used_.end() && user.pdo->is_tpdo && other->second.pdo->is_tpdo &&
                           other->second.pdo->origin == CobIdOrigin::network_file;
     if (is_twice) {
       const User& owner = other->second;
-      report_.error(owner.pdo->cob_id_pos, "cob-id-clash",
-                    "`cob_id` " + to_string(own) + " of " + owner.text() +
-                        " is the predefined COB-ID of " + user.text() +
-                        ", which has no `cob_id` of its own: write `cob_id: " + hex(free, 3) +
-                        "` for " + user.text() + ", or another `cob_id` for " + owner.text());
+      report_.error(owner.pdo->cob_id_pos, "cob-id-clash", "`cob_id` ", own, " of ", owner,
+                    " is the predefined COB-ID of ", user,
+                    ", which has no `cob_id` of its own: write `cob_id: ", hex(free, 3), "` for ",
+                    user, ", or another `cob_id` for ", owner);
       return;
     }
-    report_.note(
-        pdo.cob_id_pos, "cob-id-moved",
-        "the predefined COB-ID " + to_string(own) + " of " + user.text() + " " +
-            (other == used_.end() ? service_at(own) : "is used by " + other->second.text()) +
-            "; takt uses " + hex(free, 3));
+    report_.note(user.pdo->cob_id_pos, "cob-id-moved", "the predefined COB-ID ", own, " of ", user,
+                 " ",
+                 other == used_.end() ? service_at(own) : "is used by " + to_string(other->second),
+                 "; takt uses ", hex(free, 3));
   }
 
   /// Returns the predefined COB-ID if it is free, else the lowest free identifier. Identifiers
   /// outside the predefined connection set are preferred.
-  std::uint32_t automatic(const NodePdos& node, const EffectivePdo& pdo) const {
-    if (pdo.number <= 4) {
-      const std::uint32_t own = predefined(pdo, node.node.id);
-      if (!used_.contains(CobId::base(own)) && service_at(CobId::base(own)).empty()) return own;
-    }
+  std::uint32_t automatic(const User& user) const {
+    const auto is_free = [&](std::uint32_t id) {
+      return !used_.contains(CobId::base(id)) && service_at(CobId::base(id)).empty();
+    };
+    if (user.pdo->number <= 4 && is_free(user.predefined())) return user.predefined();
     for (const bool spare_predefined : {true, false}) {
       for (std::uint32_t id = first_free; id <= last_free; ++id) {
-        if (!used_.contains(CobId::base(id)) && !(spare_predefined && is_predefined(id)) &&
-            service_at(CobId::base(id)).empty()) {
-          return id;
-        }
+        if (!(spare_predefined && is_predefined(id)) && is_free(id)) return id;
       }
     }
     return 0;

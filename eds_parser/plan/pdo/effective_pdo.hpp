@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -32,8 +33,8 @@ struct EffectiveEntry {
   std::uint8_t bit_offset = 0;
   bool dummy = false;
   DataType type = DataType::unknown;
-  std::string name;  ///< name in the EDS
-  SourcePos pos;     ///< place in the network file that asks for the object, or that of the node
+  std::string name{};  ///< name in the EDS
+  SourcePos pos;       ///< place in the network file that asks for the object, or that of the node
 
   /// Returns the entry as 0x1600 or 0x1A00 holds it.
   std::uint32_t raw() const noexcept {
@@ -93,6 +94,11 @@ struct EffectivePdo {
   }
   std::uint8_t bytes() const noexcept { return static_cast<std::uint8_t>((bits + 7) / 8); }
   bool synchronous() const noexcept { return transmission <= 240; }
+  /// Returns true if another device or the master sends the frames of this PDO.
+  bool is_used() const noexcept { return use == PdoUse::exchanged || use == PdoUse::linked; }
+  bool maps(ObjectKey object) const noexcept {
+    return std::ranges::find(mapping, object, &EffectiveEntry::object) != mapping.end();
+  }
   /// Returns the entries that the mapping record must hold. An MPDO has none: its mark takes the
   /// place of their number.
   std::span<const EffectiveEntry> entries() const noexcept {
@@ -105,6 +111,8 @@ struct EffectivePdo {
   }
   /// Returns the name for messages: `TPDO2`.
   std::string label() const { return (is_tpdo ? "TPDO" : "RPDO") + std::to_string(number); }
+  /// Returns the name with that of the node: "TPDO2 of node `arm`".
+  std::string label(const NodeSpec& node) const { return label() + " of node `" + node.name + "`"; }
 };
 
 }  // namespace takt

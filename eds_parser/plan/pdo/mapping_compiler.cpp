@@ -40,19 +40,12 @@ class MappingCompiler {
       : node_{node}, pdo_{pdo}, report_{report} {}
 
   std::optional<EffectiveEntry> entry(const MappingSpec& wanted) {
-    EffectiveEntry out{.object = wanted.object,
-                       .bits = 0,
-                       .bit_offset = 0,
-                       .dummy = false,
-                       .type = DataType::unknown,
-                       .name = {},
-                       .pos = wanted.pos};
+    EffectiveEntry out{.object = wanted.object, .pos = wanted.pos};
     if (wanted.object.index < first_real_object) return dummy(wanted, out);
     const SubObject* sub = node_.dictionary->find(wanted.object);
     if (sub == nullptr) {
-      error(wanted, "no-such-object",
-            "object " + to_string(wanted.object) + " is not in " + node_.dictionary->file +
-                suggestion(*node_.dictionary, wanted.object));
+      error(wanted, "no-such-object", "object ", wanted.object, " is not in ",
+            node_.dictionary->file, suggestion(*node_.dictionary, wanted.object));
       return {};
     }
     out.type = sub->type;
@@ -62,8 +55,9 @@ class MappingCompiler {
   }
 
  private:
-  void error(const MappingSpec& wanted, std::string_view rule, const std::string& text) {
-    report_.error(wanted.pos, rule, pdo_.label() + " of node `" + node_.spec->name + "`: " + text);
+  template <class... Parts>
+  void error(const MappingSpec& wanted, std::string_view rule, const Parts&... parts) {
+    report_.error(wanted.pos, rule, pdo_.label(*node_.spec), ": ", parts...);
   }
   std::string named(const MappingSpec& wanted) const {
     return label(*node_.dictionary, wanted.object);
@@ -74,10 +68,9 @@ class MappingCompiler {
     const bool known = wanted.object.index < 8 && wanted.object.sub == 0 &&
                        node_.dictionary->dummy_usage[wanted.object.index];
     if (pdo_.is_tpdo || !known) {
-      error(wanted, "dummy",
-            "a dummy entry " + hex(wanted.object.index) +
-                (pdo_.is_tpdo ? " has no place in a TPDO (gaps are for RPDOs only)"
-                              : " is not among the [DummyUsage] of " + node_.dictionary->file));
+      error(wanted, "dummy", "a dummy entry ", hex(wanted.object.index),
+            pdo_.is_tpdo ? " has no place in a TPDO (gaps are for RPDOs only)"
+                         : " is not among the [DummyUsage] of " + node_.dictionary->file);
       return {};
     }
     out.dummy = true;
@@ -90,19 +83,18 @@ class MappingCompiler {
 
   bool direction_fits(const MappingSpec& wanted, const SubObject& sub) {
     if (!sub.pdo_mappable) {
-      error(wanted, "not-mappable",
-            "object " + named(wanted) + " is not PDO-mappable (PDOMapping=0 in " +
-                node_.dictionary->file + ")" + mappable_sibling(wanted.object));
+      error(wanted, "not-mappable", "object ", named(wanted),
+            " is not PDO-mappable (PDOMapping=0 in ", node_.dictionary->file, ")",
+            mappable_sibling(wanted.object));
       return false;
     }
     const Access access = sub.access;
     const bool reads = access != Access::wo && access != Access::rww;
     const bool writes = access == Access::wo || access == Access::rw || access == Access::rww;
     if (pdo_.is_tpdo ? reads : writes) return true;
-    error(wanted, "wrong-direction",
-          "object " + named(wanted) +
-              (pdo_.is_tpdo ? " can only be written: it belongs in an RPDO (master to device)"
-                            : " can only be read: it belongs in a TPDO (device to master)"));
+    error(wanted, "wrong-direction", "object ", named(wanted),
+          pdo_.is_tpdo ? " can only be written: it belongs in an RPDO (master to device)"
+                       : " can only be read: it belongs in a TPDO (device to master)");
     return false;
   }
 
@@ -120,16 +112,14 @@ class MappingCompiler {
     const unsigned width = bit_width(sub.type);
     const unsigned bits = wanted.bits ? *wanted.bits : width;
     if (bits == 0) {
-      error(wanted, "no-width",
-            "object " + named(wanted) + " has no fixed width (" + std::string{name(sub.type)} +
-                "): write `bits:`");
+      error(wanted, "no-width", "object ", named(wanted), " has no fixed width (", name(sub.type),
+            "): write `bits:`");
       return false;
     }
     const bool boolean_byte = sub.type == DataType::boolean && bits == 8;
     if (width != 0 && bits != width && !boolean_byte) {
-      error(wanted, "wrong-width",
-            "object " + named(wanted) + " is " + std::to_string(width) + " bits wide, not " +
-                std::to_string(bits));
+      error(wanted, "wrong-width", "object ", named(wanted), " is ", width, " bits wide, not ",
+            bits);
       return false;
     }
     out.bits = static_cast<std::uint8_t>(bits);
@@ -144,10 +134,8 @@ class MappingCompiler {
 void report_length(const NodeSource& node, const EffectivePdo& pdo, SourcePos pos, unsigned bits,
                    NetworkReport& report) {
   if (bits <= 64) return;
-  report.error(pos, "too-long",
-               pdo.label() + " of node `" + node.spec->name + "` maps " + std::to_string(bits) +
-                   " bits, a PDO holds 64: move " + std::to_string(bits - 64) +
-                   " bits or more into another PDO");
+  report.error(pos, "too-long", pdo.label(*node.spec), " maps ", bits,
+               " bits, a PDO holds 64: move ", bits - 64, " bits or more into another PDO");
 }
 
 }  // namespace
@@ -161,14 +149,12 @@ std::vector<EffectiveEntry> compile_mapping(const NodeSource& node, const Effect
   for (const MappingSpec& spec : *wanted) {
     auto entry = compiler.entry(spec);
     if (!entry) continue;
-    const auto same = [&](const EffectiveEntry& other) { return other.object == entry->object; };
-    if (!entry->dummy && std::ranges::any_of(entries, same)) {
-      report.warning(
-          spec.pos, "mapped-twice",
-          pdo.label() + " of node `" + node.spec->name + "` maps " +
-              label(*node.dictionary, spec.object) + " twice: " +
-              (pdo.is_tpdo ? "the second one is a separate input" : "both get the same value") +
-              "; is one of them meant for another object?");
+    if (!entry->dummy &&
+        std::ranges::find(entries, entry->object, &EffectiveEntry::object) != entries.end()) {
+      report.warning(spec.pos, "mapped-twice", pdo.label(*node.spec), " maps ",
+                     label(*node.dictionary, spec.object), " twice: ",
+                     pdo.is_tpdo ? "the second one is a separate input" : "both get the same value",
+                     "; is one of them meant for another object?");
     }
     entry->bit_offset = static_cast<std::uint8_t>(std::min(bits, 64U));
     bits += entry->bits;
@@ -183,16 +169,14 @@ std::vector<EffectiveEntry> mapping_of(const NodeSource& node, const PdoDescript
   std::vector<EffectiveEntry> entries;
   for (const MappedObject& mapped : pdo.mapping) {
     const SubObject* sub = node.dictionary->find(mapped.key);
-    EffectiveEntry entry{
-        .object = mapped.key,
-        .bits = mapped.bits,
-        .bit_offset = static_cast<std::uint8_t>(std::min<unsigned>(mapped.bit_offset, 64)),
-        .dummy = mapped.is_dummy(),
-        .type = sub != nullptr ? sub->type : DataType::unknown,
-        .name = object_name(*node.dictionary, mapped.key),
-        .pos = pos};
-    if (entry.dummy) entry.name = "gap";
-    entries.push_back(std::move(entry));
+    entries.push_back(
+        {.object = mapped.key,
+         .bits = mapped.bits,
+         .bit_offset = static_cast<std::uint8_t>(std::min<unsigned>(mapped.bit_offset, 64)),
+         .dummy = mapped.is_dummy(),
+         .type = sub != nullptr ? sub->type : DataType::unknown,
+         .name = mapped.is_dummy() ? "gap" : object_name(*node.dictionary, mapped.key),
+         .pos = pos});
   }
   return entries;
 }

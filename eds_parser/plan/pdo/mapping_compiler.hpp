@@ -27,4 +27,22 @@ std::string label(const ObjectDictionary& dictionary, ObjectKey key);
 /// an empty text.
 std::string without_0x(const ObjectDictionary& dictionary, std::uint16_t index);
 
+/// Compiles the objects of a multiplexed PDO, as the network file lists them. For a SAM MPDO, and
+/// for every MPDO that the master sends, they are objects of the device's dictionary. For a DAM
+/// MPDO that the device sends, they are objects of the master itself, and `bits` gives their width.
+std::vector<EffectiveEntry> compile_mpdo(const NodeSource& node, const EffectivePdo& pdo,
+                                         const Sourced<std::vector<MappingSpec>>& wanted,
+                                         NetworkReport& report);
+
+/// Returns bytes 0..3 of the frames that carry this object. For a SAM MPDO that the master sends,
+/// they hold the source object under which the device's dispatching list expects it. CiA 301,
+/// 7.2.3.
+std::uint32_t mpdo_header(const NodeSource& node, const EffectivePdo& pdo,
+                          const EffectiveEntry& entry, NodeId master);
+
+/// Reports an error if a SAM MPDO of the master carries an object that the device's dispatching
+/// list does not contain.
+void check_dispatching(const NodeSource& node, const EffectivePdo& pdo, NodeId master,
+                       NetworkReport& report);
+
 }  // namespace takt

@@ -1,9 +1,6 @@
-#include "eds_parser/plan/pdo/mpdo_compiler.hpp"
-
 #include <algorithm>
 #include <optional>
 #include <string>
-#include <variant>
 
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/plan/pdo/mapping_compiler.hpp"
@@ -14,45 +11,30 @@ namespace {
 constexpr unsigned data_bits = 32;  ///< bytes 4..7
 constexpr std::uint32_t destination_flag = 0x80;
 
-class MpdoCompiler {
- public:
-  MpdoCompiler(const NodeSource& node, const EffectivePdo& pdo, NetworkReport& report)
-      : node_{node}, pdo_{pdo}, report_{report} {}
-
-  std::optional<EffectiveEntry> entry(const MappingSpec& wanted) {
-    const bool of_master = pdo_.is_tpdo && pdo_.mpdo == Mpdo::dam;
-    const SubObject* sub = of_master ? nullptr : node_.dictionary->find(wanted.object);
-    if (sub == nullptr && !of_master) {
-      error(wanted, "no-such-object",
-            "object " + to_string(wanted.object) + " is not in " + node_.dictionary->file);
-      return {};
-    }
-    EffectiveEntry out{.object = wanted.object,
-                       .bits = wanted.bits.value_or(0),
-                       .bit_offset = data_bits,
-                       .dummy = false,
-                       .type = of_master ? DataType::unsigned32 : sub->type,
-                       .name = of_master ? "object " + to_string(wanted.object)
-                                         : object_name(*node_.dictionary, wanted.object),
-                       .pos = wanted.pos};
-    if (out.bits == 0) out.bits = static_cast<std::uint8_t>(bit_width(out.type));
-    if (out.bits != 0 && out.bits <= data_bits) return out;
-    error(wanted, "wrong-width",
-          "object " + to_string(wanted.object) +
-              " does not fit: a multiplexed PDO carries up to 32 "
-              "bits");
+std::optional<EffectiveEntry> compile_entry(const NodeSource& node, const EffectivePdo& pdo,
+                                            const MappingSpec& wanted, NetworkReport& report) {
+  const bool of_master = pdo.is_tpdo && pdo.mpdo == Mpdo::dam;
+  const SubObject* sub = node.dictionary->find(wanted.object);
+  const std::string what = pdo.label(*node.spec) + ": object " + to_string(wanted.object);
+  if (sub == nullptr && !of_master) {
+    report.error(wanted.pos, "no-such-object", what, " is not in ", node.dictionary->file);
     return {};
   }
-
- private:
-  void error(const MappingSpec& wanted, std::string_view rule, const std::string& text) {
-    report_.error(wanted.pos, rule, pdo_.label() + " of node `" + node_.spec->name + "`: " + text);
+  const DataType type = of_master ? DataType::unsigned32 : sub->type;
+  const unsigned bits = wanted.bits ? *wanted.bits : bit_width(type);
+  if (bits == 0 || bits > data_bits) {
+    report.error(wanted.pos, "wrong-width", what,
+                 " does not fit: a multiplexed PDO carries up to 32 bits");
+    return {};
   }
-
-  const NodeSource& node_;
-  const EffectivePdo& pdo_;
-  NetworkReport& report_;
-};
+  return EffectiveEntry{.object = wanted.object,
+                        .bits = static_cast<std::uint8_t>(bits),
+                        .bit_offset = data_bits,
+                        .type = type,
+                        .name = of_master ? "object " + to_string(wanted.object)
+                                          : object_name(*node.dictionary, wanted.object),
+                        .pos = wanted.pos};
+}
 
 /// The object dispatching list (0x1FD0..0x1FFF) of a device, according to its file and the `sdo`
 /// writes of its node. It states which objects of which nodes the device receives by source
@@ -90,9 +72,8 @@ class DispatchingList {
     const std::uint32_t high = 1U << 24 | std::uint32_t{object.index} << 8 | object.sub;
     const ObjectKey place = free_.front();
     free_.erase(free_.begin());
-    return "write one under `sdo:`, `{index: " + hex(place.index) +
-           ", sub_index: " + std::to_string(int{place.sub}) + ", value: " + hex(high, 8) +
-           hex(low, 8).substr(2) + "}`";
+    return joined("write one under `sdo:`, `{index: ", hex(place.index), ", sub_index: ", place.sub,
+                  ", value: ", hex(high, 8), hex(low, 8).substr(2), "}`");
   }
 
  private:
@@ -110,8 +91,7 @@ class DispatchingList {
   std::uint64_t value_of(ObjectKey place, const SubObject& sub) const {
     std::int64_t value = integer_of(sub.value()).value_or(0);
     for (const SdoSpec& written : node_.spec->sdo) {
-      const auto* number = std::get_if<std::int64_t>(&written.value);
-      if (written.object == place && number != nullptr) value = *number;
+      if (written.object == place && written.integer() != nullptr) value = *written.integer();
     }
     return static_cast<std::uint64_t>(value);
   }
@@ -119,7 +99,7 @@ class DispatchingList {
   void add(ObjectKey place, const SubObject& sub) {
     const std::uint64_t value = value_of(place, sub);
     if (value == 0) {
-      if (sub.access != Access::ro && sub.access != Access::constant) free_.push_back(place);
+      if (sub.is_writable()) free_.push_back(place);
       return;
     }
     const auto block = static_cast<unsigned>(value >> 56);
@@ -141,14 +121,12 @@ std::vector<EffectiveEntry> compile_mpdo(const NodeSource& node, const Effective
                                          const Sourced<std::vector<MappingSpec>>& wanted,
                                          NetworkReport& report) {
   std::vector<EffectiveEntry> entries;
-  MpdoCompiler compiler{node, pdo, report};
   for (const MappingSpec& spec : *wanted) {
-    auto entry = compiler.entry(spec);
+    auto entry = compile_entry(node, pdo, spec, report);
     if (!entry) continue;
     if (std::ranges::find(entries, entry->object, &EffectiveEntry::object) != entries.end()) {
-      report.error(spec.pos, "mapped-twice",
-                   pdo.label() + " of node `" + node.spec->name + "` lists " +
-                       to_string(spec.object) + " twice");
+      report.error(spec.pos, "mapped-twice", pdo.label(*node.spec), " lists ", spec.object,
+                   " twice");
       continue;
     }
     entries.push_back(std::move(*entry));
@@ -171,29 +149,26 @@ std::uint32_t mpdo_header(const NodeSource& node, const EffectivePdo& pdo,
 void check_dispatching(const NodeSource& node, const EffectivePdo& pdo, NodeId master,
                        NetworkReport& report) {
   if (pdo.is_tpdo || pdo.mpdo != Mpdo::sam) return;
-  const auto error = [&](SourcePos pos, const std::string& text) {
-    report.error(pos, "dispatching-list",
-                 pdo.label() + " of node `" + node.spec->name + "` (SAM): " + text);
+  const auto error = [&](SourcePos pos, const auto&... parts) {
+    report.error(pos, "dispatching-list", pdo.label(*node.spec), " (SAM): ", parts...);
   };
   DispatchingList list{node};
   if (!list.exists()) {
-    return error(pdo.pos,
-                 node.dictionary->file +
-                     " has no object dispatching list (0x1FD0..0x1FFF), so the device accepts no "
-                     "MPDO by source address; write its objects with `mpdo: dam`");
+    return error(pdo.pos, node.dictionary->file,
+                 " has no object dispatching list (0x1FD0..0x1FFF), so the device accepts no MPDO "
+                 "by source address; write its objects with `mpdo: dam`");
   }
   std::vector<ObjectKey> senders;
   for (const EffectiveEntry& entry : pdo.mapping) {
     const auto sender = list.sent_as(entry.object, master);
     if (!sender) {
-      error(entry.pos, "no entry of its object dispatching list (0x1FD0..0x1FFF) takes " +
-                           to_string(entry.object) + " from the master, node " +
-                           std::to_string(int{master.value()}) + ": " +
-                           list.proposal(entry.object, master));
+      error(entry.pos, "no entry of its object dispatching list (0x1FD0..0x1FFF) takes ",
+            entry.object, " from the master, node ", master.value(), ": ",
+            list.proposal(entry.object, master));
     } else if (std::ranges::find(senders, *sender) != senders.end()) {
-      error(entry.pos, to_string(entry.object) + " is dispatched from " + to_string(*sender) +
-                           " of the master, like another object of this PDO: both would overwrite "
-                           "each other; list only one of them");
+      error(entry.pos, entry.object, " is dispatched from ", *sender,
+            " of the master, like another object of this PDO: both would overwrite each other; "
+            "list only one of them");
     } else {
       senders.push_back(*sender);
     }

@@ -1,6 +1,6 @@
-#include "eds_parser/plan/pdo/pdo_set_rules.hpp"
-
 #include <algorithm>
+
+#include "eds_parser/plan/pdo/pdo_rules.hpp"
 
 namespace takt {
 
@@ -20,12 +20,11 @@ void report_missing_pdos(const NodeSource& node, bool is_tpdo,
     };
     if (std::ranges::any_of(devices, same) || !*spec.enabled) continue;
     const auto index = static_cast<std::uint16_t>((is_tpdo ? 0x1800 : 0x1400) + spec.number - 1);
-    report.error(spec.pos, "no-such-pdo",
-                 node.dictionary->file + " has no " + kind + std::to_string(spec.number) + " (" +
-                     hex(index) + ")" +
-                     (count == 0 ? ", and no " + kind + " at all"
-                                 : "; its " + std::to_string(count) + " " + kind +
-                                       "s end with number " + std::to_string(last)));
+    report.error(spec.pos, "no-such-pdo", node.dictionary->file, " has no ", kind, spec.number,
+                 " (", hex(index), ")",
+                 count == 0 ? ", and no " + kind + " at all"
+                            : "; its " + std::to_string(count) + " " + kind + "s end with number " +
+                                  std::to_string(last));
   }
 }
 
@@ -37,10 +36,9 @@ void check_request_pairs(const NodeSource& node, std::span<const EffectivePdo> p
       return other.is_tpdo && other.number == pdo.number && other.use == PdoUse::exchanged;
     });
     if (answered) continue;
-    report.error(pdo.pos, "request-pair",
-                 pdo.label() + " of node `" + node.spec->name + "` is sent on request, but TPDO" +
-                     std::to_string(pdo.number) + ", which answers it, is off or maps nothing: " +
-                     "write it too, `tpdo: {" + std::to_string(pdo.number) + ": {request: true}}`");
+    report.error(pdo.pos, "request-pair", pdo.label(*node.spec), " is sent on request, but TPDO",
+                 pdo.number, ", which answers it, is off or maps nothing: write it too, `tpdo: {",
+                 pdo.number, ": {request: true}}`");
   }
 }
 

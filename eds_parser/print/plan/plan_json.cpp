@@ -6,7 +6,7 @@
 #include "eds_parser/print/plan/plan_waits.hpp"
 #include "eds_parser/print/plan/print_plan.hpp"
 #include "eds_parser/print/plan/step_frames.hpp"
-#include "eds_parser/table/limit_names.hpp"
+#include "eds_parser/table/output_limits.hpp"
 #include "eds_parser/table/name_of.hpp"
 
 namespace takt {

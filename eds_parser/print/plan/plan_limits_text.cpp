@@ -2,7 +2,7 @@
 #include <string>
 
 #include "eds_parser/print/plan/plan_sections.hpp"
-#include "eds_parser/table/limit_names.hpp"
+#include "eds_parser/table/output_limits.hpp"
 
 namespace takt {
 namespace {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "eds_parser/table/limit_names.hpp"
+#include "eds_parser/table/output_limits.hpp"
 
 namespace takt {
 namespace {

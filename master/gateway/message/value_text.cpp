@@ -9,8 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include "eds_parser/table/data_type.hpp"
 #include "eds_parser/table/raw_number.hpp"
-#include "eds_parser/table/real_range.hpp"
 #include "master/lcm/messages.hpp"
 #include "master/wire/bytes.hpp"
 

@@ -9,7 +9,7 @@
 #include "apps/takt/soak/judge/image_judge.hpp"
 #include "apps/takt/soak/judge/true_axes.hpp"
 #include "eds_parser/table/axis_modes.hpp"
-#include "eds_parser/table/limit_names.hpp"
+#include "eds_parser/table/output_limits.hpp"
 
 namespace takt::soak {
 namespace {

@@ -5,7 +5,6 @@
 #include <limits>
 #include <string>
 
-#include "eds_parser/table/real_range.hpp"
 
 namespace takt {
 namespace {

@@ -1,4 +1,4 @@
-#include "eds_parser/table/access_name.hpp"
+#include "eds_parser/table/device_table.hpp"
 
 #include "eds_parser/table/name_of.hpp"
 
