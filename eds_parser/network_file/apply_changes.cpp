@@ -1,6 +1,6 @@
-#include "eds_parser/network_file/apply_changes.hpp"
-
 #include <algorithm>
+
+#include "eds_parser/network_file/load_steps.hpp"
 
 namespace takt {
 namespace {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <iterator>
 #include <set>
 #include <system_error>
@@ -53,14 +52,6 @@ std::vector<fs::path> files_of(const fs::path& folder, Findings& findings) {
   return files;
 }
 
-std::string text_of(const fs::path& path) {
-  std::ifstream in{path, std::ios::binary};
-  std::string text(YamlTree::max_text + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return text;
-}
-
 }  // namespace
 
 std::vector<fs::path> device_folders() {
@@ -84,7 +75,7 @@ std::vector<DeviceData> load_device_data(const std::vector<fs::path>& folders, F
   for (const fs::path& folder : folders) {
     for (const fs::path& file : files_of(folder, findings)) {
       if (!known.insert(file.stem().string()).second) continue;
-      auto entry = read_device_data(text_of(file), file.string(), findings);
+      auto entry = read_device_data(read_yaml_file(file).value_or(""), file.string(), findings);
       if (entry) entries.push_back(std::move(*entry));
     }
   }

@@ -1,9 +1,9 @@
-#include "eds_parser/network_file/domain_files.hpp"
-
 #include <algorithm>
 #include <fstream>
 #include <span>
 
+#include "eds_parser/network_file/load_steps.hpp"
+#include "eds_parser/report/network_report.hpp"
 #include "eds_parser/report/text.hpp"
 
 namespace takt {
@@ -22,38 +22,36 @@ class Reader {
 
   void read(DomainFiles& files) {
     if (!files.upload.empty()) {
-      announce(files, Severity::note, "upload-file",
-               "UploadFile " + takt::quoted(files.upload) +
-                   " is the file for what a tool reads from the device; taktd reads no files from "
-                   "devices (use `takt sdo upload`)");
+      announce(files, Severity::note, "upload-file", "UploadFile ", takt::quoted(files.upload),
+               " is the file for what a tool reads from the device; taktd reads no files from "
+               "devices (use `takt sdo upload`)");
     }
     if (!files.download.empty() && is_for_boot(files)) load(files);
   }
 
  private:
+  template <class... Parts>
   void announce(const DomainFiles& files, Severity severity, std::string_view rule,
-                const std::string& what) {
+                const Parts&... what) {
     findings_.push_back(
-        {dcf_.string(), files.pos, severity, rule, to_string(files.key) + ": " + what});
+        {dcf_.string(), files.pos, severity, rule, joined(files.key, ": ", what...)});
   }
 
   bool is_for_boot(const DomainFiles& files) {
     const SubObject* sub = dictionary_.find(files.key);
     if (sub == nullptr) return false;
-    if (sub->type != DataType::domain || sub->access == Access::ro ||
-        sub->access == Access::constant) {
-      announce(files, Severity::warning, "download-file",
-               "DownloadFile " + takt::quoted(files.download) +
-                   " belongs to an object that is not a writable DOMAIN; it was left out");
+    if (sub->type != DataType::domain || !sub->is_writable()) {
+      announce(files, Severity::warning, "download-file", "DownloadFile ",
+               takt::quoted(files.download),
+               " belongs to an object that is not a writable DOMAIN; it was left out");
       return false;
     }
     const auto index = files.key.index;
     if (index >= first_program_object && index <= last_program_object) {
-      announce(
-          files, Severity::note, "download-file",
-          "DownloadFile " + takt::quoted(files.download) +
-              " is a program: write `software_file` with `software_version`, and takt loads it if "
-              "the device has another version");
+      announce(files, Severity::note, "download-file", "DownloadFile ",
+               takt::quoted(files.download),
+               " is a program: write `software_file` with `software_version`, and takt loads it if "
+               "the device has another version");
       return false;
     }
     return true;
@@ -71,24 +69,22 @@ class Reader {
     std::error_code failed;
     const std::string what = "DownloadFile " + takt::quoted(files.download);
     if (name.is_absolute()) {
-      return announce(
-          files, Severity::error, "no-file",
-          what + " is an absolute path: put the file beside the DCF and write only its name");
+      return announce(files, Severity::error, "no-file", what,
+                      " is an absolute path: put the file beside the DCF and write only its name");
     }
     if (!fs::is_regular_file(path, failed)) {
-      return announce(files, Severity::error, "no-file",
-                      what + " not found; looked for " + path.lexically_normal().string());
+      return announce(files, Severity::error, "no-file", what, " not found; looked for ",
+                      path.lexically_normal().string());
     }
     const auto size = fs::file_size(path, failed);
     if (failed || size == 0 || size > longest_file) {
-      return announce(files, Severity::error, "no-file",
-                      what + " has " + std::to_string(failed ? 0 : size) + " bytes; 1 to " +
-                          std::to_string(longest_file) + " can be downloaded");
+      return announce(files, Severity::error, "no-file", what, " has ", failed ? 0 : size,
+                      " bytes; 1 to ", longest_file, " can be downloaded");
     }
     std::vector<char> text(static_cast<std::size_t>(size));
     std::ifstream in{path, std::ios::binary};
     if (!in.read(text.data(), static_cast<std::streamsize>(text.size()))) {
-      return announce(files, Severity::error, "no-file", what + " can't be read");
+      return announce(files, Severity::error, "no-file", what, " can't be read");
     }
     const auto bytes = std::as_bytes(std::span{text});
     files.content.assign(bytes.begin(), bytes.end());

@@ -28,39 +28,27 @@ bool KeyInput::is_list() const {
 }
 
 bool read_value(const KeyInput& in, bool& out) {
-  if (!in.key.value.words.empty()) {
-    const auto choice = read_choice(in.node, in.key.name, in.key.value.words, in.report());
-    if (choice) out = *choice != 0;
-    return choice.has_value();
-  }
-  const auto value = read_bool(in.node, in.key.name, in.report());
-  if (value) out = *value;
-  return value.has_value();
+  const auto& words = in.key.value.words;
+  if (words.empty()) return store(read_bool(in.node, in.key.name, in.report()), out);
+  return store(read_choice(in.node, in.key.name, words, in.report()), out);
 }
 
 bool read_value(const KeyInput& in, double& out) {
-  const auto value = read_number(in.node, in.key.name, in.report());
-  if (value) out = *value;
-  return value.has_value();
+  return store(read_number(in.node, in.key.name, in.report()), out);
 }
 
 bool read_value(const KeyInput& in, std::string& out) {
   const auto& words = in.key.value.words;
-  if (!words.empty()) {
-    const auto choice = read_choice(in.node, in.key.name, words, in.report());
-    if (choice) out = words[*choice];
-    return choice.has_value();
-  }
-  auto value = read_text(in.node, in.key.name, in.report());
-  if (value) out = std::move(*value);
-  return value.has_value();
+  if (words.empty()) return store(read_text(in.node, in.key.name, in.report()), out);
+  const auto choice = read_choice(in.node, in.key.name, words, in.report());
+  return store(choice ? std::optional{words[*choice]} : std::nullopt, out);
 }
 
 bool read_value(const KeyInput& in, Firmware& out) {
   std::string text;
   if (!read_value(in, text)) return false;
   const auto version = Firmware::parse(text);
-  if (!version) in.error("not-a-version", in.what() + " has to be a version like \"16.00.00\"");
+  if (!version) in.error("not-a-version", in.what(), " has to be a version like \"16.00.00\"");
   out = version.value_or(out);
   return version.has_value();
 }
@@ -80,9 +68,8 @@ bool is_word(const KeyInput& in, bool& wrong) {
   const char first = in.node.text.empty() ? '0' : in.node.text.front();
   wrong = !words.empty() && (std::isalpha(static_cast<unsigned char>(first)) != 0 || first == '$');
   if (wrong) {
-    in.error("unknown-value", "`" + std::string{in.key.name} + "` has to be a number or `" +
-                                  std::string{words.front()} + "`, not `" +
-                                  in.node.text.substr(0, 40) + "`");
+    in.error("unknown-value", "`", in.key.name, "` has to be a number or `", words.front(),
+             "`, not `", in.node.text.substr(0, 40), "`");
   }
   return false;
 }
@@ -92,8 +79,7 @@ void report_missing(MapReader& map, const KeyText& key, SourcePos pos) {
   const KeyValue& value = key.value;
   const std::string range =
       value.type == KeyType::integer ? " (" + to_string(value.range) + ")" : "";
-  map.report().error(pos, "missing-key",
-                     map.what() + " lacks `" + std::string{key.name} + "`" + range);
+  map.report().error(pos, "missing-key", map.what(), " lacks `", key.name, "`", range);
 }
 
 }  // namespace takt

@@ -70,10 +70,11 @@ struct KeyInput {
   NetworkReport& report() const noexcept { return map.report(); }
   /// Returns for example "`velocity` of `limits` of node `arm`".
   std::string what() const { return "`" + std::string{key.name} + "` of " + map.what(); }
-  void error(std::string_view rule, std::string message) const {
-    report().error(node.pos, rule, std::move(message));
+  template <class... Parts>
+  void error(std::string_view rule, const Parts&... parts) const {
+    report().error(node.pos, rule, parts...);
   }
-  /// Whether the value is a list of at most 1024 entries, or empty. Reports anything else.
+  /// Returns true if the value is a list of at most 1024 entries, or empty. Reports other values.
   bool is_list() const;
 };
 
@@ -104,7 +105,7 @@ KeyRows rows_of() {
 }
 
 // Reads the value of a key into a variable of its type. The functions return false after an error,
-// which they report. A type with values of a kind of its own has its own overload beside its table.
+// which they report. A type with another form of values has an overload beside its table.
 
 bool read_value(const KeyInput& in, bool& out);
 bool read_value(const KeyInput& in, double& out);
@@ -113,24 +114,25 @@ bool read_value(const KeyInput& in, Firmware& out);
 /// Reads a number in the unit of the row.
 bool read_value(const KeyInput& in, Time& out);
 
-template <class T>
-  requires std::integral<T>
-bool read_value(const KeyInput& in, T& out) {
-  const auto value = read_integer(in.node, in.key.name, in.key.value.range, in.report());
-  if (value) out = static_cast<T>(*value);
+template <class From, class To>
+bool store(const std::optional<From>& value, To& out) {
+  if (value) out = static_cast<To>(*value);
   return value.has_value();
+}
+
+template <std::integral T>
+bool read_value(const KeyInput& in, T& out) {
+  return store(read_integer(in.node, in.key.name, in.key.value.range, in.report()), out);
 }
 
 /// Reads one of the words of a row, which are in the order of the enumerators.
 template <class T>
   requires std::is_enum_v<T>
 bool read_value(const KeyInput& in, T& out) {
-  const auto choice = read_choice(in.node, in.key.name, in.key.value.words, in.report());
-  if (choice) out = static_cast<T>(*choice);
-  return choice.has_value();
+  return store(read_choice(in.node, in.key.name, in.key.value.words, in.report()), out);
 }
 
-/// Whether the value is one of the words of a row that also accepts numbers. Reports other words.
+/// Returns true for one of the words of a row that also accepts numbers. Reports other words.
 bool is_word(const KeyInput& in, bool& wrong);
 
 /// Reads a number; a word of the row gives an empty value.
@@ -233,7 +235,7 @@ constexpr Key<T> required(Key<T> row) {
   row.otherwise = "required";
   return row;
 }
-/// Makes a row of keys of other programs. `why` says why they have no effect.
+/// Makes a row of keys of other programs. `why` is the reason why they have no effect.
 template <class T>
 constexpr Key<T> foreign(std::string_view names, std::string_view why) {
   return {{names, {.type = KeyType::foreign}, {}, why, KeyOrigin::bus_yml}};

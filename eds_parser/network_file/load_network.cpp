@@ -13,15 +13,15 @@
 #include "eds_parser/budget/fitting_services.hpp"
 #include "eds_parser/check/check.hpp"
 #include "eds_parser/dictionary/concise_dcf.hpp"
-#include "eds_parser/network_file/apply_changes.hpp"
+#include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/network_file/changed_network.hpp"
-#include "eds_parser/network_file/domain_files.hpp"
+#include "eds_parser/network_file/load_steps.hpp"
 #include "eds_parser/network_file/read_devices.hpp"
 #include "eds_parser/network_file/read_network.hpp"
-#include "eds_parser/network_file/shared_lines.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
 #include "eds_parser/plan/network_compiler.hpp"
 #include "eds_parser/read/eds.hpp"
+#include "eds_parser/table/little_endian.hpp"
 
 namespace takt {
 namespace {
@@ -31,19 +31,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t max_program = std::size_t{16} << 20U;
 constexpr std::size_t max_configuration = std::size_t{1} << 20U;
 
-/// Reads the text of a file, up to one byte more than a network file may have.
-std::optional<std::string> read_text(const fs::path& path) {
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) return {};
-  std::ifstream in{path, std::ios::binary};
-  if (!in) return {};
-  std::string text(YamlTree::max_text + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return text;
-}
-
-/// Says why a path cannot be read as a network file, and what to name instead.
+/// Returns why a path cannot be read as a network file, and what to name instead.
 std::string why_unreadable(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -55,7 +43,7 @@ std::string why_unreadable(const fs::path& path) {
 
 /// Returns for example `1 error` or `2 errors`.
 std::string counted(std::ptrdiff_t count, const std::string& what) {
-  return std::to_string(count) + ' ' + what + (count == 1 ? "" : "s");
+  return joined(count, " ", what, count == 1 ? "" : "s");
 }
 
 /// From this number of listed objects without a section the file is probably cut off, and not just
@@ -67,7 +55,7 @@ class Loader {
   Loader(const fs::path& path, DeviceDataUse use) : path_{path}, use_{use} {}
 
   LoadedNetwork run(const WhatIf& changes) {
-    const auto text = read_text(path_);
+    const auto text = read_yaml_file(path_);
     if (!text) {
       error({}, "no-file", why_unreadable(path_));
       return std::move(out_);
@@ -98,8 +86,13 @@ class Loader {
   }
 
  private:
-  void error(SourcePos pos, std::string_view rule, std::string message) {
-    out_.findings.push_back({path_.string(), pos, Severity::error, rule, std::move(message)});
+  template <class... Parts>
+  void error(SourcePos pos, std::string_view rule, const Parts&... parts) {
+    add(Severity::error, pos, rule, parts...);
+  }
+  template <class... Parts>
+  void add(Severity severity, SourcePos pos, std::string_view rule, const Parts&... parts) {
+    out_.findings.push_back({path_.string(), pos, severity, rule, joined(parts...)});
   }
 
   /// Lowers the default of `service_frames` until everything fits the bus. The default stays if no
@@ -118,10 +111,8 @@ class Loader {
   /// network file instead.
   void note_placeholder(const NetworkSpec& spec) {
     if (!spec.dcf_path.given || !is_placeholder(*spec.dcf_path)) return;
-    out_.findings.push_back(
-        {path_.string(), spec.dcf_path.pos, Severity::note, "placeholder",
-         "`dcf_path` " + *spec.dcf_path +
-             " is a placeholder of another build system: takt looks for files beside this file"});
+    add(Severity::note, spec.dcf_path.pos, "placeholder", "`dcf_path` ", *spec.dcf_path,
+        " is a placeholder of another build system: takt looks for files beside this file");
   }
 
   /// Turns `@BUS_CONFIG_PATH@/x.eds` into `x.eds`.
@@ -166,10 +157,10 @@ class Loader {
     if (!concise) return;
     const auto entries = decode_concise_dcf(*concise);
     if (!entries) {
-      return error(node.configuration_file.pos, "concise-dcf",
-                   "`" + *node.configuration_file + "` " + entries.error() +
-                       ": `configuration_file` needs a concise DCF (0x1F22); write a DCF in text "
-                       "under `dcf`");
+      return error(
+          node.configuration_file.pos, "concise-dcf", "`", *node.configuration_file, "` ",
+          entries.error(),
+          ": `configuration_file` needs a concise DCF (0x1F22); write a DCF in text under `dcf`");
     }
     std::vector<SdoSpec> values;
     for (const ConciseEntry& entry : *entries) values.push_back(sdo_of(entry, node));
@@ -183,13 +174,9 @@ class Loader {
                 .value = entry.value,
                 .pos = node.configuration_file.pos,
                 .value_pos = node.configuration_file.pos};
-    const bool pdo = entry.object.index >= 0x1400 && entry.object.index <= 0x1BFF;
-    if (!pdo || entry.value.size() > 8) return sdo;
-    std::uint64_t number = 0;
-    for (std::size_t i = 0; i < entry.value.size(); ++i) {
-      number |= std::to_integer<std::uint64_t>(entry.value[i]) << (8 * i);
+    if (is_pdo_parameter(entry.object.index) && entry.value.size() <= 8) {
+      sdo.value = static_cast<std::int64_t>(from_little_endian(entry.value));
     }
-    sdo.value = static_cast<std::int64_t>(number);
     return sdo;
   }
 
@@ -201,9 +188,9 @@ class Loader {
     const fs::path* path = existing(paths);
     std::error_code ignored;
     if (path == nullptr || fs::file_size(*path, ignored) > limit) {
-      const std::string why = path == nullptr ? "not found beside the network file or in `dcf_path`"
-                                              : "larger than " + std::to_string(limit) + " bytes";
-      error(file.pos, "no-file", "node `" + node.name + "`: file `" + *file + "` " + why);
+      error(file.pos, "no-file", "node `", node.name, "`: file `", *file, "` ",
+            path == nullptr ? "not found beside the network file or in `dcf_path`"
+                            : joined("larger than ", limit, " bytes"));
       return std::nullopt;
     }
     std::ifstream in{*path, std::ios::binary};
@@ -232,8 +219,8 @@ class Loader {
         what = "is not a regular file; looked for ";
       }
     }
-    error(node.dcf.pos, "no-device-file",
-          "node `" + node.name + "`: device file `" + *node.dcf + "` " + what + where);
+    error(node.dcf.pos, "no-device-file", "node `", node.name, "`: device file `", *node.dcf, "` ",
+          what, where);
   }
 
   const ObjectDictionary* read(const fs::path& path, const NodeSpec& node) {
@@ -250,10 +237,8 @@ class Loader {
         return f.severity == Severity::error;
       });
       const bool reported = out_.findings.size() != before;
-      out_.findings.push_back(
-          {path_.string(), node.dcf.pos, reported ? Severity::note : Severity::error,
-           "no-device-file",
-           "node `" + node.name + "`: `" + *node.dcf + "` can't be read as an EDS or DCF"});
+      add(reported ? Severity::note : Severity::error, node.dcf.pos, "no-device-file", "node `",
+          node.name, "`: `", *node.dcf, "` can't be read as an EDS or DCF");
       return nullptr;
     }
     add_device_finding(path, file, id);
@@ -281,14 +266,14 @@ class Loader {
          {},
          errors > 0 || listed_only >= torn_from ? Severity::warning : Severity::note,
          "device-file",
-         counted(errors, "error") + " and " + counted(warnings, "warning") +
-             " in this device file" +
-             (listed_only >= torn_from ? "; " + std::to_string(listed_only) +
-                                             " objects that it lists have no section: "
-                                             "is the file cut off?"
-                                       : "") +
-             "; `takt eds check " + (id ? "--node " + std::to_string(id->value()) + ' ' : "") +
-             path.string() + "` lists them"});
+         joined(counted(errors, "error"), " and ", counted(warnings, "warning"),
+                " in this device file",
+                listed_only < torn_from
+                    ? ""
+                    : joined("; ", listed_only,
+                             " objects that it lists have no section: is the file cut off?"),
+                "; `takt eds check ", id ? joined("--node ", id->value(), " ") : "", path.string(),
+                "` lists them")});
   }
 
   /// Sorts findings: device files first, then the network file by position. A finding that nodes

@@ -21,7 +21,7 @@ struct LoadedNetwork {
   Findings findings;       ///< of the network file and of the device files it names
 };
 
-/// Whether the device data apply to the nodes. `ignored` serves only to show the difference.
+/// States whether the device data apply to the nodes. `ignored` only serves to show the difference.
 enum class DeviceDataUse : std::uint8_t { applied, ignored };
 
 /// Reads, checks and compiles a network file. The result lists all errors at once.

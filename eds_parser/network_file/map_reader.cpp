@@ -1,6 +1,7 @@
 #include "eds_parser/network_file/map_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cctype>
 #include <charconv>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "eds_parser/report/suggest.hpp"
+#include "eds_parser/report/text.hpp"
 
 namespace takt {
 namespace {
@@ -25,9 +27,8 @@ std::string quote(std::string_view text) {
 bool is_scalar(const YamlNode& node, std::string_view key, std::string_view expected,
                NetworkReport& report) {
   if (node.kind == YamlNode::Kind::scalar) return true;
-  report.error(node.pos, "wrong-type",
-               "`" + std::string{key} + "` has to be " + std::string{expected} + ", but this is " +
-                   (node.kind == YamlNode::Kind::null ? "empty" : std::string{name(node.kind)}));
+  report.error(node.pos, "wrong-type", "`", key, "` has to be ", expected, ", but this is ",
+               node.kind == YamlNode::Kind::null ? "empty" : std::string{name(node.kind)});
   return false;
 }
 
@@ -81,26 +82,22 @@ std::optional<std::int64_t> read_integer(const YamlNode& node, std::string_view 
                                          IntegerRange range, NetworkReport& report) {
   if (!is_scalar(node, key, "a number", report)) return {};
   if (looks_octal(node.text)) {
-    report.error(node.pos, "octal",
-                 quote(node.text) + " of `" + std::string{key} +
-                     "` is octal to some YAML readers and decimal to others: write it without "
-                     "leading zeros, or with 0x");
+    report.error(node.pos, "octal", quote(node.text), " of `", key,
+                 "` is octal to some YAML readers and decimal to others: write it without leading "
+                 "zeros, or with 0x");
     return {};
   }
   const auto value = parse_integer(node.text);
   if (!value) {
-    report.error(
-        node.pos, "not-a-number",
-        "`" + std::string{key} + "`: " + quote(node.text) +
-            (is_hex_without_prefix(node.text)
-                 ? " is hexadecimal without 0x: write 0x" + node.text
-                 : " is not a whole number; expected " + to_string(range) + ", decimal or 0x"));
+    report.error(node.pos, "not-a-number", "`", key, "`: ", quote(node.text),
+                 is_hex_without_prefix(node.text)
+                     ? " is hexadecimal without 0x: write 0x" + node.text
+                     : " is not a whole number; expected " + to_string(range) + ", decimal or 0x");
     return {};
   }
   if (*value < range.low || *value > range.high) {
-    report.error(
-        node.pos, "out-of-range",
-        "`" + std::string{key} + "`: " + quote(node.text) + " is outside " + to_string(range));
+    report.error(node.pos, "out-of-range", "`", key, "`: ", quote(node.text), " is outside ",
+                 range);
     return {};
   }
   return value;
@@ -118,38 +115,36 @@ std::optional<double> read_number(const YamlNode& node, std::string_view key,
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
       looks_octal(text)) {
-    report.error(node.pos, "not-a-number",
-                 "`" + std::string{key} + "`: " + quote(node.text) + " is not a number");
+    report.error(node.pos, "not-a-number", "`", key, "`: ", quote(node.text), " is not a number");
     return {};
   }
   return value;
 }
 
 std::optional<bool> read_bool(const YamlNode& node, std::string_view key, NetworkReport& report) {
+  constexpr std::array<std::string_view, 4> yes{"true", "yes", "on", "1"};
+  constexpr std::array<std::string_view, 4> no{"false", "no", "off", "0"};
   if (!is_scalar(node, key, "true or false", report)) return {};
-  std::string text = node.text;
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (text == "true" || text == "yes" || text == "on" || text == "1") return true;
-  if (text == "false" || text == "no" || text == "off" || text == "0") {
-    if (node.quoted) {
-      report.warning(node.pos, "quoted",
-                     "`" + std::string{key} + "`: " + quote(node.text) +
-                         " in quotes is read as false; generators of other masters read any text "
-                         "as true: write the word without quotes");
-    }
-    return false;
+  const auto is = [&](std::string_view word) { return same_word(node.text, word); };
+  if (std::ranges::any_of(yes, is)) return true;
+  if (std::ranges::none_of(no, is)) {
+    report.error(node.pos, "wrong-type", "`", key, "` has to be true or false, not ",
+                 quote(node.text));
+    return {};
   }
-  report.error(node.pos, "wrong-type",
-               "`" + std::string{key} + "` has to be true or false, not " + quote(node.text));
-  return {};
+  if (node.quoted) {
+    report.warning(node.pos, "quoted", "`", key, "`: ", quote(node.text),
+                   " in quotes is read as false; generators of other masters read any text as "
+                   "true: write the word without quotes");
+  }
+  return false;
 }
 
 std::optional<std::string> read_text(const YamlNode& node, std::string_view key,
                                      NetworkReport& report) {
   if (!is_scalar(node, key, "text", report)) return {};
   if (node.text.empty()) {
-    report.error(node.pos, "wrong-type", "`" + std::string{key} + "` is empty");
+    report.error(node.pos, "wrong-type", "`", key, "` is empty");
     return {};
   }
   return node.text;
@@ -157,19 +152,15 @@ std::optional<std::string> read_text(const YamlNode& node, std::string_view key,
 
 std::optional<std::int64_t> read_number_key(const YamlPair& pair, std::string_view key,
                                             IntegerRange range, NetworkReport& report) {
-  YamlNode number;
-  number.kind = YamlNode::Kind::scalar;
-  number.text = pair.key;
-  number.pos = pair.key_pos;
+  const YamlNode number{.kind = YamlNode::Kind::scalar, .text = pair.key, .pos = pair.key_pos};
   return read_integer(number, key, range, report);
 }
 
 MapReader::MapReader(const YamlNode& node, std::string what, NetworkReport& report)
     : node_{node}, what_{std::move(what)}, report_{report} {
-  if (node.kind == YamlNode::Kind::map || node.kind == YamlNode::Kind::null) return;
-  report.error(
-      node.pos, "wrong-type",
-      what_ + " has to be a map (`key: value`), but this is " + std::string{name(node.kind)});
+  if (is_readable()) return;
+  report.error(node.pos, "wrong-type", what_, " has to be a map (`key: value`), but this is ",
+               name(node.kind));
 }
 
 const YamlNode* MapReader::take(std::string_view key) {
@@ -178,10 +169,8 @@ const YamlNode* MapReader::take(std::string_view key) {
 }
 
 SourcePos MapReader::key_pos(std::string_view key) const noexcept {
-  for (const YamlPair& pair : node_.pairs) {
-    if (pair.key == key) return pair.key_pos;
-  }
-  return node_.pos;
+  const auto found = std::ranges::find(node_.pairs, key, &YamlPair::key);
+  return found == node_.pairs.end() ? node_.pos : found->key_pos;
 }
 
 bool MapReader::has_slip_of(std::string_view key) const {
@@ -197,8 +186,7 @@ void MapReader::ignore(std::string_view keys, std::string_view why) {
     keys.remove_prefix(std::min(key.size() + 1, keys.size()));
     if (!has(key)) continue;
     known_.push_back(key);
-    report_.note(key_pos(key), "unused-key",
-                 "`" + std::string{key} + "` of " + what_ + " has no effect: " + std::string{why});
+    report_.note(key_pos(key), "unused-key", "`", key, "` of ", what_, " has no effect: ", why);
   }
 }
 
@@ -210,9 +198,9 @@ void MapReader::finish_shared(std::string_view why) {
     const std::string guess = did_you_mean(pair.key, known_);
     const std::string text = "unknown key " + quote(pair.key) + " in " + what_;
     if (why.empty() || !guess.empty()) {
-      report_.error(pair.key_pos, "unknown-key", text + guess);
+      report_.error(pair.key_pos, "unknown-key", text, guess);
     } else {
-      report_.warning(pair.key_pos, "unknown-key", text + std::string{why});
+      report_.warning(pair.key_pos, "unknown-key", text, why);
     }
   }
 }
@@ -227,9 +215,8 @@ std::optional<std::size_t> read_choice(const YamlNode& node, std::string_view ke
   for (const std::string_view choice : names) {
     list += (list.empty() ? "" : ", ") + std::string{choice};
   }
-  report.error(node.pos, "unknown-value",
-               "`" + std::string{key} + "`: " + quote(node.text) + " is not one of " + list +
-                   did_you_mean(node.text, names));
+  report.error(node.pos, "unknown-value", "`", key, "`: ", quote(node.text), " is not one of ",
+               list, did_you_mean(node.text, names));
   return {};
 }
 

@@ -48,12 +48,13 @@ class MapReader {
 
   const YamlNode* take(std::string_view key);
   SourcePos key_pos(std::string_view key) const noexcept;
-  bool is_map() const noexcept { return node_.kind == YamlNode::Kind::map; }
-  /// False if the constructor reported the type. Nothing can be missing in such a value.
-  bool is_readable() const noexcept { return is_map() || node_.kind == YamlNode::Kind::null; }
+  /// Returns false if the constructor reported the type. Nothing can be missing in such a value.
+  bool is_readable() const noexcept {
+    return node_.kind == YamlNode::Kind::map || node_.kind == YamlNode::Kind::null;
+  }
   bool has(std::string_view key) const noexcept { return node_.find(key) != nullptr; }
-  /// Whether `key` is missing but an unknown key, which finish() reports, is most likely a
-  /// misspelling of it. Call this after all keys are taken.
+  /// Returns true if an unknown key, which finish() reports, is most likely a misspelling of `key`.
+  /// Call this after all keys are taken.
   bool has_slip_of(std::string_view key) const;
 
   /// Reports a note for each key that is present and belongs to another program. `keys` has blanks

@@ -22,20 +22,16 @@ void read_bit_rate(const KeyInput& in, Sourced<std::uint32_t>& out) {
   const std::uint32_t kbit = *rate / 1000;
   const bool is_bits = *rate > 1000 && *rate % 1000 == 0 && is_standard_rate(kbit);
   if (is_bits && in.key.name == "baudrate") {
-    in.report().warning(rate.pos, "unit",
-                        written + ": " + std::to_string(*rate) +
-                            " is read as bit/s, CAN allows at most 1000 kbit/s; write " +
-                            std::to_string(kbit));
+    in.report().warning(rate.pos, "unit", written, ": ", *rate,
+                        " is read as bit/s, CAN allows at most 1000 kbit/s; write ", kbit);
     rate.value = kbit;
   } else if (*rate > 1000) {
-    return in.error("unit", written + ": " + std::to_string(*rate) + " would be " +
-                                std::to_string(kbit) + " Mbit/s; CAN allows at most 1000 kbit/s" +
-                                (is_bits ? ", write " + std::to_string(kbit) : ""));
+    return in.error("unit", written, ": ", *rate, " would be ", kbit,
+                    " Mbit/s; CAN allows at most 1000 kbit/s",
+                    is_bits ? ", write " + std::to_string(kbit) : "");
   } else if (!is_standard_rate(*rate)) {
-    in.report().warning(
-        rate.pos, "bit-rate",
-        written + " and " + std::to_string(*rate) +
-            " is not a CANopen bit rate (10, 20, 50, 100, 125, 250, 500, 800, 1000)");
+    in.report().warning(rate.pos, "bit-rate", written, " and ", *rate,
+                        " is not a CANopen bit rate (10, 20, 50, 100, 125, 250, 500, 800, 1000)");
   }
   if (out.given && *rate != *out) {
     in.error("bit-rate", "`baudrate` of `master` and `bitrate_kbit` of `bus` differ: keep one");

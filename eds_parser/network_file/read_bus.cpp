@@ -53,7 +53,7 @@ void read_url(const KeyInput& in, LcmOptions& lcm) {
   set(in, lcm.url);
   if (lcm.url.empty()) return;
   const auto parsed = parse_lcm_url(lcm.url);
-  if (!parsed) in.error("lcm-url", "`url` of `lcm`: " + parsed.error());
+  if (!parsed) in.error("lcm-url", "`url` of `lcm`: ", parsed.error());
 }
 
 void read_authenticate(const KeyInput& in, LcmOptions& lcm) {
@@ -128,31 +128,29 @@ constexpr Key<NetworkSpec> options_keys[] = {
                                     bus_yml),
 };
 
-/// Reads a section whose values go to `spec` itself.
-template <const auto& Keys>
-void read_section(const KeyInput& in, NetworkSpec& spec) {
-  read_map(in.node, "`" + std::string{in.key.name} + "`", Keys, spec, in.report());
-}
-template <const auto& Keys, auto Member>
-void read_section_of(const KeyInput& in, NetworkSpec& spec) {
-  read_map(in.node, "`" + std::string{in.key.name} + "`", Keys, spec.*Member, in.report());
+/// Makes the row of a section whose values go to a member of the network, or to the network itself.
+template <const auto& Keys, auto... Member>
+constexpr Key<NetworkSpec> section(std::string_view name, std::string_view meaning,
+                                   KeyOrigin origin = KeyOrigin::takt) {
+  Key<NetworkSpec> row{{name, {.type = KeyType::map, .parts = rows_of<Keys>}, {}, meaning, origin}};
+  row.read = [](const KeyInput& in, NetworkSpec& spec) {
+    auto what = "`" + std::string{in.key.name} + "`";
+    if constexpr (sizeof...(Member) == 0) {
+      read_map(in.node, std::move(what), Keys, spec, in.report());
+    } else {
+      read_map(in.node, std::move(what), Keys, member_of<Member...>(spec), in.report());
+    }
+  };
+  return row;
 }
 
 /// The order of the rows is that of reading. Rows without a function are read last.
 constexpr Key<NetworkSpec> sections[] = {
-    key<read_section<bus_keys>>("bus", {.type = KeyType::map, .parts = rows_of<bus_keys>}, "",
-                                "The bus."),
-    key<read_section_of<lcm_keys, &NetworkSpec::lcm>>(
-        "lcm", {.type = KeyType::map, .parts = rows_of<lcm_keys>}, "", "The messages on LCM."),
-    key<read_section_of<black_box_keys, &NetworkSpec::recording>>(
-        "black_box", {.type = KeyType::map, .parts = rows_of<black_box_keys>}, "",
-        "The recordings."),
-    key<read_section<realtime_keys>>("realtime",
-                                     {.type = KeyType::map, .parts = rows_of<realtime_keys>}, "",
-                                     "The scheduling of the bus thread."),
-    key<read_section<options_keys>>("options",
-                                    {.type = KeyType::map, .parts = rows_of<options_keys>}, "",
-                                    "Values for all nodes.", bus_yml),
+    section<bus_keys>("bus", "The bus."),
+    section<lcm_keys, &NetworkSpec::lcm>("lcm", "The messages on LCM."),
+    section<black_box_keys, &NetworkSpec::recording>("black_box", "The recordings."),
+    section<realtime_keys>("realtime", "The scheduling of the bus thread."),
+    section<options_keys>("options", "Values for all nodes.", bus_yml),
     key<read_master>("master", {.type = KeyType::map, .parts = master_rows}, "", "The master.",
                      bus_yml),
     {{"defaults",

@@ -11,8 +11,7 @@ static bool read_value(const KeyInput& in, NumberRange& out) {
   const IntegerRange limits = in.key.value.range;
   const bool is_list = in.node.kind == YamlNode::Kind::sequence;
   if (is_list && in.node.items.size() != 2) {
-    in.error("wrong-type",
-             "`" + std::string{in.key.name} + "` takes a number or `[lowest, highest]`");
+    in.error("wrong-type", "`", in.key.name, "` takes a number or `[lowest, highest]`");
     return false;
   }
   const auto bound = [&](const YamlNode& node) {
@@ -22,7 +21,7 @@ static bool read_value(const KeyInput& in, NumberRange& out) {
   const auto high = is_list ? bound(*in.node.items[1]) : low;
   if (!low || !high) return false;
   if (*low > *high) {
-    in.error("out-of-range", "`" + std::string{in.key.name} + "`: write the lower number first");
+    in.error("out-of-range", "`", in.key.name, "`: write the lower number first");
     return false;
   }
   out = {static_cast<std::uint32_t>(*low), static_cast<std::uint32_t>(*high)};
@@ -107,8 +106,8 @@ constexpr Key<TimeoutEdit> timeout_keys[] = {
 template <auto Member>
 void read_types(const KeyInput& in, PdoRule& rule) {
   if (in.node.kind != YamlNode::Kind::sequence || in.node.items.empty()) {
-    return in.error("wrong-type",
-                    in.what() + " has to be a list of numbers and ranges: [[1, 240], 254, 255]");
+    return in.error("wrong-type", in.what(),
+                    " has to be a list of numbers and ranges: [[1, 240], 254, 255]");
   }
   for (const YamlNode* item : in.node.items) {
     NumberRange types;

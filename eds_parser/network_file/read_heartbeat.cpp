@@ -21,19 +21,18 @@ void read_consumer(const KeyInput& in, Sourced<bool>& consumer) {
                       text.find_first_not_of("0123456789") == std::string::npos;
   if (!number) return set(in, consumer);
   consumer = {text.find_first_not_of('0') != std::string::npos, in.node.pos, true};
-  in.report().warning(in.node.pos, "wrong-type",
-                      "`heartbeat_consumer` has to be true or false; " + text + " is read as " +
-                          (*consumer ? "true: the accepted silence is `heartbeat_producer` of "
-                                       "the watched node times `heartbeat_multiplier`"
-                                     : "false"));
+  in.report().warning(in.node.pos, "wrong-type", "`heartbeat_consumer` has to be true or false; ",
+                      text, " is read as ",
+                      *consumer ? "true: the accepted silence is `heartbeat_producer` of the "
+                                  "watched node times `heartbeat_multiplier`"
+                                : "false");
 }
 
 void read_producer(const KeyInput& in, Sourced<std::uint16_t>& producer) {
   if (!says_no(in.node)) return set(in, producer);
   producer = {0, in.node.pos, true};
-  in.report().warning(in.node.pos, "wrong-type",
-                      "`heartbeat_producer` has to be a time in ms; " + in.node.text +
-                          " is read as 0: no heartbeat");
+  in.report().warning(in.node.pos, "wrong-type", "`heartbeat_producer` has to be a time in ms; ",
+                      in.node.text, " is read as 0: no heartbeat");
 }
 
 void read_multiplier(const KeyInput& in, Sourced<double>& multiplier) {

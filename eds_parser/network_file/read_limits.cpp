@@ -10,26 +10,26 @@ template <auto Member>
 void magnitude(const KeyInput& in, typename KeyTarget<decltype(Member)>::Type& limits) {
   set(in, limits.*Member);
   if (!(limits.*Member).given || *(limits.*Member) > 0) return;
-  in.error("out-of-range",
-           in.what() +
-               " has to be above 0: the limit applies to both directions; to forbid a motion, "
-               "leave the output out of the mapping");
+  in.error("out-of-range", in.what(),
+           " has to be above 0: the limit applies to both directions; to forbid a motion, leave "
+           "the output out of the mapping");
   (limits.*Member).given = false;
 }
 
 /// Reads `[lo, hi]`, in this order.
 void read_range(const KeyInput& in, AxisLimitsSpec& limits) {
   if (in.node.kind != YamlNode::Kind::sequence || in.node.items.size() != 2) {
-    return in.error("wrong-type",
-                    in.what() + " has to be the lowest and the highest value: [-1.5, 1.5]");
+    return in.error("wrong-type", in.what(),
+                    " has to be the lowest and the highest value: [-1.5, 1.5]");
   }
   const auto& items = in.node.items;
   const auto low = read_number(*items[0], in.key.name, in.report());
   const auto high = read_number(*items[1], in.key.name, in.report());
   if (!low || !high) return;
   if (*low >= *high) {
-    return in.error("out-of-range", in.what() + " has to begin with the lower value: " +
-                                        items[0]->text + " is not below " + items[1]->text);
+    return in.error("out-of-range", in.what(),
+                    " has to begin with the lower value: ", items[0]->text, " is not below ",
+                    items[1]->text);
   }
   limits.position = {{*low, *high}, in.node.pos, true};
 }
@@ -62,14 +62,14 @@ void check_object(const KeyInput& in, std::vector<ObjectLimitSpec>& objects,
                   const ObjectLimitSpec& limit) {
   const std::string what = "the limits of " + to_string(limit.object) + " in " + in.map.what();
   if (!limit.min.given && !limit.max.given && !limit.step.given) {
-    in.error("missing-key", what + " lack `min`, `max` or `step`");
+    in.error("missing-key", what, " lack `min`, `max` or `step`");
   } else if (limit.min.given && limit.max.given && *limit.min >= *limit.max) {
-    in.report().error(limit.min.pos, "out-of-range", what + ": `min` is not below `max`");
+    in.report().error(limit.min.pos, "out-of-range", what, ": `min` is not below `max`");
   }
   for (const ObjectLimitSpec& other : objects) {
     if (other.object != limit.object) continue;
-    in.error("written-twice", what + " are written twice, first in line " +
-                                  std::to_string(other.pos.line) + ": keep one");
+    in.error("written-twice", what, " are written twice, first in line ", other.pos.line,
+             ": keep one");
   }
 }
 
@@ -83,8 +83,8 @@ constexpr Key<ObjectLimitSpec> object_keys[] = {
 
 void read_axes(const KeyInput& in, LimitsSpec& limits) {
   if (in.node.kind != YamlNode::Kind::map) {
-    return in.error("wrong-type",
-                    in.what() + " has to be a map of axis numbers: {2: {velocity: 1.0}}");
+    return in.error("wrong-type", in.what(),
+                    " has to be a map of axis numbers: {2: {velocity: 1.0}}");
   }
   for (const YamlPair& pair : in.node.pairs) {
     const auto axis = read_number_key(pair, in.key.name, axis_numbers, in.report());

@@ -96,10 +96,9 @@ void check_sync_source(const MasterSpec& master, NetworkReport& report) {
   const bool followed = master.sync_source.given && *master.sync_source != "master";
   const auto needs_source = [&](const auto& value, const std::string& key) {
     if (followed || !value.given) return;
-    report.error(value.pos, "sync-source",
-                 "`" + key +
-                     "` is for a SYNC that another device makes: name this device with "
-                     "`sync_source` (a node, or `external`)");
+    report.error(value.pos, "sync-source", "`", key,
+                 "` is for a SYNC that another device makes: name this device with `sync_source` "
+                 "(a node, or `external`)");
   };
   needs_source(master.sync_timeout_us, "sync_timeout");
   needs_source(master.on_sync_loss, "on_sync_loss");
@@ -108,10 +107,9 @@ void check_sync_source(const MasterSpec& master, NetworkReport& report) {
     report.error(master.sync_source.pos, "sync-source",
                  "`sync_source` needs `sync_period`: the SYNC period of the producer in us");
   } else if (followed && master.sync_timeout_us.given && *master.sync_timeout_us < period) {
-    report.error(master.sync_timeout_us.pos, "out-of-range",
-                 "`sync_timeout` of " + std::to_string(*master.sync_timeout_us) +
-                     " us is shorter than `sync_period` of " + std::to_string(period) +
-                     " us: every SYNC would count as lost");
+    report.error(master.sync_timeout_us.pos, "out-of-range", "`sync_timeout` of ",
+                 *master.sync_timeout_us, " us is shorter than `sync_period` of ", period,
+                 " us: every SYNC would count as lost");
   }
 }
 
@@ -122,15 +120,12 @@ void check_sync(const MasterSpec& master, NetworkReport& report) {
   }
   const std::uint32_t period = *master.sync_period_us;
   if (period > 0 && period < 200) {
-    report.error(master.sync_period_us.pos, "unit",
-                 "`sync_period` is in us: " + std::to_string(period) +
-                     " us leaves no room for frames; for " + std::to_string(period) + " ms write " +
-                     std::to_string(period * 1000));
+    report.error(master.sync_period_us.pos, "unit", "`sync_period` is in us: ", period,
+                 " us leaves no room for frames; for ", period, " ms write ", period * 1000);
   }
   if (master.sync_window_us.given && period > 0 && *master.sync_window_us > period) {
-    report.error(master.sync_window_us.pos, "out-of-range",
-                 "`sync_window` of " + std::to_string(*master.sync_window_us) +
-                     " us is longer than `sync_period` of " + std::to_string(period) + " us");
+    report.error(master.sync_window_us.pos, "out-of-range", "`sync_window` of ",
+                 *master.sync_window_us, " us is longer than `sync_period` of ", period, " us");
   }
 }
 

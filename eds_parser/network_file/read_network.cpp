@@ -39,8 +39,8 @@ class NetworkReader {
   void run() {
     if (root_.kind != YamlNode::Kind::map) {
       report_.error(root_.pos, "wrong-type",
-                    "a network file has to be a map with `master:` and `nodes:`, but this is " +
-                        std::string{name(root_.kind)});
+                    "a network file has to be a map with `master:` and `nodes:`, but this is ",
+                    name(root_.kind));
       return;
     }
     read_sections();
@@ -72,13 +72,12 @@ class NetworkReader {
   void read_top_level(const YamlPair& pair) {
     if (is_node(pair)) return add(pair);
     slipped_ = slipped_ || nearest(pair.key, names_) == "nodes";
-    report_.error(pair.key_pos, "unknown-key",
-                  "unknown section `" + pair.key + "` (a node needs a `node_id`)" +
-                      did_you_mean(pair.key, names_));
+    report_.error(pair.key_pos, "unknown-key", "unknown section `", pair.key,
+                  "` (a node needs a `node_id`)", did_you_mean(pair.key, names_));
   }
 
-  /// Whether a section is a node. The master also has a `node_id`, so a section whose name is
-  /// almost `master` and that has no device file is not a node.
+  /// Returns true if a section is a node. The master also has a `node_id`, so a section whose name
+  /// is almost `master` and that has no device file is not a node.
   bool is_node(const YamlPair& pair) const {
     if (pair.value->kind != YamlNode::Kind::map) return false;
     if (pair.value->find("dcf") != nullptr) return true;
@@ -90,8 +89,8 @@ class NetworkReader {
   void read_nodes(const YamlNode& nodes) {
     if (nodes.kind != YamlNode::Kind::map) {
       report_.error(nodes.pos, "wrong-type",
-                    "`nodes` has to be a map of `NAME: {node_id: ..., dcf: ...}`, but this is " +
-                        std::string{name(nodes.kind)});
+                    "`nodes` has to be a map of `NAME: {node_id: ..., dcf: ...}`, but this is ",
+                    name(nodes.kind));
       found_node_ = true;  // this is already reported
       return;
     }

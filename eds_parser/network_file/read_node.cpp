@@ -96,7 +96,7 @@ void read_channel(const KeyInput& in, NodeSpec& node) {
   read_map(in.node, in.what(), channel_keys, channel, in.report());
   if (in.report().errors() != errors) return;
   if (channel.request == channel.answer) {
-    return in.error("missing-key", in.what() + " needs two different COB-IDs");
+    return in.error("missing-key", in.what(), " needs two different COB-IDs");
   }
   node.sdo_channel = {
       {CobId::base(channel.request), CobId::base(channel.answer)}, in.node.pos, true};
@@ -129,9 +129,8 @@ void check_timeout(const KeyInput& in, const TimeoutSpec& timeout) {
   }
   if (!cycles.given || *cycles == 0 || *cycles >= fewest_fallback_cycles) return;
   const std::string fewest = std::to_string(fewest_fallback_cycles);
-  report.warning(cycles.pos, "short-time-to-live",
-                 "commands last for " + fewest + " cycles at least: " + fewest +
-                     " is used instead of " + std::to_string(*cycles));
+  report.warning(cycles.pos, "short-time-to-live", "commands last for ", fewest,
+                 " cycles at least: ", fewest, " is used instead of ", *cycles);
 }
 
 /// Reads one word, or a list of words.
@@ -330,16 +329,14 @@ void check_name(const std::string& name, SourcePos pos, NetworkReport& report) {
   if (name == "all" || (!name.empty() && std::ranges::all_of(name, [](unsigned char c) {
         return std::isdigit(c) != 0;
       }))) {
-    report.error(pos, "name",
-                 "`" + name +
-                     "` can't be the name of a node: in commands like `takt nmt start` numbers are "
-                     "node ids and `all` means all nodes");
+    report.error(pos, "name", "`", name,
+                 "` can't be the name of a node: in commands like `takt nmt start` numbers are "
+                 "node ids and `all` means all nodes");
   }
   if (name.empty() || name.size() > 48 || std::ranges::any_of(name, bad)) {
     report.error(
-        pos, "name",
-        "the node name `" + name.substr(0, 60) +
-            "` becomes part of LCM channel names: use at most 48 letters, digits, `_` and `-`");
+        pos, "name", "the node name `", name.substr(0, 60),
+        "` becomes part of LCM channel names: use at most 48 letters, digits, `_` and `-`");
   }
 }
 
@@ -347,11 +344,10 @@ void check_name(const std::string& name, SourcePos pos, NetworkReport& report) {
 void check_device_file(MapReader& map, SourcePos pos) {
   if (!map.is_readable() || map.has("dcf") || map.has_slip_of("dcf")) return;
   const bool misnamed = map.take("eds") != nullptr;
-  map.report().error(
-      misnamed ? map.key_pos("eds") : pos, "missing-key",
-      map.what() + (misnamed ? " names its device file under `eds`, which no program reads; "
-                               "the key is `dcf`, for an EDS as well"
-                             : " lacks `dcf`, the name of its EDS or DCF file"));
+  map.report().error(misnamed ? map.key_pos("eds") : pos, "missing-key", map.what(),
+                     misnamed ? " names its device file under `eds`, which no program reads; the "
+                                "key is `dcf`, for an EDS as well"
+                              : " lacks `dcf`, the name of its EDS or DCF file");
 }
 
 }  // namespace

@@ -65,12 +65,11 @@ void check_repeated(const KeyInput& in, std::vector<SdoSpec>& objects, const Sdo
   const std::string text = to_string(sdo.object) + " of " + in.map.what() +
                            " is written twice, first in line " + std::to_string(first->pos.line);
   if (in.key.name == "sdo") {
-    in.report().warning(sdo.pos, "written-twice",
-                        text +
-                            ": takt writes both values in this order; is one of them meant for "
-                            "another object? (`again: true` confirms both)");
+    in.report().warning(sdo.pos, "written-twice", text,
+                        ": takt writes both values in this order; is one of them meant for another "
+                        "object? (`again: true` confirms both)");
   } else {
-    in.error("written-twice", text + ": keep one");
+    in.error("written-twice", text, ": keep one");
   }
 }
 

@@ -27,9 +27,8 @@ std::optional<ObjectKey> read_short_key(const YamlNode& node, std::string_view k
   const char* const end = sub.data() + sub.size();
   const auto [last, error] = std::from_chars(sub.data(), end, object.sub, 16);
   if (error == std::errc{} && last == end && sub.size() <= 2) return object;
-  report.error(node.pos, "not-a-number",
-               "`" + std::string{key} + "`: `" + node.text.substr(0, 40) +
-                   "` is not an object: write 0x6064, or 0x6064:0 with the sub-index in hex");
+  report.error(node.pos, "not-a-number", "`", key, "`: `", node.text.substr(0, 40),
+               "` is not an object: write 0x6064, or 0x6064:0 with the sub-index in hex");
   return {};
 }
 
@@ -43,16 +42,14 @@ constexpr Key<MappingSpec> mapping_keys[] = {
 void read_mapping(const KeyInput& in, PdoSpec& pdo) {
   if (in.node.kind != YamlNode::Kind::sequence) {
     return in.error(
-        "wrong-type",
-        in.what() +
-            " has to be a list of `0x6041:0` or `{index: 0x6041, sub_index: 0}`, but this "
-            "is " +
-            std::string{name(in.node.kind)});
+        "wrong-type", in.what(),
+        " has to be a list of `0x6041:0` or `{index: 0x6041, sub_index: 0}`, but this is ",
+        name(in.node.kind));
   }
   pdo.mapping.pos = in.node.pos;
   pdo.mapping.given = true;
   if (in.node.items.size() > 64)
-    return in.error("too-many", in.what() + " has more than 64 entries");
+    return in.error("too-many", in.what(), " has more than 64 entries");
   for (const YamlNode* item : in.node.items) {
     const std::size_t errors = in.report().errors();
     MappingSpec entry{.object = {}, .bits = {}, .pos = item->pos};
@@ -116,23 +113,22 @@ void check_types(const PdoSpec& pdo, bool is_tpdo, const std::string& what, Netw
   const bool reserved = type >= 241 && type <= 251;
   const bool remote = (type == 252 || type == 253) && !is_tpdo;
   if (!reserved && !remote) return;
-  report.error(pdo.transmission.pos, "transmission-type",
-               "`transmission` " + std::to_string(type) + " of " + what + " is reserved " +
-                   (reserved ? "by CiA 301" : "for RPDOs") +
-                   ": write 0..240 with SYNC, 254 or 255 by event");
+  report.error(pdo.transmission.pos, "transmission-type", "`transmission` ", type, " of ", what,
+               " is reserved ", reserved ? "by CiA 301" : "for RPDOs",
+               ": write 0..240 with SYNC, 254 or 255 by event");
 }
 
 /// Reports keys that only PDOs received by the master may have.
 void check_direction(const PdoSpec& pdo, bool is_tpdo, const std::string& what,
                      NetworkReport& report) {
   if (pdo.poll_ms.given && pdo.poll_syncs.given) {
-    report.error(pdo.poll_syncs.pos, "written-twice",
-                 "`poll_ms` and `poll_syncs` of " + what + " exclude each other: keep one");
+    report.error(pdo.poll_syncs.pos, "written-twice", "`poll_ms` and `poll_syncs` of ", what,
+                 " exclude each other: keep one");
   }
   const auto refuse = [&](const auto& value, std::string_view name) {
     if (!value.given || is_tpdo) return;
-    report.error(value.pos, "wrong-direction",
-                 "`" + std::string{name} + "` of " + what + ": the master receives only TPDOs");
+    report.error(value.pos, "wrong-direction", "`", name, "` of ", what,
+                 ": the master receives only TPDOs");
   };
   refuse(pdo.poll_ms, "poll_ms");
   refuse(pdo.poll_syncs, "poll_syncs");
@@ -144,11 +140,9 @@ void check_direction(const PdoSpec& pdo, bool is_tpdo, const std::string& what,
 void read_pdos(const KeyInput& in, std::vector<PdoSpec>& pdos) {
   if (in.node.kind == YamlNode::Kind::null) return;
   if (in.node.kind != YamlNode::Kind::map) {
-    return in.error("wrong-type",
-                    in.what() +
-                        " has to be a map of PDO numbers, `1: {mapping: [...]}`, but this "
-                        "is " +
-                        std::string{name(in.node.kind)});
+    return in.error("wrong-type", in.what(),
+                    " has to be a map of PDO numbers, `1: {mapping: [...]}`, but this is ",
+                    name(in.node.kind));
   }
   const std::string key{in.key.name};
   const bool is_tpdo = key == "tpdo";
@@ -156,13 +150,11 @@ void read_pdos(const KeyInput& in, std::vector<PdoSpec>& pdos) {
     const auto number = read_number_key(pair, key + " number", numbers, in.report());
     if (!number) continue;
     if (std::ranges::find(pdos, *number, &PdoSpec::number) != pdos.end()) {
-      in.report().error(pair.key_pos, "duplicate-key",
-                        "`" + key + "` " + std::to_string(*number) + " of " + in.map.what() +
-                            " is written twice");
+      in.report().error(pair.key_pos, "duplicate-key", "`", key, "` ", *number, " of ",
+                        in.map.what(), " is written twice");
       continue;
     }
-    const std::string what =
-        (is_tpdo ? "TPDO" : "RPDO") + std::to_string(*number) + " of " + in.map.what();
+    const std::string what = joined(is_tpdo ? "TPDO" : "RPDO", *number, " of ", in.map.what());
     PdoSpec& pdo = pdos.emplace_back();
     read_map(*pair.value, what, pdo_keys, pdo, in.report());
     pdo.number = static_cast<std::uint16_t>(*number);

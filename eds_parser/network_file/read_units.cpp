@@ -6,15 +6,14 @@ namespace {
 void read_scale(const KeyInput& in, UnitSpec& unit) {
   set(in, unit.scale);
   if (*unit.scale > 0) return;
-  in.error("out-of-range", in.what() +
-                               " has to be above 0 (SI units per count); `sign: -1` reverses the "
-                               "direction");
+  in.error("out-of-range", in.what(),
+           " has to be above 0 (SI units per count); `sign: -1` reverses the direction");
   unit.scale.value = 1;
 }
 
 void read_sign(const KeyInput& in, UnitSpec& unit) {
   set(in, unit.sign);
-  if (unit.sign == 0) in.error("out-of-range", in.what() + " has to be 1 or -1");
+  if (unit.sign == 0) in.error("out-of-range", in.what(), " has to be 1 or -1");
 }
 
 constexpr Key<UnitSpec> unit_keys[] = {

@@ -1,5 +1,3 @@
-#include "eds_parser/network_file/shared_lines.hpp"
-
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
@@ -7,6 +5,8 @@
 #include <set>
 #include <tuple>
 #include <vector>
+
+#include "eds_parser/network_file/load_steps.hpp"
 
 namespace takt {
 namespace {

@@ -1,5 +1,7 @@
 #include "eds_parser/network_file/yaml_tree.hpp"
 
+#include <algorithm>
+#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
@@ -181,15 +183,13 @@ class YamlTreeBuilder : public YAML::EventHandler {
 };
 
 const YamlNode* YamlNode::find(std::string_view key) const noexcept {
-  for (const YamlPair& pair : pairs) {
-    if (pair.key == key) return pair.value;
-  }
-  return nullptr;
+  const auto found = std::ranges::find(pairs, key, &YamlPair::key);
+  return found == pairs.end() ? nullptr : found->value;
 }
 
 namespace {
 
-/// Whether the white space at the beginning of the line contains a tab.
+/// Returns true if the white space at the beginning of the line contains a tab.
 bool indented_by_tab(std::string_view text, std::uint32_t line) {
   for (; line > 1 && !text.empty(); --line) {
     const std::size_t end = text.find('\n');
@@ -236,6 +236,16 @@ YamlTree YamlTree::parse(std::string_view text, const std::string& file, Finding
              : "invalid YAML: " + error.msg);
   }
   return tree;
+}
+
+std::optional<std::string> read_yaml_file(const std::filesystem::path& path) {
+  std::error_code error;
+  std::ifstream in{path, std::ios::binary};
+  if (!std::filesystem::is_regular_file(path, error) || !in) return {};
+  std::string text(YamlTree::max_text + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
 }
 
 std::string_view name(YamlNode::Kind kind) noexcept {

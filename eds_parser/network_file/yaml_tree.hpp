@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,10 +25,10 @@ struct YamlNode {
   enum class Kind : std::uint8_t { null, scalar, sequence, map };
   Kind kind = Kind::null;
   bool quoted = false;
-  std::string text;
-  SourcePos pos;
-  std::vector<YamlPair> pairs;
-  std::vector<const YamlNode*> items;
+  std::string text{};
+  SourcePos pos{};
+  std::vector<YamlPair> pairs{};
+  std::vector<const YamlNode*> items{};
 
   const YamlNode* find(std::string_view key) const noexcept;
 };
@@ -53,5 +55,9 @@ class YamlTree {
 };
 
 std::string_view name(YamlNode::Kind kind) noexcept;
+
+/// Reads the text of a file, up to one byte more than a YamlTree accepts. Returns std::nullopt if
+/// there is no such file or it can't be read.
+std::optional<std::string> read_yaml_file(const std::filesystem::path& path);
 
 }  // namespace takt
