@@ -24,6 +24,12 @@ std::optional<Time> CycleBar::margin() const noexcept {
   return left;
 }
 
+double tick_step(double end, double most) {
+  double step = 1;
+  for (unsigned i = 0; end / step > most; ++i) step *= i % 3 == 1 ? 2.5 : 2;
+  return step;
+}
+
 CyclePicture cycle_picture(const BusPlan& plan, const BusBudget& budget) {
   CyclePicture picture{.bars = {}, .marks = {}, .end = plan.cycle.period};
   for (const auto& row : budget.rows) {

@@ -32,6 +32,9 @@ struct CyclePicture {
   Time end{};  ///< end of the picture: the next SYNC, or the end of the latest frame behind it
 };
 
+/// Returns 1, 2 or 5 times a power of ten, so that an axis up to `end` has at most `most` ticks.
+double tick_step(double end, double most);
+
 /// Returns no bars if there is no SYNC. Frames without a bound have no bar.
 CyclePicture cycle_picture(const BusPlan& plan, const BusBudget& budget);
 

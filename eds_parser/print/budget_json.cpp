@@ -1,15 +1,10 @@
-#include <nlohmann/json.hpp>
-#include <ostream>
-
+#include "eds_parser/print/json.hpp"
+#include "eds_parser/print/names.hpp"
 #include "eds_parser/print/print_budget.hpp"
 #include "eds_parser/table/name_of.hpp"
 
 namespace takt {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-double us(Time time) { return std::chrono::duration<double, std::micro>(time).count(); }
 
 Json bound(const std::optional<Time>& worst) { return worst ? Json(us(*worst)) : Json(nullptr); }
 

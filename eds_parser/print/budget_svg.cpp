@@ -3,6 +3,7 @@
 #include <ostream>
 
 #include "eds_parser/print/budget_bars.hpp"
+#include "eds_parser/print/names.hpp"
 #include "eds_parser/print/print_budget.hpp"
 
 namespace takt {
@@ -17,25 +18,15 @@ constexpr double bar_height = 12;
 constexpr double numbers_width = 62;
 constexpr double most_ticks = 10;
 
-double us(Time time) { return std::chrono::duration<double, std::micro>(time).count(); }
-
 /// Escapes a text. Names come from the network file and may contain any character.
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
-    switch (c) {
-      case '<':
-        out += "&lt;";
-        break;
-      case '&':
-        out += "&amp;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      default:
-        out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    }
+    const bool is_control = static_cast<unsigned char>(c) < ' ';
+    out += c == '<'   ? "&lt;"
+           : c == '&' ? "&amp;"
+           : c == '>' ? "&gt;"
+                      : std::string(1, is_control ? ' ' : c);
   }
   return out;
 }
@@ -50,13 +41,6 @@ std::string_view colour(const BudgetRow& row) {
   if (!row.fits()) return late_colour;
   if (row.frame.kind == Traffic::sync) return sync_colour;
   return row.frame.kind == Traffic::tpdo ? tpdo_colour : rpdo_colour;
-}
-
-/// Returns 1, 2 or 5 times a power of ten, so that there are not too many ticks.
-double tick_step(double end) {
-  double step = 1;
-  for (unsigned i = 0; end / step > most_ticks; ++i) step *= i % 3 == 1 ? 2.5 : 2;
-  return step;
 }
 
 class Svg {
@@ -161,7 +145,7 @@ class Svg {
 
   void axis() {
     const double end = us(picture_.end);
-    const double step = tick_step(end);
+    const double step = tick_step(end, most_ticks);
     text(left_ - 8, top - 26, "end", "us after SYNC");
     for (double at = 0; at <= end; at += step) {
       const double where = left_ + width * at / end;

@@ -5,13 +5,12 @@
 #include <vector>
 
 #include "eds_parser/plan/cycle_compiler.hpp"
+#include "eds_parser/print/names.hpp"
 #include "eds_parser/print/print_budget.hpp"
 #include "eds_parser/table/name_of.hpp"
 
 namespace takt {
 namespace {
-
-double us(Time time) { return std::chrono::duration<double, std::micro>(time).count(); }
 
 /// Formats a time, for example "2000 us", "100 ms" or "1 s".
 std::string span_text(Time time) {
@@ -34,22 +33,22 @@ std::string every(const BudgetRow& row) {
   return frame.burst > 1 ? fmt::format("{} x {}", frame.burst, text) : text;
 }
 
-std::string bound(const std::optional<Time>& worst) {
-  return worst ? fmt::format("{:.0f}", us(*worst)) : "none";
-}
+/// Returns a time as whole microseconds.
+std::string number(Time time) { return fmt::format("{:.0f}", us(time)); }
+
+std::string bound(const std::optional<Time>& worst) { return worst ? number(*worst) : "none"; }
 
 std::string to_limit(const BudgetRow& row) {
   if (!row.worst || row.why == BudgetLimit::none || row.frame.kind == Traffic::sync) return "";
-  return fmt::format("{:.0f}", us(row.limit - *row.worst));
+  return number(row.limit - *row.worst);
 }
 
 std::string limit(const BudgetRow& row) {
-  return row.why == BudgetLimit::none ? "" : fmt::format("{:.0f}", us(row.limit));
+  return row.why == BudgetLimit::none ? "" : number(row.limit);
 }
 
 std::string to_cycle(const BudgetRow& row) {
-  if (!row.worst || row.cycle == Time{0}) return "";
-  return fmt::format("{:.0f}", us(row.cycle - *row.worst));
+  return !row.worst || row.cycle == Time{0} ? "" : number(row.cycle - *row.worst);
 }
 
 class BudgetText {
@@ -88,9 +87,8 @@ class BudgetText {
         "\nthe cycle, in us after SYNC: the master waits for TPDOs until {:.0f} and sends outputs "
         "at {:.0f}\n",
         us(std::min(cycle.receive_window, cycle.output_deadline)), us(cycle.output_deadline));
-    out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8} {:>8} {:>10} {:>9} {:>11} {:>10}\n",
-                        "COB-ID", "frame", width_, "bytes", "every", "on wire", "latest",
-                        "to window", "to SYNC", "with EMCYs", "behind SDO");
+    line("COB-ID", "frame", "bytes", "every", "on wire", "latest", "to window", "to SYNC",
+         "with EMCYs", "behind SDO", "");
     std::vector<const BudgetRow*> rows;
     for (const auto& row : budget_.rows) {
       if (row.frame.in_cycle) rows.push_back(&row);
@@ -98,37 +96,34 @@ class BudgetText {
     std::ranges::stable_sort(rows, {}, [](const BudgetRow* row) {
       return std::pair{row->frame.kind == Traffic::rpdo, row->worst.value_or(Time::max())};
     });
-    for (const auto* row : rows) {
-      out_ << fmt::format(
-          "  {:<8} {:<{}} {:>5} {:>12} {:>8.0f} {:>8} {:>10} {:>9} {:>11} {:>10}{}\n",
-          to_string(row->frame.cob_id), row->frame.name, width_, row->frame.bytes, every(*row),
-          us(row->frame.frame), bound(row->worst), to_limit(*row), to_cycle(*row),
-          bound(row->worst_in_burst), bound(row->worst_behind_services), mark(*row));
-    }
+    for (const auto* row : rows) line(*row, row->frame.name, to_cycle(*row));
   }
 
   /// Prints the other frames. Similar frames share one line, that of the worst.
   void other_frames() {
     out_ << "\nother frames, in us from queueing to the end of the frame\n";
-    out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8} {:>8} {:>10} {:>9} {:>11} {:>10}\n",
-                        "COB-ID", "frame", width_, "bytes", "every", "on wire", "worst", "margin",
-                        "limit", "with EMCYs", "behind SDO");
+    line("COB-ID", "frame", "bytes", "every", "on wire", "worst", "margin", "limit", "with EMCYs",
+         "behind SDO", "");
     for (const auto& row : budget_.rows) {
       if (row.frame.in_cycle) continue;
       const std::size_t alike = count_alike(row);
       if (alike < many) {
-        other_frame(row, row.frame.name);
+        line(row, row.frame.name, limit(row));
       } else if (&row == worst_alike(row)) {
-        other_frame(row, fmt::format("{} ({} such)", row.frame.name, alike));
+        line(row, fmt::format("{} ({} such)", row.frame.name, alike), limit(row));
       }
     }
   }
 
-  void other_frame(const BudgetRow& row, const std::string& name) {
-    out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8.0f} {:>8} {:>10} {:>9} {:>11} {:>10}{}\n",
-                        to_string(row.frame.cob_id), name, width_, row.frame.bytes, every(row),
-                        us(row.frame.frame), bound(row.worst), to_limit(row), limit(row),
-                        bound(row.worst_in_burst), bound(row.worst_behind_services), mark(row));
+  void line(const BudgetRow& row, const std::string& name, const std::string& eighth) {
+    line(to_string(row.frame.cob_id), name, row.frame.bytes, every(row), number(row.frame.frame),
+         bound(row.worst), to_limit(row), eighth, bound(row.worst_in_burst),
+         bound(row.worst_behind_services), mark(row));
+  }
+  template <class... Columns>
+  void line(std::string_view cob_id, std::string_view name, const Columns&... columns) {
+    out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8} {:>8} {:>10} {:>9} {:>11} {:>10}{}\n",
+                        cob_id, name, width_, columns...);
   }
 
   static bool alike(const BudgetRow& a, const BudgetRow& b) {

@@ -2,6 +2,7 @@
 #include <ostream>
 
 #include "eds_parser/print/budget_bars.hpp"
+#include "eds_parser/print/names.hpp"
 #include "eds_parser/print/print_budget.hpp"
 
 namespace takt {
@@ -9,8 +10,6 @@ namespace {
 
 constexpr std::size_t columns = 72;
 constexpr double most_ticks = 8;
-
-double us(Time time) { return std::chrono::duration<double, std::micro>(time).count(); }
 
 class Timeline {
  public:
@@ -51,8 +50,7 @@ class Timeline {
   /// Returns the axis with ticks at round times.
   std::string axis() const {
     const double end = us(picture_.end);
-    double step = 1;
-    for (unsigned i = 0; end / step > most_ticks; ++i) step *= i % 3 == 1 ? 2.5 : 2;
+    const double step = tick_step(end, most_ticks);
     std::string line;
     for (double at = 0; at <= end; at += step) {
       const auto where = static_cast<std::size_t>(at / end * static_cast<double>(columns));

@@ -1,8 +1,7 @@
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <ostream>
 
 #include "eds_parser/dictionary/pdo_description.hpp"
+#include "eds_parser/print/json.hpp"
 #include "eds_parser/print/names.hpp"
 #include "eds_parser/print/print_dictionary.hpp"
 #include "eds_parser/report/text.hpp"
@@ -10,8 +9,6 @@
 
 namespace takt {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// NaN and infinities become strings, because JSON does not have them.
 Json json_of(double value) {
@@ -31,11 +28,6 @@ Json json_of(const std::optional<Value>& value, DataType type) {
   if (const auto* real = std::get_if<double>(&*value)) return json_of(*real);
   if (const auto* number = std::get_if<std::uint64_t>(&*value)) return *number;
   return std::get<std::int64_t>(*value);
-}
-
-template <class T>
-Json json_of(const std::optional<T>& number) {
-  return number ? Json(*number) : Json(nullptr);
 }
 
 Json json_of(const DeviceInfo& device) {
@@ -96,7 +88,7 @@ Json json_of(const Commissioning& node) {
 
 Json json_of(const ParameterReference& reference) {
   return {
-      {"index", reference.index}, {"sub", json_of(reference.sub)}, {"param_refd", reference.text}};
+      {"index", reference.index}, {"sub", or_null(reference.sub)}, {"param_refd", reference.text}};
 }
 
 Json json_of(const ModuleInfo& module) {
@@ -154,27 +146,19 @@ Json json_of(const MappedObject& entry) {
 
 Json json_of(const PdoDescription& pdo) {
   Json json{{"number", pdo.number},
-            {"cob_id", json_of(pdo.cob_id())},
+            {"cob_id", or_null(pdo.cob_id())},
             {"valid", pdo.valid},
             {"rtr_allowed", pdo.rtr_allowed},
             {"extended", pdo.extended},
-            {"transmission_type", json_of(pdo.transmission_type)},
+            {"transmission_type", or_null(pdo.transmission_type)},
             {"inhibit_time_us", pdo.inhibit_time_us},
             {"event_timer_ms", pdo.event_timer_ms},
-            {"sync_start", json_of(pdo.sync_start)},
+            {"sync_start", or_null(pdo.sync_start)},
             {"bits", pdo.bits}};
   auto mapping = Json::array();
   for (const auto& entry : pdo.mapping) mapping.push_back(json_of(entry));
   json["mapping"] = std::move(mapping);
   return json;
-}
-
-Json json_of(const Finding& finding) {
-  return {{"line", finding.pos.line},
-          {"column", finding.pos.column},
-          {"severity", name(finding.severity)},
-          {"rule", finding.rule},
-          {"message", finding.message}};
 }
 
 /// Replaces bytes that are not UTF-8, for example in a file name, because they must not end the

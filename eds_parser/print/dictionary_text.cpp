@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <fmt/format.h>
 #include <ostream>
 
 #include "eds_parser/dictionary/integer_of.hpp"
@@ -87,9 +88,10 @@ std::string bit_rates(const DeviceInfo& device) {
 std::string profile_text(const ObjectDictionary& dictionary) {
   const auto value = integer_of(dictionary, {0x1000, 0});
   if (!value) return "unknown";
-  const auto profile = static_cast<std::uint32_t>(*value) & 0xFFFF;
-  return (profile == 0 ? "none" : "CiA " + std::to_string(profile)) + ", device type " +
-         hex(static_cast<std::uint32_t>(*value), 8);
+  const auto type = static_cast<std::uint32_t>(*value);
+  const std::uint32_t profile = type & 0xFFFF;
+  return fmt::format("{}, device type 0x{:08X}",
+                     profile == 0 ? "none" : fmt::format("CiA {}", profile), type);
 }
 
 /// Returns for example `version 1.2, EDS 4.0, modified 05-12-2026 by A. Author`.
@@ -141,12 +143,12 @@ void print_commissioning(std::ostream& out, const Commissioning& node) {
 
 /// Returns for example `M2  Digital output  version 1.0  MOD-DO-8  (3 connected)`.
 std::string module_text(const ModuleInfo& module, const std::vector<std::uint16_t>& connected) {
-  auto text = 'M' + std::to_string(module.number) + "  " + module.product_name;
+  auto text = fmt::format("M{}  {}", module.number, module.product_name);
   if (!module.product_version.empty()) text += "  version " + module.product_version;
   if (!module.product_revision.empty()) text += '.' + module.product_revision;
   if (!module.order_code.empty()) text += "  " + module.order_code;
   const auto count = std::ranges::count(connected, module.number);
-  return count == 0 ? text : text + "  (" + std::to_string(count) + " connected)";
+  return count == 0 ? text : fmt::format("{}  ({} connected)", text, count);
 }
 
 void print_modules(std::ostream& out, const ObjectDictionary& dictionary) {
@@ -162,22 +164,20 @@ void print_device(std::ostream& out, const ObjectDictionary& dictionary) {
   out << ")\n\n";
   print_fact(out, "vendor", device.vendor_name + "  " + hex(device.vendor_number, 8));
   print_fact(out, "product",
-             device.product_name + "  " + hex(device.product_number, 8) + "  revision " +
-                 hex(device.revision_number, 8));
+             fmt::format("{}  0x{:08X}  revision 0x{:08X}", device.product_name,
+                         device.product_number, device.revision_number));
   print_fact(out, "order code", device.order_code);
   print_fact(out, "profile", profile_text(dictionary));
   print_fact(out, "bit rates", bit_rates(device));
-  print_fact(
-      out, "PDOs",
-      std::to_string(device.nr_rx_pdo) + " RPDOs, " + std::to_string(device.nr_tx_pdo) + " TPDOs" +
-          (device.granularity == 0 && mappable_record(dictionary) == nullptr ? ", mapping is fixed"
-                                                                             : ""));
+  const bool fixed = device.granularity == 0 && mappable_record(dictionary) == nullptr;
+  print_fact(out, "PDOs",
+             fmt::format("{} RPDOs, {} TPDOs{}", device.nr_rx_pdo, device.nr_tx_pdo,
+                         fixed ? ", mapping is fixed" : ""));
   print_commissioning(out, dictionary.commissioning);
   for (const auto& channel : dictionary.channels) {
     print_fact(out, "channels",
-               hex(channel.first) + "-" + hex(channel.last) + "  " +
-                   std::string{name(channel.type)} + "  " +
-                   std::string{access_name(channel.direction)});
+               fmt::format("0x{:04X}-0x{:04X}  {}  {}", channel.first, channel.last,
+                           name(channel.type), access_name(channel.direction)));
   }
   print_modules(out, dictionary);
   print_notes(out, dictionary.notes);
@@ -193,12 +193,11 @@ std::string cob_id_text(const PdoDescription& pdo) {
 std::string place_text(const MappedObject& entry) {
   const unsigned first = entry.bit_offset;
   const unsigned last = first + std::max<unsigned>(entry.bits, 1) - 1;
-  if (first % 8 == 0 && entry.bits % 8 == 0 && entry.bits != 0) {
-    const auto byte = std::to_string(first / 8);
-    return "byte " + (last / 8 == first / 8 ? byte : byte + ".." + std::to_string(last / 8));
-  }
-  const auto bit = std::to_string(first);
-  return "bit " + (first == last ? bit : bit + ".." + std::to_string(last));
+  const auto span = [](std::string_view unit, unsigned from, unsigned to) {
+    return from == to ? fmt::format("{} {}", unit, from) : fmt::format("{} {}..{}", unit, from, to);
+  };
+  const bool whole_bytes = first % 8 == 0 && entry.bits % 8 == 0 && entry.bits != 0;
+  return whole_bytes ? span("byte", first / 8, last / 8) : span("bit", first, last);
 }
 
 void print_pdo(std::ostream& out, const PdoDescription& pdo) {

@@ -1,23 +1,10 @@
 #include "eds_parser/print/findings_json.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
-#include <ostream>
+
+#include "eds_parser/print/json.hpp"
 
 namespace takt {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json json_of(const Finding& finding) {
-  return {{"line", finding.pos.line},
-          {"column", finding.pos.column},
-          {"severity", name(finding.severity)},
-          {"rule", finding.rule},
-          {"message", finding.message}};
-}
-
-}  // namespace
 
 void print_findings_json(std::ostream& out, std::span<const JudgedFile> files) {
   Json json{{"files", Json::array()}};
@@ -37,7 +24,7 @@ void print_findings_json(std::ostream& out, std::span<const JudgedFile> files) {
   json["errors"] = count(Severity::error);
   json["warnings"] = count(Severity::warning);
   json["notes"] = count(Severity::note);
-  out << json.dump(2, ' ', true, Json::error_handler_t::replace) << '\n';
+  print_document(out, json);
 }
 
 }  // namespace takt

@@ -1,5 +1,8 @@
 #include "eds_parser/print/names.hpp"
 
+#include <fmt/format.h>
+#include <iterator>
+
 #include "eds_parser/table/name_of.hpp"
 
 namespace takt {
@@ -11,29 +14,17 @@ std::string_view object_type_name(ObjectType type) noexcept {
 }
 
 std::string_view list_name(const Object& object) noexcept {
-  switch (object.list) {
-    case ObjectList::mandatory:
-      return "mandatory";
-    case ObjectList::optional:
-      return "optional";
-    case ObjectList::manufacturer:
-      return "manufacturer";
-    case ObjectList::unlisted:
-      break;
-  }
+  static constexpr std::string_view names[]{"mandatory", "optional", "manufacturer", "unlisted"};
+  if (object.list != ObjectList::unlisted) return name_of(object.list, names);
   const bool mandatory = object.index == 0x1000 || object.index == 0x1001 || object.index == 0x1018;
   if (mandatory) return "mandatory";
   return object.index >= 0x2000 && object.index < 0x6000 ? "manufacturer" : "optional";
 }
 
 std::string hex_bytes(std::string_view bytes) {
-  constexpr std::string_view digits = "0123456789abcdef";
   std::string text;
-  text.reserve(bytes.size() * 2);
   for (const char c : bytes) {
-    const auto byte = static_cast<unsigned char>(c);
-    text += digits[byte >> 4];
-    text += digits[byte & 0xF];
+    fmt::format_to(std::back_inserter(text), "{:02x}", static_cast<unsigned char>(c));
   }
   return text;
 }
@@ -42,7 +33,7 @@ std::string transmission_name(std::uint8_t type, bool is_tpdo) {
   if (type == 0) return is_tpdo ? "with SYNC, on change" : "acts at SYNC";
   if (type <= 240) {
     if (!is_tpdo) return "acts at SYNC";
-    return type == 1 ? "every SYNC" : "every " + std::to_string(type) + " SYNCs";
+    return type == 1 ? "every SYNC" : fmt::format("every {} SYNCs", type);
   }
   if (type == 252) return is_tpdo ? "RTR, sampled at SYNC" : "reserved";
   if (type == 253) return is_tpdo ? "RTR" : "reserved";

@@ -20,93 +20,61 @@ std::vector<bool> skippable(const BootPlan& boot) {
   return inside;
 }
 
-class BootText {
- public:
-  BootText(PlanLines& lines, const NodePlan& node) : lines_{lines}, node_{node} {}
+std::string pauses(const NodePlan& node) {
+  const std::string first = span_text(node.reboot_delay);
+  if (node.longest_reboot_delay <= node.reboot_delay) return first;
+  return first + ", then twice as long each time up to " + span_text(node.longest_reboot_delay);
+}
 
-  void boot() {
-    lines_.line("");
-    if (node_.boot_plan.steps.empty()) {
-      lines_.line("boot of node {} {}: no boot, because the node is only watched", node_.id.value(),
-                  node_.name);
-      return;
-    }
-    lines_.line(
-        "boot of node {} {}: {} steps; SDO answers within {}; a failed boot starts again after "
-        "{}{}",
-        node_.id.value(), node_.name, node_.boot_plan.steps.size(), span_text(node_.sdo_timeout),
-        pauses(), node_.start_later ? "; started with the network, by one broadcast" : "");
-    lines_.line(
-        "  NMT enter PRE-OPERATIONAL before the first write, unless the heartbeat shows this "
-        "state");
-    sdo_access();
-    const std::vector<bool> inside = skippable(node_.boot_plan);
-    const std::vector<StepFrames> frames = step_frames(node_);
-    for (std::size_t i = 0; i < node_.boot_plan.steps.size(); ++i) {
-      step(i, inside[i], frames[i].first);
-    }
+/// Prints only values that differ from the defaults.
+void add_sdo_access(PlanLines& lines, const SdoAccess& sdo) {
+  if (sdo.channel) {
+    lines.line("  SDO channel: requests on {}, answers on {}", to_string(sdo.channel->request),
+               to_string(sdo.channel->answer));
   }
+  if (sdo.block == SdoBlockUse::off) lines.line("  SDO block transfer is never used");
+}
 
- private:
-  std::string pauses() const {
-    const std::string first = span_text(node_.reboot_delay);
-    if (node_.longest_reboot_delay <= node_.reboot_delay) return first;
-    return first + ", then twice as long each time up to " + span_text(node_.longest_reboot_delay);
-  }
+/// Returns the number of the next step of a jump, or the value of the object.
+std::string step_value(const BootStep& step) {
+  const bool jumps =
+      step.action == BootAction::skip_if_same || step.action == BootAction::await_alive;
+  return jumps ? fmt::format("-> {}", step.target + 1) : value_text(step);
+}
 
-  /// Prints only values that differ from the defaults.
-  void sdo_access() {
-    if (const auto& channel = node_.sdo.channel) {
-      lines_.line("  SDO channel: requests on {}, answers on {}", to_string(channel->request),
-                  to_string(channel->answer));
-    }
-    if (node_.sdo.block == SdoBlockUse::off) lines_.line("  SDO block transfer is never used");
-  }
-
-  void step(std::size_t i, bool inside, const std::string& frame) {
-    const BootStep& step = node_.boot_plan.steps[i];
-    const std::string action = (inside ? "  " : "") + std::string{action_name(step.action)};
-    const char letter = step.action == BootAction::skip_if_same ? ' ' : step.letter;
-    lines_.line("  {:>4} {} {:<18} {:<21} {:<10} {:>9}  {}", i + 1, letter, action, frame,
-                step_value(step), step_limit(step), step.purpose);
-  }
-
-  /// Returns the limit of the step: of its wait, or of each silence in its SDO transfer.
-  static std::string step_limit(const BootStep& step) {
-    if (step.action == BootAction::nmt || step.action == BootAction::skip_if_same) return {};
-    return "<" + span_text(step.timeout);
-  }
-
-  static std::string step_value(const BootStep& step) {
-    switch (step.action) {
-      case BootAction::nmt:
-      case BootAction::probe:
-      case BootAction::read_serial:
-      case BootAction::read_firmware:
-      case BootAction::read_limit:
-      case BootAction::disable_pdo:
-        return {};
-      case BootAction::skip_if_same:
-        return fmt::format("-> {}", step.target + 1);
-      case BootAction::await_bootup:
-      case BootAction::await_heartbeat:
-      case BootAction::await_guarding:
-      case BootAction::await_operational:
-      case BootAction::pause:
-        return {};
-      case BootAction::await_alive:
-        return fmt::format("-> {}", step.target + 1);
-      default:
-        return value_text(step);
-    }
-  }
-
-  PlanLines& lines_;
-  const NodePlan& node_;
-};
+/// Returns the limit of the step: of its wait, or of each silence in its SDO transfer.
+std::string step_limit(const BootStep& step) {
+  if (step.action == BootAction::nmt || step.action == BootAction::skip_if_same) return {};
+  return "<" + span_text(step.timeout);
+}
 
 }  // namespace
 
-void add_boot(PlanLines& lines, const NodePlan& node) { BootText{lines, node}.boot(); }
+void add_boot(PlanLines& lines, const NodePlan& node) {
+  const std::vector<BootStep>& steps = node.boot_plan.steps;
+  lines.line("");
+  if (steps.empty()) {
+    lines.line("boot of node {} {}: no boot, because the node is only watched", node.id.value(),
+               node.name);
+    return;
+  }
+  lines.line(
+      "boot of node {} {}: {} steps; SDO answers within {}; a failed boot starts again "
+      "after {}{}",
+      node.id.value(), node.name, steps.size(), span_text(node.sdo_timeout), pauses(node),
+      node.start_later ? "; started with the network, by one broadcast" : "");
+  lines.line(
+      "  NMT enter PRE-OPERATIONAL before the first write, unless the heartbeat shows this state");
+  add_sdo_access(lines, node.sdo);
+  const std::vector<bool> inside = skippable(node.boot_plan);
+  const std::vector<StepFrames> frames = step_frames(node);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const BootStep& step = steps[i];
+    const std::string action = (inside[i] ? "  " : "") + std::string{action_name(step.action)};
+    const char letter = step.action == BootAction::skip_if_same ? ' ' : step.letter;
+    lines.line("  {:>4} {} {:<18} {:<21} {:<10} {:>9}  {}", i + 1, letter, action, frames[i].first,
+               step_value(step), step_limit(step), step.purpose);
+  }
+}
 
 }  // namespace takt

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -76,13 +77,16 @@ std::string without_folder(std::string text, const NodePlan& node) {
   return text;
 }
 
-void add_node_sections(Sections& sections, const BusPlan& plan, std::size_t index) {
-  const NodePlan& node = plan.nodes[index];
-  const unsigned id = node.id.value();
-  sections[{Part::node, id}] =
-      without_folder(text_of([&](PlanLines& lines) { add_node(lines, plan, index); }), node);
-  sections[{Part::boot, id}] =
-      without_numbers(text_of([&](PlanLines& lines) { add_boot(lines, node); }));
+/// Adds the sections of one node, or of all nodes.
+void add_node_sections(Sections& sections, const BusPlan& plan, std::optional<NodeId> only) {
+  for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
+    const NodePlan& node = plan.nodes[i];
+    if (only && *only != node.id) continue;
+    sections[{Part::node, node.id.value()}] =
+        without_folder(text_of([&](PlanLines& lines) { add_node(lines, plan, i); }), node);
+    sections[{Part::boot, node.id.value()}] =
+        without_numbers(text_of([&](PlanLines& lines) { add_boot(lines, node); }));
+  }
 }
 
 Sections sections_of(const BusPlan& plan, std::optional<NodeId> only) {
@@ -99,19 +103,15 @@ Sections sections_of(const BusPlan& plan, std::optional<NodeId> only) {
       without_padding(without_numbers(text_of([&](PlanLines& l) { add_image(l, plan, only); })));
   sections[{Part::limits, 0}] =
       without_padding(text_of([&](PlanLines& lines) { add_limits(lines, plan, only); }));
-  for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
-    if (!only || *only == plan.nodes[i].id) add_node_sections(sections, plan, i);
-  }
+  add_node_sections(sections, plan, only);
   return sections;
 }
 
-std::vector<Key> keys_of(const Sections& before, const Sections& after) {
-  std::vector<Key> keys;
+std::set<Key> keys_of(const Sections& before, const Sections& after) {
+  std::set<Key> keys;
   for (const Sections* side : {&before, &after}) {
-    for (const auto& [key, text] : *side) keys.push_back(key);
+    for (const auto& [key, text] : *side) keys.insert(key);
   }
-  std::ranges::sort(keys);
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   return keys;
 }
 
@@ -148,8 +148,7 @@ std::vector<PlanChange> changes_of(const Compared& sides) {
   std::vector<PlanChange> changes;
   for (const Key& key : keys_of(sides.before, sides.after)) {
     const auto& [part, id] = key;
-    PlanChange change{
-        .part = part_name(part), .node = NodeId::from(id), .removed = {}, .added = {}};
+    PlanChange change{.part = part_name(part), .node = NodeId::from(id)};
     for (const DiffLine& line : lines_of_key(sides.before, sides.after, key)) {
       if (line.kind == DiffLine::Kind::same) continue;
       auto& side = line.kind == DiffLine::Kind::removed ? change.removed : change.added;
@@ -165,14 +164,10 @@ Compared compare(const BusPlan& before, const BusPlan& after, std::optional<Node
 }
 
 Compared compare_node(const BusPlan& before, const BusPlan& after, NodeId node) {
-  const auto of = [&](const BusPlan& plan) {
-    Sections sections;
-    for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
-      if (plan.nodes[i].id == node) add_node_sections(sections, plan, i);
-    }
-    return sections;
-  };
-  return {of(before), of(after)};
+  Compared sides;
+  add_node_sections(sides.before, before, node);
+  add_node_sections(sides.after, after, node);
+  return sides;
 }
 
 }  // namespace

@@ -27,8 +27,8 @@ std::string node_diff(const PlanSide& before, const PlanSide& after, NodeId node
 struct PlanChange {
   std::string_view part;       ///< bus (with the cycle), node, image, limits, lcm, boot
   std::optional<NodeId> node;  ///< only in the parts node and boot
-  std::vector<std::string> removed;
-  std::vector<std::string> added;
+  std::vector<std::string> removed{};
+  std::vector<std::string> added{};
 };
 
 /// Returns the content of plan_diff() for programs: the parts that differ, in the order of a plan.

@@ -1,13 +1,9 @@
 #include "eds_parser/print/plan/plan_diff_json.hpp"
 
-#include <algorithm>
-#include <nlohmann/json.hpp>
-#include <ostream>
+#include "eds_parser/print/json.hpp"
 
 namespace takt {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json json_of(const PlanChange& change, const std::string& node_name) {
   Json json{{"part", change.part}};
@@ -22,14 +18,9 @@ Json json_of(const PlanChange& change, const std::string& node_name) {
 std::string name_of(std::optional<NodeId> node, const PlanSide& before, const PlanSide& after) {
   if (!node) return {};
   for (const BusPlan* plan : {&after.plan, &before.plan}) {
-    const auto found = std::ranges::find(plan->nodes, *node, &NodePlan::id);
-    if (found != plan->nodes.end()) return found->name;
+    if (const NodePlan* found = plan->find(node->value())) return found->name;
   }
   return {};
-}
-
-void print(std::ostream& out, const Json& json) {
-  out << json.dump(2, ' ', true, Json::error_handler_t::replace) << '\n';
 }
 
 }  // namespace
@@ -40,7 +31,8 @@ void print_plan_diff_json(std::ostream& out, const PlanSide& before, const PlanS
   for (const PlanChange& change : plan_changes(before, after, only)) {
     changes.push_back(json_of(change, name_of(change.node, before, after)));
   }
-  print(out, {{"before", before.name}, {"after", after.name}, {"changes", std::move(changes)}});
+  print_document(out,
+                 {{"before", before.name}, {"after", after.name}, {"changes", std::move(changes)}});
 }
 
 void print_device_changes_json(std::ostream& out, const std::string& file,
@@ -55,7 +47,7 @@ void print_device_changes_json(std::ostream& out, const std::string& file,
                     {"device_data_file", each.entry_file},
                     {"changes", std::move(changes)}});
   }
-  print(out, {{"file", file}, {"nodes", std::move(list)}});
+  print_document(out, {{"file", file}, {"nodes", std::move(list)}});
 }
 
 }  // namespace takt

@@ -1,20 +1,16 @@
-#include <nlohmann/json.hpp>
-#include <ostream>
-
 #include "eds_parser/plan/cycle_compiler.hpp"
+#include "eds_parser/print/json.hpp"
+#include "eds_parser/print/names.hpp"
 #include "eds_parser/print/plan/plan_names.hpp"
 #include "eds_parser/print/plan/plan_waits.hpp"
 #include "eds_parser/print/plan/print_plan.hpp"
 #include "eds_parser/print/plan/step_frames.hpp"
-#include "eds_parser/table/output_limits.hpp"
+#include "eds_parser/table/little_endian.hpp"
 #include "eds_parser/table/name_of.hpp"
+#include "eds_parser/table/output_limits.hpp"
 
 namespace takt {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-double us(Time time) { return static_cast<double>(time.count()) / 1000.0; }
 
 std::string source_of_sync(const CyclePlan& cycle) {
   if (!cycle.sync) return "none";
@@ -104,27 +100,21 @@ Json step_json(const BootStep& step, std::size_t number, const StepFrames& frame
   return out;
 }
 
-/// Returns the object's key in `identity`, or nullptr if it is another object.
-const char* identity_key(ObjectKey object) {
+/// Returns the object's key in `identity`, or an empty text if it is another object.
+std::string_view identity_key(ObjectKey object) {
+  static constexpr std::string_view names[]{"", "vendor_id", "product_code", "revision_number",
+                                            "serial_number"};
   if (object == ObjectKey{0x1000, 0}) return "device_type";
-  if (object == ObjectKey{0x1018, 1}) return "vendor_id";
-  if (object == ObjectKey{0x1018, 2}) return "product_code";
-  if (object == ObjectKey{0x1018, 3}) return "revision_number";
-  if (object == ObjectKey{0x1018, 4}) return "serial_number";
-  return nullptr;
+  return object.index == 0x1018 && object.sub < std::size(names) ? names[object.sub] : "";
 }
 
 /// Returns the identity that the boot expects: `{"device_type": 131474, "vendor_id": 59}`.
 Json identity_json(const BootPlan& boot) {
   Json out = Json::object();
   for (const BootStep& step : boot.steps) {
-    const char* key = identity_key(step.object);
-    if (step.action != BootAction::expect || key == nullptr || step.value.size() > 4) continue;
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < step.value.size(); ++i) {
-      value |= std::to_integer<std::uint32_t>(step.value[i]) << (8 * i);
-    }
-    out[key] = value;
+    const std::string key{identity_key(step.object)};
+    if (step.action != BootAction::expect || key.empty() || step.value.size() > 4) continue;
+    out[key] = from_little_endian(step.value);
   }
   return out;
 }
@@ -187,23 +177,21 @@ Json signal_json(const BusPlan& plan, std::size_t index) {
   out["fallback"] = signal.fallback == Fallback::hold ? "hold" : "value";
   if (signal.fallback == Fallback::value) out["fallback_value"] = signal.fallback_value;
   out["fallback_cycles"] = signal.fallback_cycles;
-  out["safe_value"] = signal.safe_value ? Json(*signal.safe_value) : Json(nullptr);
-  out["seeded_from"] = signal.seeded_from ? Json(*signal.seeded_from) : Json(nullptr);
+  out["safe_value"] = or_null(signal.safe_value);
+  out["seeded_from"] = or_null(signal.seeded_from);
   return out;
 }
 
 Json limit_json(const BusPlan& plan, const LimitLine& line) {
-  const auto value = [](const std::optional<double>& number) {
-    return number ? Json(*number) : Json(nullptr);
-  };
+  const bool of_object = line.object.index != 0;
   Json out{{"node", plan.nodes[line.node_index].name},
            {"axis", line.axis == 0 ? Json(nullptr) : Json(line.axis)},
-           {"index", line.object.index == 0 ? Json(nullptr) : Json(line.object.index)},
-           {"sub", line.object.index == 0 ? Json(nullptr) : Json(line.object.sub)},
+           {"index", of_object ? Json(line.object.index) : Json(nullptr)},
+           {"sub", of_object ? Json(line.object.sub) : Json(nullptr)},
            {"limit", name(line.kind)},
            {"source", name(line.source)},
-           {"low", value(line.low)},
-           {"high", value(line.high)},
+           {"low", or_null(line.low)},
+           {"high", or_null(line.high)},
            {"unit", line.unit},
            {"signals", line.signals}};
   for (const LimitSum& sum : sums_of(plan.limits, line)) {
@@ -227,42 +215,39 @@ Json waits_json(const BusPlan& plan) {
 }  // namespace
 
 void print_plan_json(std::ostream& out, const BusPlan& plan, const PlanPrint& what) {
+  const auto wanted = [&](NodeId node) { return !what.node || *what.node == node; };
   Json nodes = Json::array();
   Json signals = Json::array();
+  Json limits = Json::array();
   Json channels = Json::array();
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
-    if (!what.node || *what.node == plan.nodes[i].id) nodes.push_back(node_json(plan, i));
+    if (wanted(plan.nodes[i].id)) nodes.push_back(node_json(plan, i));
   }
   for (std::size_t i = 0; i < plan.layout.signals.size(); ++i) {
-    const bool wanted = !what.node || *what.node == plan.layout.signals[i].node;
-    if (wanted) signals.push_back(signal_json(plan, i));
+    if (wanted(plan.layout.signals[i].node)) signals.push_back(signal_json(plan, i));
   }
-  Json limits = Json::array();
   for (const LimitLine& line : plan.limits.lines) {
-    if (!what.node || *what.node == plan.nodes[line.node_index].id) {
-      limits.push_back(limit_json(plan, line));
-    }
+    if (wanted(plan.nodes[line.node_index].id)) limits.push_back(limit_json(plan, line));
   }
   for (const LcmChannel& channel : lcm_channels(plan, what.lcm)) {
     channels.push_back({{"channel", channel.name}, {"type", channel.type}});
   }
-  const Json document{{"bus", plan.name},
-                      {"interface", plan.interface},
-                      {"bitrate", plan.bitrate},
-                      {"master_id", plan.master_id.value()},
-                      {"master_heartbeat_us", us(plan.master_heartbeat)},
-                      {"start_nodes", plan.start_nodes},
-                      {"cycle", cycle_json(plan)},
-                      {"waits", waits_json(plan)},
-                      {"nodes", std::move(nodes)},
-                      {"image",
-                       {{"inputs", plan.layout.inputs},
-                        {"outputs", plan.layout.outputs()},
-                        {"hash", plan.layout.hash},
-                        {"signals", std::move(signals)}}},
-                      {"limits", std::move(limits)},
-                      {"lcm", {{"url", what.lcm.url}, {"channels", std::move(channels)}}}};
-  out << document.dump(2, ' ', true, Json::error_handler_t::replace) << '\n';
+  print_document(out, Json{{"bus", plan.name},
+                           {"interface", plan.interface},
+                           {"bitrate", plan.bitrate},
+                           {"master_id", plan.master_id.value()},
+                           {"master_heartbeat_us", us(plan.master_heartbeat)},
+                           {"start_nodes", plan.start_nodes},
+                           {"cycle", cycle_json(plan)},
+                           {"waits", waits_json(plan)},
+                           {"nodes", std::move(nodes)},
+                           {"image",
+                            {{"inputs", plan.layout.inputs},
+                             {"outputs", plan.layout.outputs()},
+                             {"hash", plan.layout.hash},
+                             {"signals", std::move(signals)}}},
+                           {"limits", std::move(limits)},
+                           {"lcm", {{"url", what.lcm.url}, {"channels", std::move(channels)}}}});
 }
 
 }  // namespace takt

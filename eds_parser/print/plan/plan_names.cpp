@@ -1,23 +1,17 @@
 #include "eds_parser/print/plan/plan_names.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
+#include <iterator>
 
 #include "eds_parser/lcm/lcm_channel.hpp"
 #include "eds_parser/lcm/typed_message.hpp"
+#include "eds_parser/table/little_endian.hpp"
 #include "eds_parser/table/name_of.hpp"
 
 namespace takt {
-namespace {
 
-void add_byte(std::string& out, unsigned value) {
-  constexpr std::string_view digits = "0123456789ABCDEF";
-  out += digits[(value >> 4) & 0xF];
-  out += digits[value & 0xF];
-}
-
-}  // namespace
+using namespace std::chrono_literals;
 
 std::string_view action_name(BootAction action) noexcept {
   static constexpr std::string_view names[]{"NMT",
@@ -62,34 +56,23 @@ std::string_view command_name(NmtCommand command) noexcept {
 }
 
 std::string value_text(const BootStep& step) {
-  if (step.value.empty()) return {};
-  std::string out;
-  if (step.value.size() <= 8) {
-    std::uint64_t number = 0;
-    for (std::size_t i = 0; i < step.value.size(); ++i) {
-      number |= std::to_integer<std::uint64_t>(step.value[i]) << (8 * i);
-    }
-    for (std::size_t i = step.value.size(); i-- > 0;) {
-      add_byte(out, static_cast<unsigned>(number >> (8 * i)));
-    }
-    return "0x" + out;
-  }
   constexpr std::size_t longest = 64;
-  if (step.value.size() > longest) return std::to_string(step.value.size()) + " bytes";
-  for (const std::byte byte : step.value) add_byte(out, std::to_integer<unsigned>(byte));
-  return out;
+  const std::size_t size = step.value.size();
+  if (size == 0) return {};
+  if (size <= 8) return fmt::format("0x{:0{}X}", from_little_endian(step.value), 2 * size);
+  if (size > longest) return fmt::format("{} bytes", size);
+  std::string pairs;
+  for (const std::byte byte : step.value) {
+    fmt::format_to(std::back_inserter(pairs), "{:02X}", std::to_integer<unsigned>(byte));
+  }
+  return pairs;
 }
 
-std::string us_text(Time time) {
-  return std::to_string(std::chrono::duration_cast<std::chrono::microseconds>(time).count()) +
-         " us";
-}
+std::string us_text(Time time) { return fmt::format("{} us", time / 1us); }
 
 std::string span_text(Time time) {
-  constexpr Time ms = std::chrono::milliseconds{1};
-  constexpr Time long_span = std::chrono::milliseconds{10};
-  if (time % ms == Time{}) return std::to_string(time / ms) + " ms";
-  if (time < long_span) return us_text(time);
+  if (time % 1ms == Time{}) return fmt::format("{} ms", time / 1ms);
+  if (time < 10ms) return us_text(time);
   return fmt::format("{:.1f} ms", std::chrono::duration<double, std::milli>(time).count());
 }
 

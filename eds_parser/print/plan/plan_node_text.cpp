@@ -32,29 +32,20 @@ class NodeText {
     identity(node);
     lss(node);
     device_data(node);
-    for (const PdoRow& row : plan_.pdos.tpdos) {
-      if (row.node_index == index) pdo(row, true);
-    }
-    for (const PdoRow& row : plan_.pdos.rpdos) {
-      if (row.node_index == index) pdo(row, false);
+    for (const bool is_tpdo : {true, false}) {
+      for (const PdoRow& row : is_tpdo ? plan_.pdos.tpdos : plan_.pdos.rpdos) {
+        if (row.node_index == index) pdo(row, is_tpdo);
+      }
     }
   }
 
  private:
   std::string reaction_text(const NodePlan& node) const {
     const std::string group = node.group == 0 ? "" : plan_.groups[node.group - 1U];
-    switch (node.on_loss) {
-      case LossReaction::report:
-        return {};
-      case LossReaction::stop_node:
-        return "its loss stops this node";
-      case LossReaction::stop_group:
-        return "its loss stops the group " + group;
-      case LossReaction::quick_stop:
-        return "its loss causes a quick stop of " +
-               (group.empty() ? "all drives" : "the drives of the group " + group);
-    }
-    return {};
+    if (node.on_loss == LossReaction::stop_node) return "its loss stops this node";
+    if (node.on_loss == LossReaction::stop_group) return "its loss stops the group " + group;
+    return "its loss causes a quick stop of " +
+           (group.empty() ? "all drives" : "the drives of the group " + group);
   }
 
   static std::string watching(const NodePlan& node) {

@@ -12,6 +12,8 @@
 namespace takt {
 namespace {
 
+bool has_lss(const NodePlan& node) { return node.lss.has_value(); }
+
 class Waits {
  public:
   explicit Waits(const BusPlan& plan) : plan_{plan} {}
@@ -21,7 +23,8 @@ class Waits {
     pdos();
     lss();
     sync();
-    applications();
+    add("transfer_silence", waits::transfer_silence,
+        "message from an application during its file transfer");
     stop();
     return std::move(list_);
   }
@@ -35,15 +38,10 @@ class Waits {
   template <class Holds>
   std::string nodes(Holds holds) const {
     std::string names;
-    bool all = true;
     for (const NodePlan& node : plan_.nodes) {
-      if (!holds(node)) {
-        all = false;
-      } else {
-        names += (names.empty() ? "" : ", ") + node.name;
-      }
+      if (holds(node)) names += (names.empty() ? "" : ", ") + node.name;
     }
-    return all ? "every node" : names;
+    return std::ranges::all_of(plan_.nodes, holds) ? "every node" : names;
   }
 
   void sdo() {
@@ -118,9 +116,7 @@ class Waits {
     add("lss_all", waits::lss_all,
         fmt::format("LSS answers of all devices, always the full time; in a scan down to {}",
                     span_text(waits::lss_shortest)));
-    if (std::ranges::none_of(plan_.nodes,
-                             [](const NodePlan& node) { return node.lss.has_value(); }))
-      return;
+    if (std::ranges::none_of(plan_.nodes, has_lss)) return;
     add("lss_look_again", waits::lss_look_again,
         "pause between two searches for a node without id");
     add("lss_let_boot", waits::lss_let_boot,
@@ -138,11 +134,6 @@ class Waits {
       add("first_sync", std::max<Time>(waits::first_sync, cycle.sync_timeout),
           "first SYNC of the other device, after the boots of all nodes");
     }
-  }
-
-  void applications() {
-    add("transfer_silence", waits::transfer_silence,
-        "message from an application during its file transfer");
   }
 
   void stop() {

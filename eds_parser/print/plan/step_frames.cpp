@@ -1,12 +1,13 @@
 #include "eds_parser/print/plan/step_frames.hpp"
 
 #include <cstddef>
+#include <fmt/format.h>
 #include <optional>
 #include <set>
-#include <string_view>
 #include <utility>
 
 #include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/little_endian.hpp"
 
 namespace takt {
 namespace {
@@ -14,13 +15,9 @@ namespace {
 /// Values of at least this size, in bytes, use block transfer if the node allows it.
 constexpr std::size_t block_from = 128;
 
-void add_byte(std::string& out, unsigned value) {
-  constexpr std::string_view digits = "0123456789ABCDEF";
-  out += digits[(value >> 4) & 0xF];
-  out += digits[value & 0xF];
+std::string candump_id(CobId id) {
+  return fmt::format("{:0{}X}", id.id(), id.is_extended() ? 8 : 3);
 }
-
-std::string candump_id(CobId id) { return hex(id.id(), id.is_extended() ? 8 : 3).substr(2); }
 
 class Frames {
  public:
@@ -58,33 +55,19 @@ class Frames {
       case BootAction::read_limit:
       case BootAction::expect:
         return {.first = upload(step.object)};
-      case BootAction::await_bootup:
-      case BootAction::await_alive:
-      case BootAction::skip_if_same:
-      case BootAction::await_heartbeat:
-      case BootAction::await_guarding:
-      case BootAction::await_operational:
-      case BootAction::pause:
+      default:
         return {};
     }
-    return {};
   }
 
  private:
   std::string nmt(NmtCommand command) const {
-    std::string out = "000#";
-    add_byte(out, static_cast<unsigned>(command));
-    add_byte(out, node_.id.value());
-    return out;
+    return fmt::format("000#{:02X}{:02X}", static_cast<unsigned>(command), node_.id.value());
   }
 
   std::string begin(unsigned specifier, ObjectKey object) const {
-    std::string out = request_;
-    add_byte(out, specifier);
-    add_byte(out, object.index);
-    add_byte(out, object.index >> 8U);
-    add_byte(out, object.sub);
-    return out;
+    return fmt::format("{}{:02X}{:02X}{:02X}{:02X}", request_, specifier, object.index & 0xFF,
+                       object.index >> 8, object.sub);
   }
 
   /// The request that initiates an upload. CiA 301, 7.2.4.3.5.
@@ -98,10 +81,8 @@ class Frames {
     const bool block = size >= block_from && node_.sdo.block != SdoBlockUse::off;
     const unsigned plain = expedited ? 0x23U | static_cast<unsigned>((4 - size) << 2U) : 0x21U;
     std::string out = begin(block ? 0xC6U : plain, step.object);
-    for (std::size_t i = 0; i < 4; ++i) {
-      const unsigned data = i < size ? std::to_integer<unsigned>(step.value[i]) : 0U;
-      add_byte(out, expedited ? data : static_cast<unsigned>(size >> (8 * i)));
-    }
+    const std::uint64_t data = expedited ? from_little_endian(step.value) : size;
+    for (unsigned i = 0; i < 4; ++i) out += fmt::format("{:02X}", data >> (8 * i) & 0xFF);
     return out;
   }
 

@@ -1,0 +1,31 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <ostream>
+
+#include "eds_parser/report/source.hpp"
+
+namespace takt {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+inline Json json_of(const Finding& finding) {
+  return {{"line", finding.pos.line},
+          {"column", finding.pos.column},
+          {"severity", name(finding.severity)},
+          {"rule", finding.rule},
+          {"message", finding.message}};
+}
+
+/// Prints a document in ASCII. Bytes that are not UTF-8, for example of a file name, are replaced,
+/// because they must not end the program.
+inline void print_document(std::ostream& out, const Json& document) {
+  out << document.dump(2, ' ', true, Json::error_handler_t::replace) << '\n';
+}
+
+}  // namespace takt
