@@ -84,9 +84,10 @@ build() {
   pch=${TAKT_PCH:-$3}
   shift 3
   [ "$preset" = release ] && benchmarks=ON || benchmarks=OFF
-  [ "$preset" = tsan ] && werror=OFF || werror=ON
+  werror=ON groups=ON
+  [ "$preset" = tsan ] && werror=OFF groups=OFF  # it proves that each file includes what it uses
   cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$compiler" -DTAKT_TESTS=ON -DTAKT_BENCHMARKS=$benchmarks \
-    -DTAKT_WERROR=$werror -DTAKT_UNITY=ON -DTAKT_PCH="$pch" && ninja -C "build/$preset" -j "$jobs" "$@"
+    -DTAKT_WERROR=$werror -DTAKT_GROUPS=$groups -DTAKT_UNITY=ON -DTAKT_PCH="$pch" && ninja -C "build/$preset" -j "$jobs" "$@"
 }
 
 # Each runs for about a second and must not fail. What it says is no figure: those come from sh test/bench/run.sh.

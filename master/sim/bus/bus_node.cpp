@@ -9,8 +9,8 @@ namespace takt::sim {
 BusNode::BusNode(BusNodeOptions node_options)
     : options{node_options}, queue_{options.capacity + 1} {}
 
-/// Counts the bits once for each frame. Nothing waits for the result here, so that the processor
-/// goes on meanwhile; when the frame begins, the time of its end would wait.
+/// Counts the bits of the frame here and not when the frame begins, because there the computation
+/// of the end of the frame would wait for the result. Here nothing waits for it.
 bool BusNode::push(const Frame& frame, Time ready, Time expires) noexcept {
   if (queue_.size() >= options.capacity) return false;
   first_expiry_ = std::min(first_expiry_, expires);
