@@ -2,16 +2,14 @@
 
 #include <algorithm>
 
+#include "master/wire/bytes.hpp"
+
 namespace takt::soak {
 
 std::uint64_t bits_of(const Frame& frame, unsigned offset, unsigned count) noexcept {
-  std::uint64_t value = 0;
-  for (unsigned bit = 0; bit < count; ++bit) {
-    const unsigned at = offset + bit;
-    const std::uint64_t one = (frame.data[at / 8] >> (at % 8)) & 1U;
-    value |= one << bit;
-  }
-  return value;
+  const auto data = load_le<std::uint64_t>(std::span{frame.data});
+  const std::uint64_t mask = count >= 64 ? ~0ULL : (1ULL << count) - 1;
+  return data >> offset & mask;
 }
 
 bool is_lasting(const BusPlan& plan, const Signal& signal, std::uint64_t value) noexcept {
