@@ -7,8 +7,8 @@
 namespace takt::motion {
 namespace {
 
-/// The shortest change from a velocity and an acceleration to another velocity and none: phases
-/// with jerk `sign`, 0 and -`sign`.
+/// The fastest way from one velocity and acceleration to another velocity, at which the
+/// acceleration is 0. It has three phases, with jerk `sign`, 0 and -`sign`.
 struct Change {
   double sign = 1.0;
   std::array<double, 3> phases{};
