@@ -22,12 +22,12 @@ build_failed() {
 
 build_programs() {
   sh share/install_packages.sh build run
-  say "Building taktd and takt-move (two to three minutes the first time)"
+  say "Building taktd and takt-move (about two minutes the first time)"
   started=$(date +%s)
   mkdir -p $build && rm -f $build/demo-built
   # Without the tests, unless this folder has been configured before. The tool `takt` is as much to compile as the rest.
   [ -e $build/build.ninja ] ||
-    cmake --preset release -DTAKT_TESTS=OFF -DTAKT_PCH=ON >$build/demo-build.log 2>&1 || build_failed
+    cmake --preset release -DTAKT_TESTS=OFF -DTAKT_PCH=ON -DTAKT_UNITY=ON >$build/demo-build.log 2>&1 || build_failed
   { ninja -C $build taktd takt-move && touch $build/demo-built; } 2>&1 | tee $build/demo-build.log |
     sed -un 's/^\(\[[0-9]*\(00\|25\|50\|75\)\/[0-9]*\]\).*/  \1/p'
   [ -e $build/demo-built ] || build_failed

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include "eds_parser/budget/service_traffic.hpp"
 #include "eds_parser/plan/frame_time.hpp"
 
 namespace takt {
-namespace {
-
-constexpr int cycles_to_relief = 3;
-
-}  // namespace
+namespace {}  // namespace
 
 CycleFrames::CycleFrames(const BusTraffic& traffic, const BusPlan& plan,
                          const BudgetOptions& options, Company company)

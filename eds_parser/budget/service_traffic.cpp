@@ -8,10 +8,8 @@
 namespace takt {
 namespace {
 
-constexpr unsigned longest_data = 8;
 constexpr Time long_cycle = std::chrono::milliseconds{50};  // such a cycle has several rounds
 constexpr Time round_distance = std::chrono::milliseconds{10};
-constexpr int cycles_to_relief = 3;
 
 }  // namespace
 

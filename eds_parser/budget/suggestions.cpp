@@ -11,7 +11,6 @@ namespace {
 
 using std::chrono::microseconds;
 
-constexpr std::uint32_t longest_period_us = 60'000'000;
 constexpr unsigned most_alternating = 16;
 std::uint32_t us(Time time) {
   return static_cast<std::uint32_t>(std::chrono::ceil<microseconds>(time).count());

@@ -10,7 +10,6 @@
 namespace takt {
 namespace {
 
-constexpr unsigned longest_data = 8;
 constexpr Time nmt_interval = std::chrono::seconds{1};
 
 /// Returns the frame's bits in the order of arbitration. A base identifier goes before the extended

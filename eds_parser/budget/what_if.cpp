@@ -10,7 +10,6 @@ namespace takt {
 namespace {
 
 constexpr std::uint32_t shortest_period_us = 200;
-constexpr std::uint32_t longest_period_us = 60'000'000;
 
 template <class T>
 std::optional<T> number(std::string_view text, T least, T most) {
@@ -31,7 +30,7 @@ bool read(std::string_view text, T least, T most, std::optional<T>& out) {
 }
 
 /// Reads a time such as "1500us", "2ms" or "1s".
-std::optional<std::uint32_t> microseconds(std::string_view text) {
+std::optional<std::uint32_t> microseconds_of(std::string_view text) {
   const auto unit = text.find_first_not_of("0123456789");
   if (unit == std::string_view::npos) return std::nullopt;
   const auto count = number<std::uint32_t>(text.substr(0, unit), 1, longest_period_us);
@@ -64,7 +63,7 @@ bool set_pdo(std::string_view what, std::string_view value, PdoChange& pdo) {
   }
   if (what == "start") return read<std::uint8_t>(value, 0, 240, pdo.sync_start);
   if (what == "cob_id") return read<std::uint32_t>(value, 1, 0x1FFF'FFFF, pdo.cob_id);
-  const auto us = what == "inhibit" ? microseconds(value) : std::nullopt;
+  const auto us = what == "inhibit" ? microseconds_of(value) : std::nullopt;
   if (!us || *us % 100 != 0 || *us / 100 > 0xFFFF) return false;
   pdo.inhibit_time = static_cast<std::uint16_t>(*us / 100);
   return true;
@@ -116,7 +115,7 @@ bool add_change(std::string_view text, WhatIf& changes) {
   const auto key = trim(text.substr(0, equals));
   const auto value = trim(text.substr(equals + 1));
   if (key == "period") {
-    changes.sync_period_us = microseconds(value);
+    changes.sync_period_us = microseconds_of(value);
     return changes.sync_period_us && *changes.sync_period_us >= shortest_period_us;
   }
   if (key == "bitrate") {

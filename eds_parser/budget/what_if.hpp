@@ -30,6 +30,7 @@ struct WhatIf {
   std::vector<PdoChange> pdos{};
 };
 
+inline constexpr std::uint32_t longest_period_us = 60'000'000;
 inline constexpr std::uint16_t known_bitrates[] = {10, 20, 50, 100, 125, 250, 500, 800, 1000};
 
 /// Adds `period=1ms`, `bitrate=500`, `services=2`, `counter=60`, `elbow.tpdo2=10` (transmission),

@@ -5,12 +5,12 @@
 namespace takt {
 namespace {
 
-struct Needed {
+struct Mandatory {
   std::uint16_t index;
   std::string_view name;
 };
 
-constexpr Needed mandatory[] = {
+constexpr Mandatory mandatory[] = {
     {0x1000, "device type"}, {0x1001, "error register"}, {0x1018, "identity object"}};
 
 /// Returns the place of the section after which an object would be, or of the first section if none

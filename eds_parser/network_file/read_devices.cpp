@@ -34,7 +34,7 @@ constexpr std::string_view timer_words[] = {"restarts", "additional", "alone"};
 constexpr std::string_view function_words[] = {"process_data", "parameter_channel"};
 constexpr std::string_view access_words[] = {"ro", "wo", "rw", "rwr", "rww", "const"};
 constexpr std::string_view no_match[] = {"none"};
-constexpr std::string_view reset_words[] = {"communication", "node", "none"};
+constexpr std::string_view boot_reset_words[] = {"communication", "node", "none"};
 constexpr KeyValue object_index = whole(0x1000, 0xFFFF);
 
 /// The row `reason` of a section or of an entry.
@@ -92,7 +92,7 @@ constexpr Key<ValueEdit> value_keys[] = {
     reason_key<ValueEdit>(),
 };
 
-constexpr Key<TimeoutEdit> timeout_keys[] = {
+constexpr Key<TimeoutEdit> timeout_edit_keys[] = {
     required(key<&TimeoutEdit::timeout, &SdoObjectTimeout::index>("index", object_index, "",
                                                                   "The index.")),
     key<&TimeoutEdit::timeout, &SdoObjectTimeout::sub>("sub_index", "all", "The sub-index."),
@@ -116,7 +116,7 @@ void read_types(const KeyInput& in, PdoRule& rule) {
 }
 
 constexpr KeyValue types{.type = KeyType::list, .range = {0, 255}};
-constexpr Key<PdoRule> pdo_keys[] = {
+constexpr Key<PdoRule> pdo_rule_keys[] = {
     key<&PdoRule::numbers>("numbers", range_of(1, 512), "all", "The PDOs of the rule."),
     key<read_types<&PdoRule::types>>("transmission", types, "all",
                                      "The permitted types: `[[1, 240], 254, 255]`."),
@@ -139,7 +139,7 @@ constexpr Key<PdoRule> pdo_keys[] = {
 /// Reads the rules of one direction.
 void read_pdo_rules(const KeyInput& in, DeviceData& data) {
   const std::size_t before = data.pdos.size();
-  read_list<pdo_keys>(in, data.pdos);
+  read_list<pdo_rule_keys>(in, data.pdos);
   for (auto& rule : std::span{data.pdos}.subspan(before)) rule.is_tpdo = in.key.name == "tpdo";
 }
 
@@ -177,13 +177,13 @@ void read_sub_index(const KeyInput& in, ObjectEdit& edit) {
   edit.whole = false;
 }
 
-void check_object(const KeyInput& in, const std::vector<ObjectEdit>&, const ObjectEdit& edit) {
+void check_edit(const KeyInput& in, const std::vector<ObjectEdit>&, const ObjectEdit& edit) {
   if (edit.missing != edit.access.has_value()) return;
   in.error("missing-key",
            "an entry of `objects` needs an `index`, and either `missing: true` or `access`");
 }
 
-constexpr Key<ObjectEdit> object_keys[] = {
+constexpr Key<ObjectEdit> object_edit_keys[] = {
     required(key<&ObjectEdit::object, &ObjectKey::index>("index", object_index, "", "The index.")),
     key<read_sub_index>("sub_index", whole(0, 255), "all", "The sub-index."),
     key<&ObjectEdit::missing>("missing", "false", "The device does not have the object."),
@@ -203,7 +203,7 @@ constexpr Key<SdoServerFact> server_keys[] = {
 };
 
 constexpr Key<BootTweaks> boot_keys[] = {
-    key<&BootTweaks::reset>("reset", word_of(reset_words), "by the network file",
+    key<&BootTweaks::reset>("reset", word_of(boot_reset_words), "by the network file",
                             "A network file that resets in another way gets a warning."),
     key<&BootTweaks::values_after_pdos>("values_after_pdos", "false",
                                         "The values are written after the PDOs."),
@@ -229,7 +229,7 @@ void read_emcy(const KeyInput& in, DeviceData& data) {
   }
 }
 
-constexpr KeyValue pdo_rules{.type = KeyType::list, .parts = rows_of<pdo_keys>};
+constexpr KeyValue pdo_rules{.type = KeyType::list, .parts = rows_of<pdo_rule_keys>};
 constexpr Key<DeviceData> device_keys[] = {
     required(key<&DeviceData::name>("name", "", "The family.")),
     key<&DeviceData::manual>("manual", "none", "The source of the facts."),
@@ -246,16 +246,16 @@ constexpr Key<DeviceData> device_keys[] = {
     map_key<&DeviceData::heartbeat, heartbeat_keys>("heartbeat", "1 ms",
                                                     "The resolution of heartbeat times."),
     list_key<&DeviceData::values, value_keys, check_value>("sdo", "none", "Values to write."),
-    list_key<&DeviceData::timeouts, timeout_keys>("sdo_timeouts", "none",
-                                                  "Objects that take longer."),
+    list_key<&DeviceData::timeouts, timeout_edit_keys>("sdo_timeouts", "none",
+                                                       "Objects that take longer."),
     key<read_pdo_rules>("tpdo", pdo_rules, "CiA 301", "What the TPDOs can do."),
     key<read_pdo_rules>("rpdo", pdo_rules, "CiA 301", "What the RPDOs can do."),
     map_key<&DeviceData::inhibit, inhibit_keys>("inhibit_time", "CiA 301", "Inhibit times."),
     map_key<&DeviceData::timer, timer_keys>("event_timer", "CiA 301", "Event timers."),
     map_key<&DeviceData::sync, sync_keys>("sync_producer", "CiA 301",
                                           "The device as producer of SYNC."),
-    list_key<&DeviceData::objects, object_keys, check_object>("objects", "none",
-                                                              "Differences from the EDS."),
+    list_key<&DeviceData::objects, object_edit_keys, check_edit>("objects", "none",
+                                                                 "Differences from the EDS."),
     list_key<&DeviceData::sdo_servers, server_keys>(
         "sdo_servers", "none",
         "SDO servers that may be on from the factory, although the EDS has them off or does not "

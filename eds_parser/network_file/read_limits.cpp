@@ -58,8 +58,8 @@ constexpr Key<AxisLimitsSpec> axis_keys[] = {
         "modulo", "The length after which a rotary axis wraps around. Otherwise 0x607B of `sdo`."),
 };
 
-void check_object(const KeyInput& in, std::vector<ObjectLimitSpec>& objects,
-                  const ObjectLimitSpec& limit) {
+void check_object_limit(const KeyInput& in, std::vector<ObjectLimitSpec>& objects,
+                        const ObjectLimitSpec& limit) {
   const std::string what = "the limits of " + to_string(limit.object) + " in " + in.map.what();
   if (!limit.min.given && !limit.max.given && !limit.step.given) {
     in.error("missing-key", what, " lack `min`, `max` or `step`");
@@ -73,7 +73,7 @@ void check_object(const KeyInput& in, std::vector<ObjectLimitSpec>& objects,
   }
 }
 
-constexpr Key<ObjectLimitSpec> object_keys[] = {
+constexpr Key<ObjectLimitSpec> object_limit_keys[] = {
     index_key<ObjectLimitSpec>(),
     sub_index_key<ObjectLimitSpec>(),
     key<&ObjectLimitSpec::min>("min", "none", "The lowest value."),
@@ -102,8 +102,8 @@ constexpr Key<LimitsSpec> limits_keys[] = {
     key<read_axes>("axes",
                    {.type = KeyType::numbered, .range = axis_numbers, .parts = rows_of<axis_keys>},
                    "none", "What differs for an axis of the device, by its number."),
-    list_key<&LimitsSpec::objects, object_keys, check_object>("objects", "none",
-                                                              "The limits of other outputs."),
+    list_key<&LimitsSpec::objects, object_limit_keys, check_object_limit>(
+        "objects", "none", "The limits of other outputs."),
 };
 
 }  // namespace

@@ -158,7 +158,7 @@ void read_rpdos(const KeyInput& in, NodeSpec& node) {
 }
 
 constexpr KeyValue pdos{.type = KeyType::numbered, .range = {1, 512}, .parts = pdo_rows};
-constexpr KeyValue objects{.type = KeyType::list, .parts = object_rows};
+constexpr KeyValue object_list{.type = KeyType::list, .parts = object_rows};
 constexpr KeyValue file_name{.type = KeyType::text};
 
 constexpr std::string_view ros_modes =
@@ -284,10 +284,10 @@ constexpr Key<NodeSpec> node_keys[] = {
                                            bus_yml),
     key<read_rpdos>("rpdo", pdos, "from the EDS", "The RPDOs by number.", bus_yml),
     key<with<read_objects, &NodeSpec::sdo>>(
-        "sdo", objects, "none",
+        "sdo", object_list, "none",
         "Values that are written in the boot, in this order, where the value differs.", bus_yml),
     key<with<read_objects, &NodeSpec::safe_values>>(
-        "safe_values", objects, "none",
+        "safe_values", object_list, "none",
         "Values that are sent before the first command, and by `fallback: safe`."),
     key<read_units>("units", {.type = KeyType::map, .parts = units_rows}, "counts",
                     "The units of values: SI = sign * counts * scale + offset."),

@@ -23,7 +23,7 @@ constexpr Key<UnitSpec> unit_keys[] = {
     key<&UnitSpec::unit>("unit", "none", "The unit of the SI value, for example `rad`."),
 };
 
-constexpr Key<ObjectUnitSpec> object_keys[] = {
+constexpr Key<ObjectUnitSpec> object_unit_keys[] = {
     index_key<ObjectUnitSpec>(),
     sub_index_key<ObjectUnitSpec>(),
     group<&ObjectUnitSpec::unit, unit_keys>(),
@@ -34,7 +34,7 @@ constexpr Key<UnitsSpec> units_keys[] = {
     map_key<&UnitsSpec::velocity, unit_keys>("velocity", "counts", "For velocities."),
     map_key<&UnitsSpec::acceleration, unit_keys>("acceleration", "counts", "For accelerations."),
     map_key<&UnitsSpec::torque, unit_keys>("torque", "counts", "For torques."),
-    list_key<&UnitsSpec::objects, object_keys>("objects", "counts", "For single objects."),
+    list_key<&UnitsSpec::objects, object_unit_keys>("objects", "counts", "For single objects."),
 };
 
 }  // namespace

@@ -11,7 +11,6 @@
 namespace takt {
 namespace {
 
-constexpr std::uint32_t off_flag = 0x8000'0000;
 constexpr std::uint32_t extended_flag = 0x2000'0000;
 constexpr std::uint16_t first_further = 0x1201;
 constexpr std::uint16_t last_further = 0x127F;
@@ -37,7 +36,7 @@ std::optional<std::int64_t> number_of_file(const ObjectDictionary& dictionary, O
 /// Returns std::nullopt if the COB-ID is off.
 std::optional<CobId> cob_id_of(std::int64_t value) {
   const auto raw = static_cast<std::uint32_t>(value);
-  if (value <= 0 || (raw & off_flag) != 0) return std::nullopt;
+  if (value <= 0 || (raw & cob_id_off) != 0) return std::nullopt;
   const CobId id = CobId::of_object(raw);
   return id.id() == 0 ? std::nullopt : std::optional{id};
 }

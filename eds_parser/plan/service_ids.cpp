@@ -7,7 +7,6 @@ namespace takt {
 namespace {
 
 constexpr std::uint32_t predefined_time = 0x100;
-constexpr std::uint32_t off_flag = 0x8000'0000;
 
 class ServiceIdCollector {
  public:
@@ -133,7 +132,7 @@ std::optional<CobId> emcy_cob_id(const NodeSource& node) {
   const std::int64_t id = node.spec->emcy_cob_id.given
                               ? *node.spec->emcy_cob_id
                               : cob_id_of_file(*node.dictionary, {0x1014, 0});
-  const bool off = (id & off_flag) != 0;
+  const bool off = (id & cob_id_off) != 0;
   if (id <= 0 || off || id == 0x80 + node.id.value()) return std::nullopt;
   return CobId::of_object(static_cast<std::uint32_t>(id));
 }

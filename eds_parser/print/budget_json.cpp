@@ -6,7 +6,9 @@
 namespace takt {
 namespace {
 
-Json bound(const std::optional<Time>& worst) { return worst ? Json(us(*worst)) : Json(nullptr); }
+Json bound_json(const std::optional<Time>& worst) {
+  return worst ? Json(us(*worst)) : Json(nullptr);
+}
 
 std::string_view key_of(Traffic kind) noexcept {
   static constexpr std::string_view names[]{
@@ -26,10 +28,10 @@ Json row_json(const BudgetRow& row) {
             {"burst", frame.burst},
             {"on_change", frame.on_change},
             {"after_sync", row.cycle != Time{0}},
-            {"worst_us", bound(row.worst)},
-            {"worst_in_emcy_burst_us", bound(row.worst_in_burst)},
-            {"worst_behind_services_us", bound(row.worst_behind_services)},
-            {"worst_without_changes_us", bound(row.worst_steady)},
+            {"worst_us", bound_json(row.worst)},
+            {"worst_in_emcy_burst_us", bound_json(row.worst_in_burst)},
+            {"worst_behind_services_us", bound_json(row.worst_behind_services)},
+            {"worst_without_changes_us", bound_json(row.worst_steady)},
             {"limit_us", row.why == BudgetLimit::none ? Json(nullptr) : Json(us(row.limit))},
             {"limit", name_of(row.why)},
             {"limit_by", frame.waits},
@@ -50,25 +52,26 @@ void print_budget_json(std::ostream& out, const BusPlan& plan, const BusBudget& 
   }
   Json rows = Json::array();
   for (const auto& row : budget.rows) rows.push_back(row_json(row));
-  const Json document{{"bus", plan.name},
-                      {"bitrate", plan.bitrate},
-                      {"sync", plan.cycle.sync},
-                      {"period_us", us(plan.cycle.period)},
-                      {"receive_window_us", us(plan.cycle.receive_window)},
-                      {"output_deadline_us", us(plan.cycle.output_deadline)},
-                      {"load",
-                       {{"typical", budget.load.typical},
-                        {"worst", budget.load.worst},
-                        {"services", budget.load.services}}},
-                      {"fits", budget.fits()},
-                      {"refused_by_taktd", budget.refused},
-                      {"fits_in_emcy_burst", budget.fits_in_burst()},
-                      {"fits_but_for_changes", budget.fits_but_for_changes()},
-                      {"sync_delay_us", us(budget.sync_delay())},
-                      {"sync_delay_behind_services_us", bound(budget.sync_delay_behind_services())},
-                      {"assumptions", budget.assumptions},
-                      {"would_fit", std::move(would_fit)},
-                      {"frames", std::move(rows)}};
+  const Json document{
+      {"bus", plan.name},
+      {"bitrate", plan.bitrate},
+      {"sync", plan.cycle.sync},
+      {"period_us", us(plan.cycle.period)},
+      {"receive_window_us", us(plan.cycle.receive_window)},
+      {"output_deadline_us", us(plan.cycle.output_deadline)},
+      {"load",
+       {{"typical", budget.load.typical},
+        {"worst", budget.load.worst},
+        {"services", budget.load.services}}},
+      {"fits", budget.fits()},
+      {"refused_by_taktd", budget.refused},
+      {"fits_in_emcy_burst", budget.fits_in_burst()},
+      {"fits_but_for_changes", budget.fits_but_for_changes()},
+      {"sync_delay_us", us(budget.sync_delay())},
+      {"sync_delay_behind_services_us", bound_json(budget.sync_delay_behind_services())},
+      {"assumptions", budget.assumptions},
+      {"would_fit", std::move(would_fit)},
+      {"frames", std::move(rows)}};
   out << document.dump(2) << '\n';
 }
 

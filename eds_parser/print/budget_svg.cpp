@@ -10,13 +10,13 @@ namespace takt {
 namespace {
 
 constexpr double letter = 6.6;  // mean width of a character at a font size of 11 pixels
-constexpr double width = 760;
+constexpr double plot_width = 760;
 constexpr double edge = 16;
 constexpr double top = 112;
 constexpr double row_height = 18;
 constexpr double bar_height = 12;
 constexpr double numbers_width = 62;
-constexpr double most_ticks = 10;
+constexpr double most_svg_ticks = 10;
 
 /// Escapes a text. Names come from the network file and may contain any character.
 std::string escaped(std::string_view text) {
@@ -60,7 +60,7 @@ class Svg {
         "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"Helvetica, Arial, sans-serif\" "
         "font-size=\"11\" fill=\"#222222\">\n"
         "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-        left_ + width + 2 * numbers_width + edge, height);
+        left_ + plot_width + 2 * numbers_width + edge, height);
     head();
     if (plan_.cycle.sync) cycle();
     out_ << "</svg>\n";
@@ -79,7 +79,7 @@ class Svg {
     marks();
   }
 
-  double x(Time at) const { return left_ + width * us(at) / us(picture_.end); }
+  double x(Time at) const { return left_ + plot_width * us(at) / us(picture_.end); }
 
   void text(double at, double y, std::string_view anchor, std::string_view what,
             std::string_view style = "") {
@@ -145,10 +145,10 @@ class Svg {
 
   void axis() {
     const double end = us(picture_.end);
-    const double step = tick_step(end, most_ticks);
+    const double step = tick_step(end, most_svg_ticks);
     text(left_ - 8, top - 26, "end", "us after SYNC");
     for (double at = 0; at <= end; at += step) {
-      const double where = left_ + width * at / end;
+      const double where = left_ + plot_width * at / end;
       out_ << fmt::format(
           "<line x1=\"{0:.1f}\" y1=\"{1:.1f}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" "
           "stroke=\"#dddddd\"/>\n",
@@ -159,7 +159,7 @@ class Svg {
     text(numbers(2), top - 12, "end", "margin", "font-weight=\"bold\"");
   }
 
-  double numbers(int column) const { return left_ + width + column * numbers_width; }
+  double numbers(int column) const { return left_ + plot_width + column * numbers_width; }
 
   void draw(const CycleBar& bar, double y) {
     const auto& row = *bar.row;

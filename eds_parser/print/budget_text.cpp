@@ -36,7 +36,7 @@ std::string every(const BudgetRow& row) {
 /// Returns a time as whole microseconds.
 std::string number(Time time) { return fmt::format("{:.0f}", us(time)); }
 
-std::string bound(const std::optional<Time>& worst) { return worst ? number(*worst) : "none"; }
+std::string bound_text(const std::optional<Time>& worst) { return worst ? number(*worst) : "none"; }
 
 std::string to_limit(const BudgetRow& row) {
   if (!row.worst || row.why == BudgetLimit::none || row.frame.kind == Traffic::sync) return "";
@@ -117,8 +117,8 @@ class BudgetText {
 
   void line(const BudgetRow& row, const std::string& name, const std::string& eighth) {
     line(to_string(row.frame.cob_id), name, row.frame.bytes, every(row), number(row.frame.frame),
-         bound(row.worst), to_limit(row), eighth, bound(row.worst_in_burst),
-         bound(row.worst_behind_services), mark(row));
+         bound_text(row.worst), to_limit(row), eighth, bound_text(row.worst_in_burst),
+         bound_text(row.worst_behind_services), mark(row));
   }
   template <class... Columns>
   void line(std::string_view cob_id, std::string_view name, const Columns&... columns) {

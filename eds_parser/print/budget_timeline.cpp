@@ -8,7 +8,7 @@
 namespace takt {
 namespace {
 
-constexpr std::size_t columns = 72;
+constexpr std::size_t time_columns = 72;
 constexpr double most_ticks = 8;
 
 class Timeline {
@@ -23,7 +23,7 @@ class Timeline {
     out_ << fmt::format(
         "\none cycle, {:.0f} us per column: `.` the frame may wait, `#` latest time on the wire; "
         "`:` see below\n",
-        us(picture_.end) / columns);
+        us(picture_.end) / time_columns);
     print("us", axis(), "latest", "margin");
     for (const auto& bar : picture_.bars) {
       std::string line = limits();
@@ -39,7 +39,8 @@ class Timeline {
  private:
   std::size_t column(Time at) const {
     const auto part = static_cast<double>(at.count()) / static_cast<double>(picture_.end.count());
-    return std::min(columns, static_cast<std::size_t>(part * static_cast<double>(columns)));
+    return std::min(time_columns,
+                    static_cast<std::size_t>(part * static_cast<double>(time_columns)));
   }
 
   static void put(std::string& line, std::size_t at, std::string_view text) {
@@ -53,7 +54,7 @@ class Timeline {
     const double step = tick_step(end, most_ticks);
     std::string line;
     for (double at = 0; at <= end; at += step) {
-      const auto where = static_cast<std::size_t>(at / end * static_cast<double>(columns));
+      const auto where = static_cast<std::size_t>(at / end * static_cast<double>(time_columns));
       put(line, where, fmt::format("{:.0f}", at));
     }
     return line;
@@ -64,7 +65,7 @@ class Timeline {
     const auto label = fmt::format("{} {:.0f}", mark.text, us(mark.at));
     const std::size_t at = column(mark.at);
     std::string line(at, ' ');
-    if (at > columns / 2 && at > label.size() + 1) {
+    if (at > time_columns / 2 && at > label.size() + 1) {
       put(line, at - label.size() - 1, label + " ^");
     } else {
       line += "^ " + label;
@@ -73,7 +74,7 @@ class Timeline {
   }
 
   std::string limits() const {
-    std::string line(columns + 1, ' ');
+    std::string line(time_columns + 1, ' ');
     for (const auto& mark : picture_.marks) line[column(mark.at)] = ':';
     return line;
   }
@@ -88,8 +89,8 @@ class Timeline {
 
   void print(std::string_view name, std::string_view line, std::string_view latest = "",
              std::string_view margin = "") {
-    std::string text =
-        fmt::format("  {:<{}} {:<{}} {:>7} {:>7}", name, width_, line, columns + 1, latest, margin);
+    std::string text = fmt::format("  {:<{}} {:<{}} {:>7} {:>7}", name, width_, line,
+                                   time_columns + 1, latest, margin);
     text.erase(text.find_last_not_of(' ') + 1);
     out_ << text << '\n';
   }

@@ -53,6 +53,10 @@ class CobId {
   std::uint32_t raw_ = 0;
 };
 
+/// Bit 31 of an object with a COB-ID, such as 0x1014, 0x1200:01 or 0x1800:01: the service or the
+/// PDO is off. CiA 301, 7.5.2.
+inline constexpr std::uint32_t cob_id_off = 0x8000'0000;
+
 /// Index and sub-index of an object. CiA 301, 7.4.
 struct ObjectKey {
   std::uint16_t index = 0;

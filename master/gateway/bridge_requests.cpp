@@ -7,8 +7,8 @@
 namespace takt {
 namespace {
 
-constexpr Time longest_wait = std::chrono::seconds{10};  // of a request on its way
-constexpr Time most_ahead = std::chrono::seconds{1};     // difference of the clocks of two machines
+constexpr Time longest_way = std::chrono::seconds{10};  // of a request on its way
+constexpr Time most_ahead = std::chrono::seconds{1};    // difference of the clocks of two machines
 
 }  // namespace
 
@@ -64,7 +64,7 @@ std::string Bridge::age_trouble(std::int64_t utime, Time now) const {
     return (monotonic + clocks_.wall_offset()) / std::chrono::microseconds{1};
   };
   const auto& [length, end] = gap_.newest_long();
-  const bool old = utime < wall(now - longest_wait);
+  const bool old = utime < wall(now - longest_way);
   const bool before_gap_ended = end != Time{0} && utime < wall(end);
   if (gap_.discards_requests(now) || (before_gap_ended && !old)) {
     return fmt::format(

@@ -7,17 +7,17 @@ namespace takt::motion {
 namespace {
 
 /// What rounding may add to a state at a limit, relative to the limit.
-constexpr double rounding = 1e-13;
+constexpr double limit_rounding = 1e-13;
 
 /// The velocity is too high, or it would be before the acceleration is taken back to 0.
 bool is_too_fast(const Transfer& t) noexcept {
   const double rise = std::max(t.start_acceleration, 0.0) * t.start_acceleration / 2;
   const double scale = t.max_velocity - t.min_velocity + rise;
-  return t.start_velocity + rise > t.max_velocity + rounding * scale;
+  return t.start_velocity + rise > t.max_velocity + limit_rounding * scale;
 }
 
 bool is_too_steep(const Transfer& t) noexcept {
-  return t.start_acceleration > t.max_acceleration * (1.0 + rounding);
+  return t.start_acceleration > t.max_acceleration * (1.0 + limit_rounding);
 }
 
 /// Entry of a state whose velocity is too high.

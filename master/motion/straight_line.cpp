@@ -14,7 +14,7 @@ double end_velocity(const AxisTask& task) { return task.to.velocity; }
 double end_acceleration(const AxisTask& task) { return task.to.acceleration; }
 
 /// Part of the largest value of a quantity by which an axis may miss the direction.
-constexpr double tolerance = 1e-12;
+constexpr double line_tolerance = 1e-12;
 
 double largest(std::span<const AxisTask> tasks, double (*quantity)(const AxisTask&)) noexcept {
   double size = 0.0;
@@ -63,7 +63,7 @@ std::optional<StraightLine> StraightLine::find(std::span<const AxisTask> tasks,
   for (const AxisTask& task : tasks) {
     for (const auto quantity : counted) {
       const double miss = quantity(task) - line.share(task) * quantity(*leader);
-      if (std::abs(miss) > tolerance * largest(tasks, quantity)) return std::nullopt;
+      if (std::abs(miss) > line_tolerance * largest(tasks, quantity)) return std::nullopt;
     }
     restrict(line.leader_.limits, task.limits, line.share(task));
     restrict(line.leader_.range, *leader, task, line.share(task));

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t longest_file = std::size_t{1} << 20U;
 constexpr std::size_t longest_name = 40;
 
-std::string read_text(const fs::path& path) {
+std::string text_of_nodelist(const fs::path& path) {
   std::error_code failed;
   if (!fs::is_regular_file(path, failed)) return {};
   std::ifstream in{path, std::ios::binary};
@@ -97,7 +97,7 @@ class Importer {
         values_{report_, std::nullopt} {}
 
   ImportedNodelist run() {
-    const std::string text = read_text(cpj_);
+    const std::string text = text_of_nodelist(cpj_);
     if (text.empty() || text.size() > longest_file) {
       wrong({}, "no-file", "can't be read, is empty, or is larger than 1 MB");
       return finish();

@@ -7,7 +7,7 @@
 namespace takt {
 namespace {
 
-constexpr std::array<ObjectKey, 6> questions{
+constexpr std::array<ObjectKey, 6> identity_objects{
     {{0x1000, 0}, {0x1018, 1}, {0x1018, 2}, {0x1018, 3}, {0x1018, 4}, {0x1008, 0}}};
 constexpr std::size_t name_step = 5;
 
@@ -48,7 +48,7 @@ void BusScan::on_time(Time now, Outbox& out) {
   }
   for (const auto& dialogue : running_) go_on(*dialogue, now, out);
   std::erase_if(running_, [](const std::unique_ptr<Dialogue>& dialogue) {
-    return dialogue->step == questions.size() && dialogue->client.idle();
+    return dialogue->step == identity_objects.size() && dialogue->client.idle();
   });
 }
 
@@ -57,8 +57,8 @@ void BusScan::on_time(Time now, Outbox& out) {
 void BusScan::go_on(Dialogue& dialogue, Time now, Outbox& out) {
   dialogue.client.on_time(now, out);
   if (const auto result = dialogue.client.take_result()) take(dialogue, *result);
-  if (dialogue.client.idle() && dialogue.step < questions.size()) {
-    dialogue.client.upload(questions[dialogue.step], dialogue.buffer, timeout_);
+  if (dialogue.client.idle() && dialogue.step < identity_objects.size()) {
+    dialogue.client.upload(identity_objects[dialogue.step], dialogue.buffer, timeout_);
   }
   dialogue.client.on_time(now, out);
 }
@@ -73,7 +73,7 @@ Time BusScan::deadline() const noexcept {
 
 void BusScan::take(Dialogue& dialogue, const SdoResult& result) {
   if (result.fault == SdoFault::timeout) {
-    dialogue.step = questions.size();
+    dialogue.step = identity_objects.size();
     return;
   }
   ScannedNode& node = nodes_[dialogue.node.value()];

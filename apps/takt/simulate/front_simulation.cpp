@@ -30,9 +30,9 @@ std::vector<bool> nodes_of(const BusPlan& plan, std::size_t application, std::si
   return mine;
 }
 
-class Run {
+class FrontRun {
  public:
-  Run(const LoadedNetwork& network, const SimulationOptions& options)
+  FrontRun(const LoadedNetwork& network, const SimulationOptions& options)
       : plan_{network.plan},
         options_{options},
         random_{sim::Random{options.seed}.fork(20)},
@@ -166,7 +166,7 @@ class Run {
 }  // namespace
 
 SimulationOutcome simulate_front(const LoadedNetwork& network, const SimulationOptions& options) {
-  return std::make_unique<Run>(network, options)->run();
+  return std::make_unique<FrontRun>(network, options)->run();
 }
 
 }  // namespace takt

@@ -8,7 +8,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double us(Time time) { return static_cast<double>(time.count()) / 1e3; }
 double ms(Time time) { return static_cast<double>(time.count()) / 1e6; }
 
 Json cycles_json(const SimulationOutcome& outcome) {

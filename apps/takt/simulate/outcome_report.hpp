@@ -2,8 +2,12 @@
 #include <ostream>
 
 #include "apps/takt/simulate/simulation.hpp"
+#include "eds_parser/table/time.hpp"
 
 namespace takt {
+
+/// A time in microseconds.
+constexpr double us(Time time) noexcept { return static_cast<double>(time.count()) / 1e3; }
 
 void print_json(std::ostream& out, const SimulationOutcome& outcome);
 void print_text(std::ostream& out, const SimulationOutcome& outcome);

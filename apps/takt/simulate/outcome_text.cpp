@@ -11,7 +11,6 @@ namespace {
 
 constexpr std::size_t shown_events = 40;
 
-double us(Time time) { return static_cast<double>(time.count()) / 1e3; }
 double seconds(Time time) { return std::chrono::duration<double>(time).count(); }
 
 void print_bus(std::ostream& out, const SimulationOutcome& outcome) {

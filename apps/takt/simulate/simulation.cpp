@@ -14,9 +14,9 @@ namespace takt {
 namespace {
 
 /// One run of the bus thread without a front thread.
-class Run {
+class BusRun {
  public:
-  Run(const LoadedNetwork& network, const SimulationOptions& options)
+  BusRun(const LoadedNetwork& network, const SimulationOptions& options)
       : plan_{network.plan},
         options_{options},
         log_{network.plan, options.candump},
@@ -75,7 +75,7 @@ class Run {
 
 SimulationOutcome simulate(const LoadedNetwork& network, const SimulationOptions& options) {
   if (options.applications != 0) return simulate_front(network, options);
-  return std::make_unique<Run>(network, options)->run();
+  return std::make_unique<BusRun>(network, options)->run();
 }
 
 }  // namespace takt

@@ -22,12 +22,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time calm = 2s;  // before the first fault; all nodes boot, and all axes move
-constexpr Time time_to_recover = 60s;
+constexpr Time front_calm = 2s;  // before the first fault; all nodes boot, and all axes move
+constexpr Time front_recovery = 60s;
 constexpr Time longest_pause = 21ms;  // longest result of pause_before_image, plus a step
 constexpr Time usual_jitter = 320us;  // jitter of the master's SYNC
 constexpr std::size_t most_applications = 3;
-constexpr std::array<Time, 3> latenesses{0us, 60us, 300us};
+constexpr std::array<Time, 3> front_latenesses{0us, 60us, 300us};
 
 /// Returns the nodes of one application: every `step`-th one, from `first` on.
 std::vector<bool> every(std::size_t nodes, std::size_t first, std::size_t step) {
@@ -37,13 +37,15 @@ std::vector<bool> every(std::size_t nodes, std::size_t first, std::size_t step) 
 }
 
 /// Returns the bus faults. Only half of the runs, those with an even seed, have any.
-sim::Faults faults_of(const BusPlan& plan, const SoakOptions& options) {
+sim::Faults front_faults(const BusPlan& plan, const SoakOptions& options) {
   if (options.seed % 2 != 0) return {};
-  return fault_walk(plan, sim::Random{options.seed}.fork(11), calm, calm + options.duration);
+  return fault_walk(plan, sim::Random{options.seed}.fork(11), front_calm,
+                    front_calm + options.duration);
 }
 
 sim::RemotePortOptions port_options(const BusPlan& plan, const SoakOptions& options) {
-  const Time late = latenesses[sim::Random{options.seed}.fork(12).below(latenesses.size())];
+  const Time late =
+      front_latenesses[sim::Random{options.seed}.fork(12).below(front_latenesses.size())];
   return {.sync = plan.cycle.sync_cob_id, .wake_jitter = late, .spin_jitter = late / 16};
 }
 
@@ -54,9 +56,9 @@ BusPlan daemon_plan(const BusPlan& plan, const FrontMeddle& meddle) {
   return copy;
 }
 
-class Run {
+class FrontWalk {
  public:
-  Run(const LoadedNetwork& network, const SoakOptions& options)
+  FrontWalk(const LoadedNetwork& network, const SoakOptions& options)
       : plan_{network.plan},
         options_{options},
         random_{sim::Random{options.seed}.fork(10)},
@@ -64,7 +66,7 @@ class Run {
         world_{network.devices,
                {.seed = options.seed,
                 .bitrate = plan_.bitrate,
-                .faults = faults_of(plan_, options),
+                .faults = front_faults(plan_, options),
                 .power_on_spread = 100ms}},
         wire_{plan_, world_, verdict_},
         stop_{plan_, world_, verdict_},
@@ -84,8 +86,8 @@ class Run {
         rival_{make_application("axes 0", 7, applications_.front()->nodes())},
         troubles_{{world_, lcm_, clocks_, daemon_, applications_, *rival_, forger_},
                   random_.fork(4),
-                  calm,
-                  calm + options.duration,
+                  front_calm,
+                  front_calm + options.duration,
                   options.verbose} {
     world_.observe(&listener_);
     daemon_.hear({.image = [this](const ImageView& image, Time now) { judge_wait(image, now); },
@@ -106,7 +108,7 @@ class Run {
   SoakOutcome run() {
     daemon_.start();
     for (const auto& application : applications_) application->start();
-    const Time end = calm + options_.duration;
+    const Time end = front_calm + options_.duration;
     while (world_.now() < end && verdict_.good()) cycle();
     if (verdict_.good()) settle();
     if (verdict_.good()) stop();
@@ -212,7 +214,7 @@ class Run {
 
   /// Runs on without new faults and checks that each application moves its axes again.
   void settle() {
-    const Time limit = world_.now() + time_to_recover;
+    const Time limit = world_.now() + front_recovery;
     const auto leads = [&](const auto& application) {
       return world_.now() - wire_.last_move(SenderBit{1} << application->number()) < 100ms ||
              !has_axes(*application);
@@ -297,7 +299,7 @@ class Run {
 }  // namespace
 
 SoakOutcome soak_front(const LoadedNetwork& network, const SoakOptions& options) {
-  return std::make_unique<Run>(network, options)->run();
+  return std::make_unique<FrontWalk>(network, options)->run();
 }
 
 }  // namespace takt::soak

@@ -43,9 +43,9 @@ sim::RemotePortOptions port_options(const LoadedNetwork& network, const SoakOpti
 }
 
 /// One run: the simulated world, the master, its users and the judges.
-class Run {
+class BusWalk {
  public:
-  Run(const LoadedNetwork& network, const SoakOptions& options)
+  BusWalk(const LoadedNetwork& network, const SoakOptions& options)
       : plan_{network.plan},
         options_{options},
         random_{options.seed},
@@ -196,7 +196,7 @@ SoakCounts& SoakCounts::operator+=(const SoakCounts& other) noexcept {
 
 SoakOutcome soak(const LoadedNetwork& network, const SoakOptions& options) {
   if (options.verbose) report_faults(network.plan, options);
-  return std::make_unique<Run>(network, options)->run();
+  return std::make_unique<BusWalk>(network, options)->run();
 }
 
 }  // namespace takt::soak

@@ -8,7 +8,7 @@
 namespace takt {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 using Failure = std::unexpected<std::string>;
 
 /// A key of a request, and how a number of its array gets into a task.

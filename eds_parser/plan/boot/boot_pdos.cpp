@@ -4,7 +4,6 @@ namespace takt {
 namespace {
 
 constexpr std::uint32_t all_but_rtr = 0xBFFF'FFFF;
-constexpr std::uint32_t valid_bit = 0x8000'0000;
 
 class PdoBoot : BootPart {
  public:
@@ -21,8 +20,8 @@ class PdoBoot : BootPart {
 
   void switch_off() {
     if (!steps.has(cob_id_key())) return;
-    steps.integer(BootAction::compare, cob_id_key(), valid_bit, pdo_.label() + " off?").mask =
-        valid_bit;
+    steps.integer(BootAction::compare, cob_id_key(), cob_id_off, pdo_.label() + " off?").mask =
+        cob_id_off;
     const std::size_t skip = steps.skip_if_same(pdo_.label() + " is off");
     disable();
     steps.land(skip);

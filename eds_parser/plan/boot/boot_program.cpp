@@ -11,7 +11,6 @@ constexpr Time flash_time = std::chrono::seconds{60};  // longest time of erasin
 // Longest time until the boot loader has started the program.
 constexpr Time start_time = std::chrono::seconds{10};
 // Longest time between two answers of the download.
-constexpr Time segment_time = std::chrono::seconds{5};
 
 enum class Command : std::uint8_t { stop = 0, start = 1, clear = 3 };
 

@@ -1,9 +1,11 @@
 #pragma once
+#include <chrono>
 #include <cstdint>
 #include <string>
 
 #include "eds_parser/plan/boot/boot_compiler.hpp"
 #include "eds_parser/plan/boot/boot_steps.hpp"
+#include "eds_parser/table/time.hpp"
 
 namespace takt {
 
@@ -24,6 +26,9 @@ struct BootPart {
   bool takes(ObjectKey key, std::int64_t value, SourcePos pos,
              const std::string& consequence) const;
 };
+
+/// Longest time between two answers of a device during a download in segments.
+inline constexpr Time segment_time = std::chrono::seconds{5};
 
 // The sections of the boot of a node, in the order in which they are appended.
 

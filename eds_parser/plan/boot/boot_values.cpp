@@ -17,8 +17,6 @@ namespace {
 
 constexpr std::uint32_t refuse_write_on_download = 1;
 constexpr std::size_t longest_compared = 256;
-// Longest time between two answers of a download.
-constexpr Time segment_time = std::chrono::seconds{5};
 
 /// Returns true for objects that other parts of the boot set, and for objects that only a person
 /// should write.

@@ -17,8 +17,6 @@ std::string model_of(const NodeSource& node) {
   return profile == 406 ? "encoder406" : "plain";
 }
 
-constexpr std::uint64_t pdo_off = 0x8000'0000;
-
 bool is_pdo_cob_id(ObjectKey key) {
   const bool communication =
       (key.index >= 0x1400 && key.index <= 0x15FF) || (key.index >= 0x1800 && key.index <= 0x19FF);
@@ -46,7 +44,7 @@ DeviceObject object_of(std::uint16_t index, const SubObject& sub) {
   if (value) {
     object.value = to_bytes(*value, sub.type);
   } else if (is_pdo_cob_id(object.key)) {
-    object.value = to_bytes(Value{pdo_off}, DataType::unsigned32);
+    object.value = to_bytes(Value{std::uint64_t{cob_id_off}}, DataType::unsigned32);
   } else {
     object.value.resize(byte_width(sub.type));
   }

@@ -3,7 +3,6 @@
 namespace takt {
 namespace {
 
-constexpr std::uint32_t off_bit = 0x8000'0000;
 constexpr std::uint32_t no_rtr_bit = 0x4000'0000;
 constexpr std::uint32_t extended_bit = 0x2000'0000;
 constexpr std::uint32_t identifier = 0x1FFF'FFFF;
@@ -33,10 +32,10 @@ FileCobId read_cob_id_bits(const PdoSpec& spec, bool is_tpdo, const std::string&
   const std::uint32_t id = raw & identifier;
   const bool extended = (raw & extended_bit) != 0;
   const std::string cob_id = "`cob_id` " + hex(raw) + " of " + owner;
-  if ((raw & off_bit) != 0) {
+  if ((raw & cob_id_off) != 0) {
     report.warning(spec.cob_id.pos, "cob-id", cob_id,
                    " has bit 31 set: the PDO is switched off, as with `enabled: false`; ",
-                   hex(raw & ~off_bit, 3), " switches the PDO on");
+                   hex(raw & ~cob_id_off, 3), " switches the PDO on");
     return {.off = true, .id = {}};
   }
   if (!extended && id > highest_base) {

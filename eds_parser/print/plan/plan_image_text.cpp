@@ -7,8 +7,6 @@
 namespace takt {
 namespace {
 
-std::string number(double value) { return fmt::format("{:.6g}", value); }
-
 std::string fallback_text(const Signal& signal) {
   if (signal.fallback == Fallback::hold) return "held";
   const bool controlword = signal.object.index % 0x800 == 0x40 && signal.bits == 16;
@@ -29,8 +27,8 @@ std::string output_text(const BusPlan& plan, const Signal& signal) {
 
 std::string unit_text(const Signal& signal) {
   if (signal.unit.empty() && signal.scale == 1.0 && signal.offset == 0.0) return {};
-  return fmt::format("  x {}{} {}", number(signal.scale),
-                     signal.offset == 0.0 ? "" : " + " + number(signal.offset), signal.unit);
+  return fmt::format("  x {}{} {}", number_text(signal.scale),
+                     signal.offset == 0.0 ? "" : " + " + number_text(signal.offset), signal.unit);
 }
 
 }  // namespace

@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <string>
 
+#include "eds_parser/print/plan/plan_names.hpp"
 #include "eds_parser/print/plan/plan_sections.hpp"
 #include "eds_parser/table/output_limits.hpp"
 
 namespace takt {
 namespace {
-
-std::string number(double value) { return fmt::format("{:.6g}", value); }
 
 std::string owner(const BusPlan& plan, const LimitLine& line) {
   const std::string& node = plan.nodes[line.node_index].name;
@@ -23,11 +22,11 @@ std::string value(const LimitLine& line) {
   if (!line.low && !line.high) {
     text = "as the device says";
   } else if (!bounds) {
-    text = number(line.high.value_or(0.0));
+    text = number_text(line.high.value_or(0.0));
   } else if (line.low && line.high) {
-    text = number(*line.low) + " .. " + number(*line.high);
+    text = number_text(*line.low) + " .. " + number_text(*line.high);
   } else {
-    text = line.low ? "from " + number(*line.low) : "up to " + number(*line.high);
+    text = line.low ? "from " + number_text(*line.low) : "up to " + number_text(*line.high);
   }
   return line.unit.empty() ? text : text + " " + line.unit;
 }

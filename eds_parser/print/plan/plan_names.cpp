@@ -68,6 +68,8 @@ std::string value_text(const BootStep& step) {
   return pairs;
 }
 
+std::string number_text(double value) { return fmt::format("{:.6g}", value); }
+
 std::string us_text(Time time) { return fmt::format("{} us", time / 1us); }
 
 std::string span_text(Time time) {

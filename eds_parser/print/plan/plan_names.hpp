@@ -15,6 +15,8 @@ std::string_view action_name(BootAction action) noexcept;
 std::string_view command_name(NmtCommand command) noexcept;
 /// Formats the value of a step as a number (up to 8 bytes) or as hex pairs.
 std::string value_text(const BootStep& step);
+/// Formats a value of the network file with at most six digits.
+std::string number_text(double value);
 /// Formats a time in microseconds without fraction, for example `2000 us`.
 std::string us_text(Time time);
 /// Formats a time in milliseconds; below 10 ms in microseconds if it has a fraction.

@@ -130,7 +130,7 @@ struct Command {
   AsciiVerb verb;
   Reader read;
 };
-constexpr Command commands[] = {
+constexpr Command command_table[] = {
     {"r", "read", AsciiVerb::sdo_read, read_read},
     {"w", "write", AsciiVerb::sdo_write, read_write},
     {"start", "start", AsciiVerb::nmt, read_nmt<NmtCommand::start>},
@@ -147,7 +147,7 @@ constexpr Command commands[] = {
 
 Read<void> read_command(Words words, AsciiCommand& out) {
   const Word& name = words[0];
-  for (const Command& command : commands) {
+  for (const Command& command : command_table) {
     if (!is(name, command.short_form, command.full)) continue;
     out.verb = command.verb;
     return command.read(words, out);

@@ -12,7 +12,6 @@
 namespace takt {
 namespace {
 
-constexpr std::size_t longest_sender = 64;
 constexpr std::array<std::string_view, command_refusals> refusal_names{
     "observing", "schema",  "session",   "sender", "no_cycle", "future",   "bad_signal",
     "bad_value", "too_old", "not_ready", "held",   "waited",   "overtaken"};

@@ -9,6 +9,8 @@
 
 namespace takt {
 
+inline constexpr std::size_t longest_sender = 64;  ///< bytes of a sender's name
+
 /// Tells for how many cycles from cycle `now` on a command is valid. The shorter of the message's
 /// time to live and the configured limit applies. The limit counts from the cycle of the image that
 /// the command was computed from, so that a command that waited in a queue is old on arrival.

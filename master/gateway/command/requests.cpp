@@ -9,6 +9,7 @@
 
 #include "eds_parser/table/name_of.hpp"
 #include "master/core/lss/lss_command.hpp"
+#include "master/gateway/command/lease.hpp"
 #include "master/gateway/notice/notice.hpp"
 #include "master/lcm/messages.hpp"
 #include "master/lcm/printable_text.hpp"
@@ -22,7 +23,6 @@ using namespace std::chrono_literals;
 constexpr std::size_t most_known = 256;
 constexpr std::size_t most_heard = 64;
 constexpr std::size_t most_pending = 64;
-constexpr std::size_t longest_sender = 64;
 constexpr std::size_t longest_service = 32;
 /// Time after the answer. It is longer than the 11 s for which a copy of a request can be accepted:
 /// from 1 s before its utime until 10 s after it.

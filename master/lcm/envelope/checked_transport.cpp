@@ -7,11 +7,7 @@
 #include "master/lcm/channel_names.hpp"
 
 namespace takt {
-namespace {
-
-constexpr Time look_pause = std::chrono::seconds{1};
-
-}  // namespace
+namespace {}  // namespace
 
 CheckedTransport::CheckedTransport(std::unique_ptr<Transport> inner, WatchedKeyFile keys,
                                    std::function<Time()> wall)

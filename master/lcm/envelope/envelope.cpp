@@ -12,7 +12,6 @@ namespace takt {
 namespace {
 
 constexpr std::int16_t envelope_schema = 1;
-constexpr std::size_t mac_bytes = 32;
 using Mac = std::array<std::uint8_t, mac_bytes>;
 
 /// MAC over all bytes of an encoded envelope except the MAC itself, which comes last.

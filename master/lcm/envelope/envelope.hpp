@@ -20,6 +20,8 @@ consteval std::string_view message_layout<envelope_t>() {
   return "lhlllssn(b)bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb";
 }
 
+inline constexpr std::size_t mac_bytes = 32;  ///< length of the MAC at the end of an envelope
+
 /// Puts messages into envelopes, on the side of the sender. One thread.
 class EnvelopeSeal {
  public:

@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <cstdint>
 #include <expected>
 #include <optional>
@@ -7,6 +8,8 @@
 #include <sys/stat.h>
 #include <takt/lcm.hpp>
 #include <vector>
+
+#include "eds_parser/table/time.hpp"
 
 namespace takt {
 
@@ -18,6 +21,9 @@ std::expected<std::vector<EnvelopeKey>, std::string> parse_keys(const std::strin
 /// Creates a file with one new random key, mode 0600. Fails if the file already exists, and leaves
 /// it unchanged.
 std::expected<void, std::string> make_key_file(const std::string& path, const std::string& name);
+
+/// Whoever uses a key file looks this often whether it has changed.
+inline constexpr Time look_pause = std::chrono::seconds{1};
 
 /// A key file that may change while it is in use.
 class WatchedKeyFile {

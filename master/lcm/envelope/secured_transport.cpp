@@ -11,10 +11,8 @@
 namespace takt {
 namespace {
 
-constexpr Time look_pause = std::chrono::seconds{1};
 constexpr Time echo_limit = std::chrono::milliseconds{50};
 constexpr std::size_t most_opened = 64;
-constexpr std::size_t mac_bytes = 32;
 
 }  // namespace
 

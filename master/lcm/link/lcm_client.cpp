@@ -11,11 +11,7 @@
 #include "master/linux/clock.hpp"
 
 namespace takt {
-namespace {
-
-constexpr std::chrono::milliseconds hub_answer_limit{200};
-
-}  // namespace
+namespace {}  // namespace
 
 std::expected<LcmClient, std::string> LcmClient::open(
     const std::string& url, const std::vector<std::string>& patterns,

@@ -13,7 +13,6 @@ namespace takt {
 namespace {
 
 constexpr std::chrono::seconds retry_pause{5};
-constexpr std::chrono::milliseconds hub_answer_limit{200};
 
 constexpr const char* by_environment =
     ". LCM_DEFAULT_URL names it: the program that serves this port sees and can change every "

@@ -41,6 +41,9 @@ class TcpqClient final : public Transport {
   FrontClock clock_;
 };
 
+/// A hub on this machine answers within this time.
+inline constexpr std::chrono::milliseconds hub_answer_limit{200};
+
 /// Returns true if a server of the tcpq:// protocol answers at this address. Waits at most `limit`.
 bool tcpq_server_answers(const std::string& address, std::uint16_t port,
                          std::chrono::milliseconds limit);

@@ -21,7 +21,7 @@
 namespace takt {
 namespace {
 
-constexpr std::size_t batch_frames = 128;
+constexpr std::size_t news_batch_frames = 128;
 constexpr int batches_a_poll = 32;
 constexpr Time look_again = std::chrono::seconds{1};
 
@@ -57,8 +57,8 @@ struct DiagnosticSocket::State {
   Time next_look{};
   HeardTraffic traffic;
   std::uint64_t lost_before = 0;  // lost on previous sockets
-  MessageBatch<can_frame, batch_frames, can_control_bytes> can;
-  MessageBatch<UnixBusRecord, batch_frames, 0> unix_bus;
+  MessageBatch<can_frame, news_batch_frames, can_control_bytes> can;
+  MessageBatch<UnixBusRecord, news_batch_frames, 0> unix_bus;
 
   bool connect() {
     lost_before = traffic.lost;
@@ -68,8 +68,8 @@ struct DiagnosticSocket::State {
     return static_cast<bool>(socket);
   }
   int receive() noexcept {
-    return name.kind == BusName::Kind::unix_path ? unix_bus.receive(socket.get(), batch_frames)
-                                                 : can.receive(socket.get(), batch_frames);
+    return name.kind == BusName::Kind::unix_path ? unix_bus.receive(socket.get(), news_batch_frames)
+                                                 : can.receive(socket.get(), news_batch_frames);
   }
   void take_can(std::size_t i, Time offset, Time now, const OnFrame& on_frame);
   void take_unix(std::size_t i, const OnFrame& on_frame);

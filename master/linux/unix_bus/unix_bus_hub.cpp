@@ -28,7 +28,7 @@ namespace takt {
 namespace {
 
 constexpr std::size_t max_clients = 64;
-constexpr std::size_t batch_frames = 64;
+constexpr std::size_t client_batch_frames = 64;
 constexpr int takeover_poll_ms = 20;
 constexpr int most_takeovers = 25;  // so many times, a program may find the path taken at its start
 /// After an accept() that failed, for example because no descriptor is left, the client waits in
@@ -103,8 +103,8 @@ class UnixBusHub::Impl {
   sockaddr_un address_;
   Time accept_again_{};
   std::vector<Client> clients_;
-  MessageBatch<UnixBusRecord, batch_frames, 0> in_;
-  MessageBatch<UnixBusRecord, batch_frames, 0> out_;
+  MessageBatch<UnixBusRecord, client_batch_frames, 0> in_;
+  MessageBatch<UnixBusRecord, client_batch_frames, 0> out_;
   std::atomic<bool> hosting_{false};
   std::thread thread_;
 };
@@ -209,7 +209,7 @@ bool UnixBusHub::Impl::accept_client() {
 /// A client that ends without having read everything resets its connection. The frames that it sent
 /// can still be read after that error.
 void UnixBusHub::Impl::forward_from(Client& sender) {
-  const int got = in_.receive(sender.socket.get(), batch_frames);
+  const int got = in_.receive(sender.socket.get(), client_batch_frames);
   if (got < 0) {
     sender.gone = errno != EAGAIN && errno != EINTR && errno != ECONNRESET;
     return;

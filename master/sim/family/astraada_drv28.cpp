@@ -9,7 +9,6 @@ constexpr std::uint16_t request = 0x2100;
 constexpr std::uint16_t response = 0x2000;
 constexpr std::uint16_t commands = 0x2101;
 constexpr std::uint16_t states = 0x2001;
-constexpr std::uint8_t first_free_word = 3;
 
 constexpr std::uint64_t read_value = 1;
 constexpr std::uint64_t write_ram = 2;

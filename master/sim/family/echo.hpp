@@ -5,6 +5,9 @@
 
 namespace takt::sim {
 
+/// Sub-index of the first process word of an inverter behind control or status word and speed.
+inline constexpr std::uint8_t first_free_word = 3;
+
 /// Copies received values back to the bus: the sub-indices from `first` on of `from` to those of
 /// `to`.
 inline void echo(ObjectStore& store, std::uint16_t from, std::uint16_t to,

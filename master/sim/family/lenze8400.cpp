@@ -8,7 +8,6 @@ namespace {
 
 constexpr std::uint16_t words_in = 0x5C9D;
 constexpr std::uint16_t words_out = 0x5C9B;
-constexpr std::uint8_t first_free_word = 3;
 constexpr ObjectKey code_sync_in{0x5E90, 0};   // C00367: index 0x5FFF - number
 constexpr ObjectKey code_sync_out{0x5E8F, 0};  // C00368
 

@@ -11,12 +11,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t socket_room = 300;      // messages
-constexpr std::int64_t stride = 16;           // counts per command; low bits identify the program
-constexpr std::int64_t downwards = 8;         // the low bit that marks a falling position
-constexpr std::int64_t most_push = 100;       // per mille of the rated torque
-constexpr std::int64_t push_velocity = 4;     // counts per second for each unit of push
-constexpr std::uint64_t images_a_reset = 60;  // between fault resets, which take several images
+constexpr std::size_t application_room = 300;  // messages
+constexpr std::int64_t stride = 16;            // counts per command; low bits identify the program
+constexpr std::int64_t downwards = 8;          // the low bit that marks a falling position
+constexpr std::int64_t most_push = 100;        // per mille of the rated torque
+constexpr std::int64_t push_velocity = 4;      // counts per second for each unit of push
+constexpr std::uint64_t images_a_reset = 60;   // between fault resets, which take several images
 constexpr std::uint16_t from_target_to_offset = 0x60B0 - 0x607A;
 constexpr double turn_before = 2000;   // distance from a limit, in counts
 constexpr Time longest_deafness = 3s;  // the layout is published once a second
@@ -28,7 +28,7 @@ VirtualApplication::VirtualApplication(const BusPlan& plan, VirtualLcm& lcm,
     : plan_{plan},
       options_{std::move(options)},
       random_{random},
-      lcm_{lcm.join(socket_room)},
+      lcm_{lcm.join(application_room)},
       channels_{plan.name} {}
 
 void VirtualApplication::start() {

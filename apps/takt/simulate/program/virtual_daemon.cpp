@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t socket_room = 400;  // messages: 200 kB, the default of a Linux socket
+constexpr std::size_t daemon_room = 400;  // messages: 200 kB, the default of a Linux socket
 constexpr Time longest_step = 60us;       // longest step of the front thread's round
 constexpr Time longest_wake_up = 80us;
 
@@ -30,7 +30,7 @@ VirtualDaemon::VirtualDaemon(const BusPlan& plan, StagedPort& port, VirtualLcm& 
       port_{port},
       clocks_{clocks},
       random_{random},
-      lcm_{lcm.join(socket_room)},
+      lcm_{lcm.join(daemon_room)},
       transport_{lcm_, Channels{plan.name}.command} {}
 
 void VirtualDaemon::start() {

@@ -22,7 +22,7 @@ constexpr Time longest_gap = 50ms;
 constexpr double fewest_cycles = 3;           // lower limit of longest_gap in cycles
 constexpr double clear_part = 0.2;            // part of a cycle that a wake-up may be late
 constexpr double cycles_behind = 4;           // age of the actual position that the master knows
-constexpr unsigned cycles_of_doubt = 8;       // age of the axis state that the master knows
+constexpr unsigned state_doubt = 8;           // age of the axis state that the master knows
 constexpr std::size_t fewest_remembered = 8;  // positions kept even if they are old
 constexpr double real_rounding = 0x1p-20;     // relative rounding of a value of type REAL
 
@@ -78,7 +78,7 @@ void LimitJudge::begin_anew() {
     place.last_way.reset();
     place.news = News::none;
     place.enables = false;
-    place.doubt = cycles_of_doubt;
+    place.doubt = state_doubt;
   }
 }
 
@@ -114,7 +114,7 @@ void LimitJudge::note_input(SignalIndex signal, std::uint64_t bits) {
     if (place.limit->mode_display == signal && !place.limit->mode) note_mode(place, bits);
     if (place.limit->statusword != signal) continue;
     place.enabled = (bits & 0x6F) == 0x27;
-    if (!place.enabled) place.doubt = cycles_of_doubt;
+    if (!place.enabled) place.doubt = state_doubt;
   }
 }
 
@@ -125,7 +125,7 @@ void LimitJudge::note_order(SignalIndex signal, std::uint64_t bits) {
     if (place.limit->mode == signal) note_mode(place, bits);
     if (place.controlword != signal) continue;
     place.enables = (bits & 0x0F) == 0x0F;
-    if (!place.enables) place.doubt = cycles_of_doubt;
+    if (!place.enables) place.doubt = state_doubt;
   }
 }
 
@@ -142,7 +142,7 @@ bool LimitJudge::follows(const Place& place) const noexcept {
 
 void LimitJudge::note_mode(Place& place, std::uint64_t bits) noexcept {
   const auto mode = static_cast<std::int8_t>(bits);
-  if (mode != place.mode) place.mode_doubt = cycles_of_doubt;
+  if (mode != place.mode) place.mode_doubt = state_doubt;
   place.mode = mode;
 }
 
@@ -260,7 +260,7 @@ void LimitJudge::sent(SignalIndex index, std::uint64_t bits, bool begins) {
     if (place.limit->signal == index) {
       if (begins) {
         place.enables = false;
-        place.doubt = cycles_of_doubt;
+        place.doubt = state_doubt;
       }
       place.news = std::max(place.news, begins ? News::begins : News::value);
     } else if (place.limit->offset == index && place.news == News::none && place.value) {
@@ -316,7 +316,7 @@ void LimitJudge::judge_place(Place& place, News news, Time now) {
   if (news == News::value && value == place.value) return;
   ++judged_;
   const bool own = is_own(place);
-  if (own) place.doubt = cycles_of_doubt;
+  if (own) place.doubt = state_doubt;
   if (!own) judge_range(place, value);
   const bool free = own || in_profile(place) ||
                     (!follows(place) && place.limit->feedback && near_axis(place, value));

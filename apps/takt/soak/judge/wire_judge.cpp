@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 constexpr std::uint16_t target_position = 0x607A;
 constexpr Time longest_lease = 1s;         // upper limit for every command
 constexpr unsigned cycles_on_the_way = 4;  // longest way from the front thread to the wire
-constexpr unsigned cycles_of_doubt = 5;    // a lease may end this much early
+constexpr unsigned lease_doubt = 5;        // a lease may end this much early
 
 bool is_target(const Signal& signal) noexcept { return signal.object.index == target_position; }
 
@@ -41,7 +41,7 @@ void WireJudge::commanded(SignalIndex index, std::int64_t value, const SentComma
   known.computed_from = std::max(known.computed_from, command.computed_from);
   known.until = std::max(known.until, command.computed_from + span + cycles_on_the_way * period);
   known.held_until =
-      std::max(known.held_until, command.computed_from + span - cycles_of_doubt * period);
+      std::max(known.held_until, command.computed_from + span - lease_doubt * period);
 }
 
 void WireJudge::forged(SignalIndex signal, std::int64_t value) {
