@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 namespace takt {
@@ -29,7 +30,7 @@ std::optional<Time> parse_duration(std::string_view text) noexcept {
     if (unit != name) continue;
     const double time = number * factor;
     if (!(time <= longest)) return std::nullopt;
-    return Time{static_cast<Time::rep>(time + 0.5)};
+    return Time{std::llround(time)};
   }
   return std::nullopt;
 }

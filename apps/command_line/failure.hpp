@@ -8,6 +8,9 @@
 
 namespace takt {
 
+/// Exit code: the command line is wrong, or a file cannot be read.
+inline constexpr int wrong_use = 2;
+
 /// Ends a command of `takt`: main() prints the sentence, and the program ends with the exit code.
 struct Failure : std::runtime_error {
   explicit Failure(const std::string& sentence, int exit_code = 3, std::uint32_t abort = 0)

@@ -8,6 +8,7 @@
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/duration.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/known_words.hpp"
 #include "apps/command_line/live_arguments.hpp"
@@ -18,9 +19,7 @@
 namespace takt {
 namespace {
 
-constexpr int wrong_use = 2;
-
-struct Options {
+struct BudgetArguments {
   std::string file;
   std::vector<std::string> what_if;
   std::string device_time = "30us";
@@ -40,7 +39,7 @@ bool write_svg(const std::string& path, const BusPlan& plan, const BusBudget& bu
   return file.good();
 }
 
-int report(const Options& options, const LoadedNetwork& network, const WhatIf& changes,
+int report(const BudgetArguments& options, const LoadedNetwork& network, const WhatIf& changes,
            const BudgetOptions& how) {
   const BusPlan& plan = network.plan;
   BusBudget budget = bus_budget(plan, how);
@@ -104,7 +103,7 @@ int wrong_change(const std::string& text) {
       wrong_use);
 }
 
-int run(const Options& options) {
+int run(const BudgetArguments& options) {
   WhatIf changes;
   for (const auto& text : options.what_if) {
     if (!add_change(text, changes)) return wrong_change(text);
@@ -132,7 +131,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_budget(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BudgetArguments>();
   auto* verb = app.add_subcommand("budget", "tells whether the frames of a network fit its bus");
   verb->add_option("NET", options->file, "network file")->required();
   verb->add_option("--what-if", options->what_if,

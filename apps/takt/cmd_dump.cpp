@@ -34,8 +34,6 @@
 namespace takt {
 namespace {
 
-constexpr int usage = 2;
-
 constexpr const char* example = R"(Examples:
   takt dump --bus can0                 prints the frames that are on the bus now
   takt dump lift.yaml --bus can0       adds names, values and units of the network file
@@ -49,7 +47,7 @@ constexpr std::array<std::string_view, 15> services{
     "NMT",       "SYNC",  "TIME", "EMCY",   "TPDO", "RPDO",  "SDO", "BOOTUP",
     "HEARTBEAT", "GUARD", "LSS",  "MASTER", "GFC",  "ERROR", "?"};
 
-struct Options {
+struct DumpOptions {
   std::vector<std::string> files;
   std::string bus;
   std::uint64_t count = 0;  // 0 means no limit
@@ -89,7 +87,7 @@ bool is_network(const std::string& file) {
 class Printer {
  public:
   /// A `node` of 0 means all nodes.
-  Printer(const Options& options, unsigned node, const LoadedNetwork* network)
+  Printer(const DumpOptions& options, unsigned node, const LoadedNetwork* network)
       : options_{options},
         node_{node},
         reader_{network == nullptr ? std::make_unique<FrameText>()
@@ -138,7 +136,7 @@ class Printer {
     fmt::print("{}\n", json_text(out));
   }
 
-  const Options& options_;
+  const DumpOptions& options_;
   unsigned node_;
   std::unique_ptr<FrameText> reader_;
   std::uint64_t printed_ = 0;
@@ -165,7 +163,7 @@ void dump_log(std::istream& in, const std::string& name, Printer& printer) {
   if (frames == 0 && strange != 0) {
     throw Failure{
         name + ": holds no frame; `candump -L can0 > FILE` makes a recording that takt reads",
-        usage};
+        wrong_use};
   }
 }
 
@@ -173,7 +171,7 @@ void dump_file(const std::string& name, Printer& printer) {
   if (name == "-") return dump_log(std::cin, "stdin", printer);
   std::ifstream file{name};
   if (!file || std::filesystem::is_directory(name)) {
-    throw Failure{name + ": cannot be read: " + std::strerror(file ? EISDIR : errno), usage};
+    throw Failure{name + ": cannot be read: " + std::strerror(file ? EISDIR : errno), wrong_use};
   }
   dump_log(file, name, printer);
 }
@@ -229,21 +227,21 @@ void dump_bus(const std::string& bus, Printer& printer) {
   }
 }
 
-int run(const Options& options) {
+int run(const DumpOptions& options) {
   std::optional<LoadedNetwork> network;
   std::optional<std::string> log;
   for (const std::string& file : options.files) {
     if (is_network(file) && !network) {
       network = load_network(file);
-      if (print_findings(network->findings, Severity::error)) return usage;
+      if (print_findings(network->findings, Severity::error)) return wrong_use;
     } else if (!log) {
       log = file;
     } else {
-      throw Failure{"give at most one network file and one recording", usage};
+      throw Failure{"give at most one network file and one recording", wrong_use};
     }
   }
   if (log && !options.bus.empty()) {
-    throw Failure{"give either --bus or a recording, not both", usage};
+    throw Failure{"give either --bus or a recording, not both", wrong_use};
   }
   const LoadedNetwork* const names = network ? &*network : nullptr;
   const auto node = options.node.empty() ? std::optional{0U} : node_of(options.node, names);
@@ -251,7 +249,7 @@ int run(const Options& options) {
     throw Failure{"'" + options.node + "' is not a node id 1..127" +
                       (names == nullptr ? "; a name needs a network file"
                                         : " and not a node of the network file"),
-                  usage};
+                  wrong_use};
   }
   Printer printer{options, *node, names};
   if (log) {
@@ -263,7 +261,7 @@ int run(const Options& options) {
   } else if (network && !network->plan.interface.empty()) {
     dump_bus(network->plan.interface, printer);
   } else {
-    throw Failure{"no bus is given; use --bus can0, --bus unix:PATH, or a recording", usage};
+    throw Failure{"no bus is given; use --bus can0, --bus unix:PATH, or a recording", wrong_use};
   }
   return 0;
 }
@@ -271,7 +269,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_dump(CLI::App& app, int& exit_code) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<DumpOptions>();
   CLI::App* dump = app.add_subcommand("dump", "prints CAN frames with their CANopen meaning");
   dump->add_option("files", options->files,
                    "network file (.yaml), recording (.log, .trc, .asc; - for stdin)")

@@ -14,7 +14,7 @@
 namespace takt {
 namespace {
 
-struct Options {
+struct EdsCdcfOptions {
   std::string file;
   std::string out;
   unsigned node = 0;
@@ -37,7 +37,7 @@ std::size_t size_of(const std::vector<ConciseEntry>& entries) {
   return size;
 }
 
-int decode(const Options& options) {
+int decode(const EdsCdcfOptions& options) {
   const std::string content = value_or_fail(read_whole_file(options.file), 1);
   const auto entries = decode_concise_dcf(std::as_bytes(std::span{content}));
   if (!entries) return complain(options.file + ": the concise DCF " + entries.error(), 1);
@@ -52,7 +52,7 @@ int decode(const Options& options) {
   return 0;
 }
 
-int encode(const Options& options) {
+int encode(const EdsCdcfOptions& options) {
   const auto [entries, findings] =
       configured_values(read_eds_file(options.file, NodeId::from(options.node)));
   if (print_findings(findings, Severity::warning)) return 1;
@@ -69,7 +69,7 @@ int encode(const Options& options) {
 }  // namespace
 
 void add_eds_cdcf(CLI::App& eds, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EdsCdcfOptions>();
   auto* command = eds.add_subcommand(
       "cdcf", "converts a DCF to a concise DCF (0x1F22), or prints a concise DCF");
   command->add_option("FILE", options->file, "DCF, or with --decode a concise DCF")->required();

@@ -13,7 +13,7 @@
 namespace takt {
 namespace {
 
-struct Options {
+struct EdsDcfOptions {
   std::string file;
   std::string out;
   unsigned node = 0;
@@ -30,7 +30,7 @@ std::optional<DcfValue> parse_value(const std::string& argument) {
   return DcfValue{*object, argument.substr(equals + 1)};
 }
 
-int run(const Options& options) {
+int run(const EdsDcfOptions& options) {
   DcfOptions wanted{.node = NodeId::from(options.node), .node_name = options.name};
   if (options.out != "-") wanted.out_name = options.out;
   if (options.bitrate != 0) wanted.baudrate_kbit = static_cast<std::uint16_t>(options.bitrate);
@@ -49,7 +49,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_eds_dcf(CLI::App& eds, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EdsDcfOptions>();
   auto* command = eds.add_subcommand("dcf", "writes the DCF of one device");
   command->add_option("FILE", options->file, "EDS or DCF to start from")->required();
   add_node_id(*command, options->node, "node id of the device");

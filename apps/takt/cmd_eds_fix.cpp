@@ -15,7 +15,7 @@
 namespace takt {
 namespace {
 
-struct Options {
+struct EdsFixOptions {
   std::string file;
   std::string out;
   bool quiet = false;
@@ -31,13 +31,13 @@ std::optional<std::string> recoded(const std::string& source) {
 }
 
 /// Prints that the shown difference cannot be applied with `patch`.
-void report_unpatchable(const Options& options) {
+void report_unpatchable(const EdsFixOptions& options) {
   std::cerr << options.file << ": the file is UTF-16 and becomes UTF-8; the difference shows only "
             << "the text and can't be applied with patch; "
             << (options.out.empty() ? "-o writes the mended file\n" : "the output is complete\n");
 }
 
-int run(const Options& options) {
+int run(const EdsFixOptions& options) {
   const std::string source = value_or_fail(read_whole_file(options.file), 1);
   const FixedEds fixed = fix_eds(source, options.file);
   print_findings(fixed.left, options.quiet ? Severity::warning : Severity::note);
@@ -58,7 +58,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_eds_fix(CLI::App& eds, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EdsFixOptions>();
   auto* command = eds.add_subcommand("fix", "mends mistakes that can be read in only one way");
   command->add_option("FILE", options->file, "EDS or DCF")->required();
   command->add_option("-o,--output", options->out,

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ExportOptions {
   std::string file;
   std::string folder;
   bool whole_words = false;
@@ -25,17 +25,17 @@ struct Options {
 
 /// The files that one export writes: name and content of each.
 using Exported = std::vector<std::pair<std::string, std::string>>;
-using Export = Exported (*)(const LoadedNetwork& network, const Options& options);
+using Export = Exported (*)(const LoadedNetwork& network, const ExportOptions& options);
 
-Exported as_dbc(const LoadedNetwork& network, const Options& options) {
+Exported as_dbc(const LoadedNetwork& network, const ExportOptions& options) {
   return {{network.plan.name + ".dbc", to_dbc(network.plan, {.word_bits = !options.whole_words})}};
 }
 
-Exported as_header(const LoadedNetwork& network, const Options&) {
+Exported as_header(const LoadedNetwork& network, const ExportOptions&) {
   return {{network.plan.name + ".hpp", to_cpp_header(network.plan)}};
 }
 
-Exported as_lcm(const LoadedNetwork& network, const Options&) {
+Exported as_lcm(const LoadedNetwork& network, const ExportOptions&) {
   Exported files;
   for (const TypedMessage& message : typed_messages(network.plan)) {
     files.emplace_back(message.package + '_' + message.name + ".lcm",
@@ -44,14 +44,14 @@ Exported as_lcm(const LoadedNetwork& network, const Options&) {
   return files;
 }
 
-Exported as_json(const LoadedNetwork& network, const Options&) {
+Exported as_json(const LoadedNetwork& network, const ExportOptions&) {
   std::ostringstream text;
   print_plan_json(text, network.plan,
                   {.node = {}, .realtime = network.realtime, .lcm = network.lcm});
   return {{network.plan.name + ".json", std::move(text).str()}};
 }
 
-int run(const Options& options, Export make) {
+int run(const ExportOptions& options, Export make) {
   const LoadedNetwork network = load_network(options.file);
   if (print_findings(network.findings, Severity::warning)) return 2;
   std::error_code error;
@@ -65,7 +65,7 @@ int run(const Options& options, Export make) {
   return 0;
 }
 
-CLI::App* add(CLI::App& verb, const std::shared_ptr<Options>& options, int& exit_code,
+CLI::App* add(CLI::App& verb, const std::shared_ptr<ExportOptions>& options, int& exit_code,
               const std::string& name, const std::string& what, Export make) {
   auto* command = verb.add_subcommand(name, what);
   command->add_option("NET", options->file, "network file")->required();
@@ -84,7 +84,7 @@ void add_export(CLI::App& app, int& exit_code) {
   verb->footer(
       "takt export prints the names of the files that it wrote.\n\n"
       "Example:\n  takt export dbc lift.yaml -o out");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportOptions>();
   add(*verb, options, exit_code, "dbc", "writes the frames of the bus as a DBC for CAN tools",
       as_dbc)
       ->add_flag("--whole-words", options->whole_words,

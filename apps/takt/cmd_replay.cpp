@@ -15,8 +15,6 @@
 namespace takt {
 namespace {
 
-constexpr int usage = 2;
-
 constexpr const char* help =
     R"(FILE is any of the three files of a recording: NAME.log (frames, as `candump -L` writes them),
 NAME.events.json (decisions), NAME.journal (times). takt reads the frames from NAME.log: change a
@@ -29,7 +27,7 @@ Examples:
   takt replay lift-20260314T150926.log
   takt replay lift-20260314T150926.log --network lift.yaml --quiet)";
 
-struct Options {
+struct ReplayOptions {
   std::string file;
   std::string network;
   bool quiet = false;
@@ -42,7 +40,7 @@ void print(const Decision& decision) {
 
 /// Returns the network file: the one of the options, otherwise the path in the recording, otherwise
 /// a file of that name beside the recording.
-std::string find_network(const Options& options, const RecordingHead& head) {
+std::string find_network(const ReplayOptions& options, const RecordingHead& head) {
   if (!options.network.empty()) return options.network;
   std::error_code error;
   if (std::filesystem::exists(head.network, error)) return head.network;
@@ -51,16 +49,16 @@ std::string find_network(const Options& options, const RecordingHead& head) {
   return std::filesystem::exists(beside, error) ? beside.string() : head.network;
 }
 
-int run(const Options& options) {
-  const auto recording = value_or_fail(read_recording(options.file), usage);
-  if (recording.fault) throw Failure{options.file + ": " + *recording.fault, usage};
+int run(const ReplayOptions& options) {
+  const auto recording = value_or_fail(read_recording(options.file), wrong_use);
+  if (recording.fault) throw Failure{options.file + ": " + *recording.fault, wrong_use};
   const std::string file = find_network(options, recording.head);
   LoadedNetwork network = load_network(file);
   if (print_findings(network.findings, Severity::error)) {
-    if (!options.network.empty()) return usage;
+    if (!options.network.empty()) return wrong_use;
     throw Failure{"the recording needs the network file " + recording.head.network +
                       "; give it with --network",
-                  usage};
+                  wrong_use};
   }
   if (plan_fingerprint(network.plan) != recording.head.fingerprint) {
     complain(file + " or its EDS files have changed since the recording was made", 0);
@@ -81,7 +79,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_replay(CLI::App& app, int& exit_code) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReplayOptions>();
   CLI::App* command = app.add_subcommand(
       "replay", "runs a recording of the black box again and compares the decisions");
   command->add_option("FILE", options->file, "recording of `taktd --black-box`")->required();

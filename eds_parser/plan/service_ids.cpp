@@ -27,8 +27,8 @@ class ServiceIdCollector {
   }
 
  private:
-  void enter(CobId id, std::string is, const std::string& key, SourcePos pos) {
-    const auto [other, is_new] = ids_.try_emplace(id, std::move(is));
+  void enter(CobId id, const std::string& is, const std::string& key, SourcePos pos) {
+    const auto [other, is_new] = ids_.try_emplace(id, is);
     if (is_new) return;
     report_.error(pos, "cob-id-clash", key, " ", id, " ", other->second);
   }

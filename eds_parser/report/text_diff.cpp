@@ -4,6 +4,8 @@
 #include <map>
 #include <utility>
 
+#include "eds_parser/report/message.hpp"
+
 namespace takt {
 namespace {
 
@@ -192,9 +194,9 @@ std::string hunks_of(std::span<const DiffLine> lines, bool (*heading)(std::strin
       write(body, lines[at].text);
       pass(lines[at]);
     }
-    out += "@@ -" + range_text(first_before, before - first_before) + " +" +
-           range_text(first_after, after - first_after) + " @@" +
-           (hunk_title.empty() ? "" : ' ' + hunk_title) + '\n' + body;
+    out += concat("@@ -", range_text(first_before, before - first_before), " +",
+                  range_text(first_after, after - first_after), " @@",
+                  hunk_title.empty() ? "" : " ", hunk_title, "\n", body);
   }
   return out;
 }

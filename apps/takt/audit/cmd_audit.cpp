@@ -19,7 +19,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-struct Arguments {
+struct AuditArguments {
   std::string network;
   LiveOptions live;
   std::string bus;
@@ -52,7 +52,7 @@ std::vector<std::byte> read_by_daemon(DaemonClient& daemon, NodeId node, ObjectK
 }
 
 /// Returns how to read an object: directly on the bus, or through the daemon of the bus.
-ReadObject reader(const Arguments& arguments, const std::string& bus_name) {
+ReadObject reader(const AuditArguments& arguments, const std::string& bus_name) {
   const int timeout_ms = arguments.timeout_ms;
   if (!arguments.bus.empty()) {
     return [bus = arguments.bus, timeout_ms](NodeId node, ObjectKey key) {
@@ -77,7 +77,7 @@ void ask(const BusPlan& plan, std::vector<DeviceValues>& values, const ReadObjec
   if (!any) throw Failure{"no device of '" + plan.name + "' answers"};
 }
 
-int run(const Arguments& arguments) {
+int run(const AuditArguments& arguments) {
   const LoadedNetwork network = load_network(arguments.network);
   if (print_findings(network.findings, Severity::warning)) return 2;
   std::vector<DeviceValues> values;
@@ -99,7 +99,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_audit(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<AuditArguments>();
   auto* command = app.add_subcommand(
       "audit", "tells what devices do if the master, the cable or the bus fails");
   command->add_option("NET", arguments->network, "network file (YAML, also a bus.yml)")->required();

@@ -20,7 +20,7 @@
 namespace takt {
 namespace {
 
-struct Options {
+struct ImportOptions {
   std::string file;
   std::string out;
   unsigned network = 1;
@@ -30,12 +30,12 @@ struct Options {
 
 /// Returns true if the file is a nodelist. CiA 306-3 leaves the name free, so only the extension
 /// identifies it.
-bool is_nodelist(const Options& options) {
+bool is_nodelist(const ImportOptions& options) {
   const auto ending = std::filesystem::path{options.file}.extension().string();
   return ending == ".cpj" || ending == ".CPJ";
 }
 
-void print_json(const Options& options, const ImportReport& report) {
+void print_json(const ImportOptions& options, const ImportReport& report) {
   nlohmann::ordered_json keys = nlohmann::ordered_json::array();
   for (const ImportedKey& key : report.keys) {
     keys.push_back({{"key", key.path},
@@ -68,7 +68,7 @@ struct Imported {
 };
 
 /// Returns the last line of the report: the result for a nodelist.
-std::string last_line(const Options& options, const Imported& imported) {
+std::string last_line(const ImportOptions& options, const Imported& imported) {
   if (!imported.report.usable) {
     return imported.written ? options.out +
                                   " is written, but taktd does not run it: correct what is "
@@ -79,7 +79,7 @@ std::string last_line(const Options& options, const Imported& imported) {
                           : "`-o NET.yaml` writes the network file.";
 }
 
-void print_text(const Options& options, const Imported& imported) {
+void print_text(const ImportOptions& options, const Imported& imported) {
   const ImportReport& report = imported.report;
   fmt::print("{}: {} keys: {} used, {} ignored, {} suspicious, {} wrong\n", options.file,
              report.keys.size(), report.count(KeyFate::used), report.count(KeyFate::ignored),
@@ -108,7 +108,7 @@ void print_text(const Options& options, const Imported& imported) {
 
 /// Imports a nodelist and, if requested, writes the network file. The report then includes the
 /// findings about the network file.
-Imported import_project(const Options& options) {
+Imported import_project(const ImportOptions& options) {
   const std::filesystem::path out{options.out};
   auto imported = import_nodelist(
       options.file, options.network,
@@ -129,7 +129,7 @@ Imported import_project(const Options& options) {
   return {std::move(imported.report), written};
 }
 
-int run(const Options& options) {
+int run(const ImportOptions& options) {
   if (!is_nodelist(options) && !options.out.empty()) {
     return complain("-o is for a nodelist.cpj: taktd runs a bus.yml as it is", 2);
   }
@@ -147,7 +147,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_import(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ImportOptions>();
   auto* command =
       app.add_subcommand("import", "tells how takt reads a bus.yml; converts a nodelist.cpj");
   command

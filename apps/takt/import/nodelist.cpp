@@ -137,9 +137,9 @@ class Importer {
     return found;
   }
 
-  void wrong(SourcePos pos, std::string_view rule, std::string message) {
+  void wrong(SourcePos pos, std::string_view rule, const std::string& message) {
     wrong_ = true;
-    report_.error(pos, rule, std::move(message));
+    report_.error(pos, rule, message);
   }
 
   std::size_t add(const IniEntry& entry, KeyFate fate, std::string why) {

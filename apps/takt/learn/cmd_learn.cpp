@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct LearnArguments {
   std::string log;
   std::string out;
   std::vector<std::string> files;
@@ -44,7 +44,7 @@ bool add_file(const std::string& argument, DeviceFiles& files, Findings& finding
   return files.add_file(argument, findings);
 }
 
-std::optional<LearnedBus> listen(const Options& options) {
+std::optional<LearnedBus> listen(const LearnArguments& options) {
   if (options.log == "-") return read_recording(std::cin, "stdin", options.interface);
   std::ifstream file{options.log, std::ios::binary};
   std::error_code ignored;
@@ -62,7 +62,7 @@ int judge(const std::string& file) {
   return 1;
 }
 
-int run(const Options& options) {
+int run(const LearnArguments& options) {
   DeviceFiles files;
   Findings findings;
   bool good = true;
@@ -107,7 +107,7 @@ int run(const Options& options) {
 }  // namespace learn
 
 void add_learn(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<learn::Options>();
+  auto options = std::make_shared<learn::LearnArguments>();
   auto* command =
       app.add_subcommand("learn", "makes a network file from a recorded boot of another master");
   command

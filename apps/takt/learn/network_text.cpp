@@ -197,7 +197,7 @@ class NetworkText {
         if ((*id & 0x2000'0000U) == 0) sync_.cob_id = static_cast<std::uint32_t>(*id & 0x7FFU);
         if ((*id & makes_sync) != 0) sync_.producer = node->id;
       }
-      if (const auto us = at(0x1006); us && *us != 0) period = *us;
+      if (const auto us = at(0x1006); us && *us != 0) period = us;
       if (const auto window = at(0x1007)) sync_.window_us = window;
       if (const auto overflow = at(0x1019)) ++overflows[*overflow];
     }

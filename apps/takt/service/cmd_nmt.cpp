@@ -42,7 +42,7 @@ int run_on_bus(const NmtOptions& options) {
 
 /// Returns how long to wait for the answer. The daemon sends a command that ends the PDO exchange
 /// only after it has stopped the axes in order.
-std::chrono::seconds patience(const std::string& command) {
+std::chrono::seconds reply_limit(const std::string& command) {
   const bool after_axes = command == "stop" || command == "preop";
   return std::chrono::seconds{after_axes ? 65 : 3};  // `stop_timeout` is at most 60 s
 }
@@ -55,7 +55,7 @@ int run(const NmtOptions& options) {
   request_t request =
       make_request("nmt", !listed && id ? std::int16_t{id->value()} : daemon.node(options.node));
   request.nmt_command = static_cast<std::int16_t>(commands.at(options.command));
-  daemon.demand(std::move(request), patience(options.command));
+  daemon.demand(std::move(request), reply_limit(options.command));
   return 0;
 }
 

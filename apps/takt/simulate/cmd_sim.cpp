@@ -18,7 +18,7 @@
 namespace takt {
 namespace {
 
-struct Arguments {
+struct SimArguments {
   std::string network;
   std::string bus;
   std::vector<std::string> only;
@@ -28,7 +28,7 @@ struct Arguments {
 };
 
 /// Returns all devices, or those that `--only` names. Throws a Failure if a name is unknown.
-std::vector<DeviceTable> chosen(const LoadedNetwork& network, const Arguments& arguments) {
+std::vector<DeviceTable> chosen(const LoadedNetwork& network, const SimArguments& arguments) {
   if (arguments.only.empty()) return network.devices;
   std::vector<DeviceTable> devices;
   for (const std::string& wanted : arguments.only) {
@@ -59,7 +59,7 @@ int run_world(sim::RealtimeWorld& world, std::optional<Time> limit) {
   return failed ? 3 : 0;
 }
 
-int run(const Arguments& arguments) {
+int run(const SimArguments& arguments) {
   const LoadedNetwork network = load_network(arguments.network);
   if (print_findings(network.findings)) return 2;
   const std::vector<DeviceTable> devices = chosen(network, arguments);
@@ -77,7 +77,7 @@ int run(const Arguments& arguments) {
     throw Failure{"the network file names no interface; give one: --bus vcan0", 2};
   }
   DeviceChannel channel{value_or_fail(takt::FrameChannel::open(bus), 3)};
-  sim::RealtimeWorld world{devices, std::move(options), channel};
+  sim::RealtimeWorld world{devices, options, channel};
   std::cerr << "takt sim: " << devices.size() << " devices on " << bus << '\n';
   return run_world(world, parse_duration(arguments.run_for));
 }
@@ -85,7 +85,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_sim(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SimArguments>();
   auto* command = app.add_subcommand("sim", "simulates devices on a CAN interface in real time");
   command->add_option("NET.yaml", arguments->network, "network file")->required();
   add_bus(*command, arguments->bus, "vcan0, can0 or unix:PATH");

@@ -13,7 +13,7 @@
 namespace takt {
 namespace {
 
-struct Arguments {
+struct SimulateArguments {
   std::string network;
   std::string run_for = "10s";
   std::string faults;
@@ -22,7 +22,7 @@ struct Arguments {
   bool json = false;
 };
 
-int run(Arguments& arguments) {
+int run(SimulateArguments& arguments) {
   const LoadedNetwork network = load_network(arguments.network);
   if (print_findings(network.findings)) return 2;
   SimulationOptions& options = arguments.simulation;
@@ -53,7 +53,7 @@ int run(Arguments& arguments) {
 }  // namespace
 
 void add_simulate(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SimulateArguments>();
   auto* command = app.add_subcommand("simulate", "runs the master and its devices in virtual time");
   command->add_option("NET.yaml", arguments->network, "network file")->required();
   command->add_option("--for", arguments->run_for, "simulated time until the ordered stop")

@@ -19,7 +19,7 @@ namespace takt {
 namespace soak {
 namespace {
 
-struct Arguments {
+struct SoakArguments {
   std::string network;
   std::string seeds = "1..100";
   std::string run_for = "20s";
@@ -49,7 +49,7 @@ bool parse_seeds(const std::string& text, SoakPlan& plan) {
   return read.ec == std::errc{} && read.ptr == end && plan.first >= 1 && plan.last >= plan.first;
 }
 
-void announce(const Arguments& arguments, const SoakReport& report) {
+void announce(const SoakArguments& arguments, const SoakReport& report) {
   const SoakOutcome& outcome = report.outcome;
   std::cout << "seed " << outcome.seed << ": ";
   if (report.signal != 0) {
@@ -65,7 +65,7 @@ void announce(const Arguments& arguments, const SoakReport& report) {
             << std::endl;
 }
 
-int run(Arguments& arguments) {
+int run(SoakArguments& arguments) {
   const LoadedNetwork network = load_network(arguments.network);
   if (print_findings(network.findings)) return 2;
   SoakPlan& plan = arguments.plan;
@@ -114,7 +114,7 @@ int run(Arguments& arguments) {
 }  // namespace soak
 
 void add_soak(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<soak::Arguments>();
+  auto arguments = std::make_shared<soak::SoakArguments>();
   auto* command = app.add_subcommand(
       "soak", "runs random fault sequences in virtual time and checks invariants");
   command->add_option("NET.yaml", arguments->network, "network file")->required();

@@ -6,6 +6,7 @@
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/duration.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/takt/trajectory/trajectory_line.hpp"
 #include "apps/takt/trajectory/trajectory_plot.hpp"
@@ -14,9 +15,8 @@ namespace takt {
 namespace {
 
 constexpr int no_solution = 1;
-constexpr int wrong_use = 2;
 
-struct Options {
+struct TrajectoryArguments {
   std::string file = "-";
   std::string sample;
   std::string plot;
@@ -74,7 +74,7 @@ int plot(const std::string& path, const std::optional<TrajectoryAnswer>& answer)
   return file.good() ? 0 : complain("can't write " + path, wrong_use);
 }
 
-int run(const Options& options) {
+int run(const TrajectoryArguments& options) {
   std::optional<Time> sample;
   if (!options.sample.empty()) {
     sample = parse_duration(options.sample);
@@ -97,7 +97,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_trajectory(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TrajectoryArguments>();
   auto* verb = app.add_subcommand("trajectory", "plans trajectories without a bus");
   verb->add_option("FILE", options->file, "requests, one JSON object a line; - is stdin")
       ->capture_default_str();

@@ -5,7 +5,7 @@
 
 namespace takt::sim {
 
-FaultSchedule::FaultSchedule(Faults faults) {
+FaultSchedule::FaultSchedule(const Faults& faults) {
   for (const Fault& fault : faults) add(fault);
 }
 

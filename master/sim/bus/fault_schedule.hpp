@@ -16,7 +16,7 @@ class FaultSchedule {
     bool begins = true;
   };
 
-  explicit FaultSchedule(Faults faults);
+  explicit FaultSchedule(const Faults& faults);
   void add(const Fault& fault);
 
   Time next() const noexcept { return next_ < edges_.size() ? edges_[next_].at : never; }

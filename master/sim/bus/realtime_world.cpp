@@ -15,9 +15,9 @@ Time monotonic() noexcept {
 
 }  // namespace
 
-RealtimeWorld::RealtimeWorld(std::span<const DeviceTable> devices, WorldOptions options,
+RealtimeWorld::RealtimeWorld(std::span<const DeviceTable> devices, const WorldOptions& options,
                              FrameChannel& channel)
-    : world_{devices, std::move(options)},
+    : world_{devices, options},
       port_{world_.attach({.tx_queue = 4096, .rx_queue = 4096, .relays = true})},
       channel_{channel} {}
 

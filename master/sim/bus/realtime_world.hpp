@@ -16,7 +16,8 @@ namespace takt::sim {
 class RealtimeWorld {
  public:
   /// The channel must outlive this object.
-  RealtimeWorld(std::span<const DeviceTable> devices, WorldOptions options, FrameChannel& channel);
+  RealtimeWorld(std::span<const DeviceTable> devices, const WorldOptions& options,
+                FrameChannel& channel);
   ~RealtimeWorld();
   RealtimeWorld(const RealtimeWorld&) = delete;
   RealtimeWorld& operator=(const RealtimeWorld&) = delete;

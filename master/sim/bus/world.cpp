@@ -20,13 +20,13 @@ Fault quirk(FaultKind kind, NodeId node) {
 
 }  // namespace
 
-World::World(std::span<const DeviceTable> devices, WorldOptions options)
+World::World(std::span<const DeviceTable> devices, const WorldOptions& options)
     : random_{options.seed},
       first_bitrate_{options.bitrate},
       one_bit_rate_{options.one_bit_rate},
       bus_{options.bitrate, random_.fork(1)},
       timers_{devices.size() + 1},
-      schedule_{std::move(options.faults)} {
+      schedule_{options.faults} {
   words_ = devices.size() / 64 + 1;
   takers_.assign(2048 * words_, 0);
   for (const DeviceTable& table : devices) {

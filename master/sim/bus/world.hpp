@@ -33,7 +33,7 @@ struct WorldOptions {
 /// memory after construction, except the start of a fault with values.
 class World {
  public:
-  World(std::span<const DeviceTable> devices, WorldOptions options);
+  World(std::span<const DeviceTable> devices, const WorldOptions& options);
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;

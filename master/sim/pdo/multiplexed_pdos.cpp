@@ -8,7 +8,6 @@ constexpr std::uint16_t last_scanner = 0x1FCF;
 constexpr std::uint16_t first_dispatcher = 0x1FD0;
 constexpr std::uint16_t last_dispatcher = 0x1FFF;
 constexpr std::uint8_t destination = 0x80;  ///< with node-ID 0, the frame is for all nodes
-constexpr std::uint16_t too_short = 0x8210;
 constexpr std::uint16_t not_available = 0x8230;
 constexpr unsigned widest = 4;  ///< most data bytes in a frame
 

@@ -7,7 +7,6 @@
 namespace takt::sim {
 namespace {
 
-constexpr std::uint16_t too_short = 0x8210;
 constexpr std::uint16_t too_long = 0x8220;
 constexpr std::uint16_t overdue = 0x8250;
 
