@@ -1,16 +1,15 @@
 #!/bin/sh
 # test.sh - everything that CI runs, a line a stage; ends with the count and exit code 0 if all is good.
-#   TAKT_STAGES  only these of: format release asan tsan fuzz tidy mutation (without: all but tidy and mutation; tidy takes ten
-#                minutes of two processors where it has not seen the sources before, mutation builds a copy of the tree)
+#   TAKT_STAGES  only these of: format alone release asan tsan fuzz tidy mutation (without: all but mutation, which builds a copy of
+#                the tree and belongs to a release)
 #   TAKT_FUZZ    seconds of the stage fuzz for EDS files; half of it for network files, a third for each other target (60)
-#   TAKT_PCH     ON, OFF: precompiled headers in all builds, in none (without: in all but tsan, which thereby proves that
-#                sources include what they use)
+#   TAKT_PCH     OFF: no precompiled headers
 #   TAKT_JOBS    parallel jobs (number of processors)
 set -u
 cd "$(dirname "$0")/.." || exit 1
 sh share/install_packages.sh build run test || exit 1
 
-stages=${TAKT_STAGES:-format release asan tsan fuzz}
+stages=${TAKT_STAGES:-format release asan tsan fuzz tidy alone}
 jobs=${TAKT_JOBS:-$(nproc)}
 logs=build/test-logs
 # What another checkout on this machine has compiled need not be compiled again.
@@ -68,26 +67,31 @@ stage() {
 
 check_format() { sources | xargs clang-format-19 --dry-run -Werror; }
 
-# In a configuration of its own: clang can't read GCC's precompiled headers. What has been good before is not read again.
-check_tidy() {
-  cmake --preset release -B build/tidy -DTAKT_PCH=OFF -DTAKT_GROUPS=OFF -DTAKT_TESTS=OFF && ninja -C build/tidy takt_lcm_headers &&
-    python3 test/house/tidy.py build/tidy "$jobs"
+# read_sources SCRIPT BUILD OPTION...: without precompiled headers, because clang can't read those of GCC. What has been good before
+# is not read again.
+read_sources() {
+  script=$1
+  build=$2
+  shift 2
+  cmake --preset release -B "$build" -DTAKT_PCH=OFF -DTAKT_GROUPS=OFF -DTAKT_TESTS=OFF "$@" &&
+    ninja -C "$build" takt_lcm_headers && python3 "test/house/$script.py" "$build" "$jobs"
 }
+check_tidy() { read_sources tidy build/tidy -DTAKT_UNITY=ON; }
+# Proves that each source includes what it uses: the builds compile the sources of a room together.
+check_alone() { read_sources alone build/alone -DTAKT_UNITY=OFF -DTAKT_WERROR=ON; }
 
 # The copy of the tree and its programs stay in build/mutation, so that a second run compiles only what has changed.
 check_mutation() { python3 test/mutation/mutate.py --seed 1 --count 200 --jobs "$jobs"; }
 
-# build PRESET COMPILER PCH [TARGET...]. Warnings are errors in release and asan, which compile all files.
+# build PRESET COMPILER [TARGET...]. Warnings are errors in release and asan, which compile all files.
 build() {
   preset=$1
   compiler=$2
-  pch=${TAKT_PCH:-$3}
-  shift 3
+  shift 2
   [ "$preset" = release ] && benchmarks=ON || benchmarks=OFF
-  werror=ON groups=ON
-  [ "$preset" = tsan ] && werror=OFF groups=OFF  # it proves that each file includes what it uses
+  [ "$preset" = tsan ] && werror=OFF || werror=ON
   cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$compiler" -DTAKT_TESTS=ON -DTAKT_BENCHMARKS=$benchmarks \
-    -DTAKT_WERROR=$werror -DTAKT_GROUPS=$groups -DTAKT_UNITY=ON -DTAKT_PCH="$pch" && ninja -C "build/$preset" -j "$jobs" "$@"
+    -DTAKT_WERROR=$werror -DTAKT_UNITY=ON -DTAKT_PCH="${TAKT_PCH:-ON}" && ninja -C "build/$preset" -j "$jobs" "$@"
 }
 
 # Each runs for about a second and must not fail. What it says is no figure: those come from sh test/bench/run.sh.
@@ -100,7 +104,7 @@ run_benchmarks() {
 
 fuzz() {
   seconds=${TAKT_FUZZ:-60}
-  cmake --preset fuzz -DTAKT_PCH="${TAKT_PCH:-ON}" && ninja -C build/fuzz -j "$jobs" takt_fuzz_targets || return 1
+  cmake --preset fuzz -DTAKT_UNITY=ON -DTAKT_PCH="${TAKT_PCH:-ON}" && ninja -C build/fuzz -j "$jobs" takt_fuzz_targets || return 1
   # One seed: a finding comes from a change and not from luck. Longer runs with other seeds belong to a release.
   {
     echo "eds $seconds -dict=test/fuzz/eds.dict"
@@ -129,16 +133,17 @@ for wanted in $stages; do
   case $wanted in
     format) stage format check_format ;;
     tidy) stage tidy check_tidy ;;
+    alone) stage alone check_alone ;;
     mutation) stage mutation check_mutation ;;
     release)
-      if stage release-build build release c++ ON; then
+      if stage release-build build release c++; then
         stage release-tests run_tests release
         stage benchmarks run_benchmarks
       fi
       ;;
-    asan) stage asan-build build asan clang++-19 ON takt_host_tests && stage asan-tests run_tests asan -L host ;;
+    asan) stage asan-build build asan clang++-19 takt_host_tests && stage asan-tests run_tests asan -L host ;;
     fuzz) stage fuzz fuzz ;;
-    tsan) stage tsan-build build tsan c++ OFF takt_threaded_tests taktd takt takt-move && stage tsan-tests run_tests tsan -L threaded ;;
+    tsan) stage tsan-build build tsan c++ takt_threaded_tests taktd takt takt-move && stage tsan-tests run_tests tsan -L threaded ;;
     *) echo "no stage $wanted" >&2 && exit 2 ;;
   esac
 done
