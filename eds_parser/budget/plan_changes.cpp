@@ -26,7 +26,7 @@ std::uint32_t step_of(std::uint32_t period_us) {
 
 bool is_event_driven(const PdoRow& row) { return !row.synchronous() && !row.multiplexed(); }
 
-/// The shortest distance of two frames as the budget counts it.
+/// Returns the shortest time between two frames of this PDO that the budget assumes.
 Time least_distance(const PdoRow& row, Time cycle) {
   if (row.inhibit > Time{0}) return row.inhibit;
   return row.event_timer > Time{0} ? std::min(row.event_timer, cycle) : cycle;

@@ -55,7 +55,7 @@ struct TrafficFrame {
   std::optional<std::uint16_t> turn{};  ///< SYNC number modulo `every`, if it is certain
   unsigned burst = 1;                   ///< number of frames at once
   Time frame{};                         ///< bus time of one frame with worst stuffing
-  Time period{};                        ///< shortest distance of two frames
+  Time period{};                        ///< shortest time between two frames
   Time jitter{};
   bool period_assumed = false;
   bool on_change = false;       ///< sent when its values change, not periodically

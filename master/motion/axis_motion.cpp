@@ -41,8 +41,8 @@ State after(const Entry& entry, const State& from, double jerk) noexcept {
 
 /// Returns the duration at which `motion` reaches `distance`, which it does at `high`, but not at
 /// `low`. The distance is convex or concave in between. From the side that the tangents cross last,
-/// Newton's method comes to the solution without passing it; where rounding lets it leave the
-/// bracket, the bracket is halved.
+/// Newton's method approaches the solution without passing it. If a step leaves the bracket because
+/// of rounding, the bracket is halved.
 double crossing(const FarthestMotion& motion, double distance, double low, double high,
                 double start) noexcept {
   double time = start;
@@ -54,7 +54,7 @@ double crossing(const FarthestMotion& motion, double distance, double low, doubl
     (error > 0.0 ? high : low) = time;
     double next = time - error / reached.slope;
     if (!(next >= low && next <= high)) next = (low + high) / 2;
-    // Steps that no longer shrink are the rounding of the distance.
+    // Once the steps no longer shrink, they only show the rounding of the distance.
     const double step = std::abs(next - time);
     if (step <= 2 * epsilon * time || (step >= last_step && step < 1e-11 * time)) break;
     last_step = step;

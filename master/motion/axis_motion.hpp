@@ -14,9 +14,9 @@ enum class Goal : unsigned char {
   velocity,  ///< nothing: the motion ends wherever it has the target velocity
 };
 
-/// All motions of one axis from one state to another within its limits, of any duration. A start
-/// outside the limits is brought inside first, on the shortest way. A start that differs from the
-/// target by less than at_target is a motion without duration. It never allocates.
+/// All motions of one axis from one state to another within its limits, of any duration. From a
+/// start outside the limits, the axis first returns inside in the shortest time. A start that
+/// differs from the target by less than at_target is a motion without duration. It never allocates.
 class AxisMotion {
  public:
   /// Part of the size of a state below which a difference counts as rounding. The sizes are those
@@ -27,9 +27,9 @@ class AxisMotion {
   /// Limits and target must be sound, see defect_of().
   AxisMotion(const State& from, const State& to, const Limits& limits, Goal goal) noexcept;
 
-  /// Returns the shortest possible duration that is at least `duration`, in s. The impossible ones
-  /// in between are those in which an axis that moves already would be past its target, and not yet
-  /// back. Always finite.
+  /// Returns the shortest possible duration that is at least `duration`, in s. Some
+  /// durations in between are impossible: after them, a moving axis has passed its target and has
+  /// not returned to it yet. Always finite.
   double possible(double duration) const noexcept;
 
   /// Returns a motion with this duration, which must be a possible one.

@@ -65,7 +65,7 @@ std::optional<Cruise> find_cruise(const Transfer& transfer, double duration, dou
     const double hold = duration - begin.duration() - end.duration();
     return Trial{velocity, hold, begin.distance + end.distance + velocity * hold - distance};
   };
-  // An axis that has nothing to do stays where it is, without the rounding of a search.
+  // An axis that is at its target keeps its exact position: a search would add rounding.
   if (lowest <= 0.0 && highest >= 0.0) {
     const Trial still = trial(0.0);
     if (still.error == 0.0 && still.hold >= 0.0) return Cruise{.duration = still.hold};
@@ -73,7 +73,7 @@ std::optional<Cruise> find_cruise(const Transfer& transfer, double duration, dou
   Trial low = trial(lowest);
   Trial high = trial(highest);
   if (low.error > 0.0 || high.error < 0.0) return std::nullopt;
-  // The distance rises with the velocity of the cruise: a straight line through both ends finds the
+  // The distance rises with the velocity of the cruise: a straight line through both ends gives the
   // next trial, and the end that stays counts half (the Illinois method).
   double weight_low = low.error;
   double weight_high = high.error;

@@ -7,8 +7,7 @@
 namespace takt::motion {
 
 /// A motion of a given duration with one constant velocity in its middle, which the axis reaches
-/// and leaves on the shortest way. It is what an engineer expects of an axis that has more time
-/// than it needs.
+/// and leaves in the shortest time. An axis that has more time than it needs moves in this way.
 struct Cruise {
   double velocity = 0.0;
   double duration = 0.0;  ///< of the part with this velocity, in s

@@ -3,7 +3,7 @@
 
 namespace takt::motion {
 
-/// What brings a velocity and an acceleration inside their limits: a phase with jerk, and a phase
+/// Brings a velocity and an acceleration inside their limits: by a phase with jerk, and a phase
 /// that holds the acceleration. In the units of Transfer.
 struct Entry {
   double jerk = 0.0;      ///< 1, -1, or 0 if the state is inside already

@@ -9,7 +9,7 @@ namespace {
 
 double square(double value) noexcept { return value * value; }
 
-/// A rise of the velocity by `rise`, which begins with `acceleration` and ends with none: the
+/// A rise of the velocity by `rise`, which begins with `acceleration` and ends with 0: the
 /// greatest acceleration on the way, and the time for which it is held.
 struct Rise {
   double peak = 0.0;
@@ -43,7 +43,7 @@ FarthestMotion::FarthestMotion(const Transfer& transfer) noexcept
             (square(transfer.start_acceleration) - square(transfer.end_acceleration)) / 2} {
   const Rise up = rise_to(transfer.max_velocity - transfer.start_velocity,
                           transfer.start_acceleration, transfer.max_acceleration);
-  // The way down is a way up if time runs backwards.
+  // A fall is a rise with reversed time.
   const Rise down = rise_to(transfer.max_velocity - transfer.end_velocity,
                             -transfer.end_acceleration, -transfer.min_acceleration);
   cruise_ = {up.peak - transfer.start_acceleration, up.hold, up.peak, 0.0, down.peak, down.hold,

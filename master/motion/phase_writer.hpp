@@ -28,8 +28,8 @@ class PhaseWriter {
     add(static_cast<double>(std::abs(change)), change > 0.0L ? 1.0 : -1.0);
   }
 
-  /// Appends a phase with a constant velocity. Before a long one, even the rounding of the phase
-  /// that has led to it is made good. `velocity` is one that may change by a tiny part.
+  /// Appends a phase with a constant velocity. If the phase is long, `velocity`
+  /// changes slightly, to compensate the rounding of the phase before it.
   void cruise(double duration, double velocity) noexcept {
     constexpr double tiny = 1e-14;
     if (std::abs(acceleration_) * duration > tiny * velocity) add_until(0.0);

@@ -20,11 +20,12 @@ struct AxisTask {
 /// axis exceeds.
 class StraightLine {
  public:
-  /// Returns the line of these tasks. Empty if their ways, velocities and accelerations do not all
-  /// have one direction.
+  /// Returns the line of these tasks. Empty if their displacements, velocities and accelerations do
+  /// not all have one direction.
   static std::optional<StraightLine> find(std::span<const AxisTask> tasks, Goal goal) noexcept;
 
-  /// The axis that stands for all, with its limits so reduced that they are those of all axes.
+  /// Returns the axis that represents all axes. Its limits are reduced so that no axis exceeds its
+  /// own.
   const AxisTask& leader() const noexcept { return leader_; }
 
   /// Returns the part of the leader's motion that the axis of `task` makes, negative for the other

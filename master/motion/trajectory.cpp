@@ -29,8 +29,8 @@ bool is_between(double low, double value, double high) noexcept {
 }
 
 /// Returns the shortest duration from `duration` on for which the axis has a motion inside its
-/// range of positions. The shortest motion turns round as early as the axis can, so it leaves the
-/// range only where most others do, too: a few longer ones are tried.
+/// range of positions. The shortest motion reverses as early as the axis can, so if it leaves the
+/// range, most others leave it too. The function therefore tries only a few longer ones.
 std::expected<double, Defect> possible(const AxisTask& task, Goal goal, double duration) noexcept {
   const AxisMotion motion = motion_of(task, goal);
   // An axis that is outside may come back.

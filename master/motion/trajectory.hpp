@@ -11,12 +11,12 @@ namespace takt::motion {
 enum class Synchronisation : std::uint8_t {
   none,   ///< each axis takes its shortest time
   time,   ///< all axes arrive at the same time
-  phase,  ///< all axes move on a straight line where their states allow it, else as `time`
+  phase,  ///< all axes move on one straight line; the same as `time` if there is none
 };
 
 /// What is wrong with the task of an axis.
 enum class Defect : std::uint8_t {
-  not_finite,              ///< a number is infinite or none
+  not_finite,              ///< a number is infinite or NaN
   velocity_limits,         ///< min_velocity < 0 < max_velocity does not hold
   acceleration_limits,     ///< min_acceleration < 0 < max_acceleration does not hold
   jerk_limit,              ///< jerk is not positive

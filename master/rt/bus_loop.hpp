@@ -43,8 +43,8 @@ class BusLoop {
   /// The first SYNC goes out one period after this call.
   void start() noexcept;
   /// Replaces start(): continues from a checkpoint that another loop with this plan has written.
-  /// Runs the rest of that cycle, from behind the publication of its image. Returns false if the
-  /// checkpoint belongs to another plan or to another version of takt.
+  /// Runs the rest of that cycle, which begins after the publication of its image. Returns false if
+  /// the checkpoint belongs to another plan or to another version of takt.
   bool resume(std::span<const std::uint64_t> checkpoint) noexcept;
   /// Runs one whole cycle and returns after its outputs have been sent.
   void cycle() noexcept;
@@ -165,7 +165,7 @@ void BusLoop<P, L, S>::publish() noexcept {
   bus_.pdos.inputs().forget_marks();
 }
 
-/// Lets the services and the requests have their turn, then advances the stops.
+/// Runs the services and the requests, then advances the stops.
 template <Port P, FrontLink L, Services S>
 void BusLoop<P, L, S>::use_slack() noexcept {
   slack_.excuse_absence();

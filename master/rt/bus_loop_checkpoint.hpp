@@ -8,7 +8,8 @@ namespace takt {
 /// because a checkpoint can only be used by the version of takt that has written it.
 inline constexpr std::uint64_t checkpoint_layout = 0x7461'6B74'0000'0003;
 
-/// Returns true if nothing is under way, so that the state in keep() alone decides what follows.
+/// Returns true if no operation is in progress, so that the state in keep() alone decides what
+/// follows.
 template <Port P, FrontLink L, Services S>
 bool BusLoop<P, L, S>::idle() const noexcept {
   return stop_.idle() && intake_.empty() && requests_.idle() && bus_.service_frames.empty() &&

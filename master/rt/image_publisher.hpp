@@ -38,7 +38,7 @@ class ImagePublisher {
     exchange_.timing.sync_to_publish.record(now - sync_time);
     predict(now, predicted);
   }
-  /// Predicts for the front thread when to expect the next image.
+  /// Tells the front thread when to expect the next image.
   void predict(Time now, Time predicted) noexcept {
     Time next = beat_.next_deadline() + predicted;
     // After a stall within the cycle, the clock will skip the periods that have passed.

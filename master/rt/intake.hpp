@@ -35,7 +35,7 @@ class Intake {
 
   /// Predicted time from SYNC to the arrival of the last expected TPDO.
   Time predicted() const noexcept { return prediction_.predicted(); }
-  /// No frames are left for the next cycle.
+  /// Returns true if no frames are left for the next cycle.
   bool empty() const noexcept { return left_from_ == left_end_; }
 
   template <class Archive>

@@ -43,7 +43,7 @@ class NodeExchange {
   }
 
  private:
-  /// How the TPDOs of a node are received that does not exchange PDOs yet.
+  /// Returns how to receive the TPDOs of a node that does not exchange PDOs yet.
   Reception reception_of_other(std::size_t node_index, bool listen) const noexcept {
     if (listen) return Reception::listening;
     return bus_.services.starts(node_index) ? Reception::early : Reception::off;

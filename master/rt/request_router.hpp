@@ -9,8 +9,8 @@
 
 namespace takt {
 
-/// Brings the requests of the front thread to the machine that serves them, and each reply to the
-/// one who asked: the front thread, or a part of the loop. Bus thread only.
+/// Routes the requests of the front thread to the machine that serves them, and each reply to its
+/// requester: the front thread, or a part of the loop. Bus thread only.
 template <Port P, FrontLink L, Services S>
 class RequestRouter {
  public:
@@ -38,7 +38,7 @@ class RequestRouter {
       if (reply_waits_) return;
     }
   }
-  /// No reply waits for room.
+  /// Returns true if no reply waits for room.
   bool idle() const noexcept { return !reply_waits_; }
 
  private:

@@ -15,7 +15,7 @@
 
 namespace takt {
 
-/// The slack of a cycle, in which service frames have their turn: their number is limited, and they
+/// The slack of a cycle, in which the loop sends service frames: their number is limited, and they
 /// and their answers end before the outputs. Bus thread only.
 template <Port P, Services S>
 class Slack {

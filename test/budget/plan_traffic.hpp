@@ -29,7 +29,7 @@ struct PlanFrame {
   bool awaited = false;  ///< after_sync: the master waits for it
   unsigned every = 1;    ///< after_sync, outputs: number of SYNCs from one frame to the next
   unsigned turn = 0;     ///< after_sync: number of the SYNC, modulo `every`
-  Time distance{};       ///< shortest distance of two frames
+  Time distance{};       ///< shortest time between two frames
   unsigned burst = 1;
   std::optional<std::size_t> answer{};  ///< position of the answer to a remote request
 };

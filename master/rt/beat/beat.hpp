@@ -56,7 +56,7 @@ class Beat {
   bool wire_open() const noexcept { return wire_ == Wire::open; }  ///< frames may leave
 
   // The master's own SYNC.
-  /// SYNC may be sent, see SyncHold.
+  /// Returns true if SYNC may be sent, see SyncHold.
   template <NodeServices S>
   bool permits_sync(const S& services) noexcept {
     return hold_.is_open() || hold_.open(services.nodes());
@@ -69,7 +69,7 @@ class Beat {
   bool follows() const noexcept { return follower_.used(); }
   /// Takes a frame. Returns true if it is a SYNC that begins the next cycle.
   bool begins_cycle(const StampedFrame& stamped) noexcept;
-  /// A SYNC has come that begins the next cycle.
+  /// Returns true if a SYNC has come that begins the next cycle.
   bool next_sync_came() const noexcept { return follower_.arrived(); }
   /// SYNC began this cycle.
   bool began_by_sync() const noexcept { return began_ == Began::by_sync; }

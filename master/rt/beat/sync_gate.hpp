@@ -7,8 +7,8 @@
 
 namespace takt {
 
-/// Keeps SYNCs and outputs from piling up in the queue of an interface that is bus-off or that
-/// nobody acknowledges: they would all go out at once, too old, when the bus comes back. While the
+/// Keeps SYNCs and outputs from piling up in the queue of an interface that is bus-off or gets
+/// no acknowledgement: they would all go out at once, too old, when the bus returns. While the
 /// echo of the newest SYNC is outstanding, the gate holds the next SYNC; from time to time it lets
 /// one pass, in case only the echo was lost. For ports without echo, only bus-off closes the gate.
 /// An interface that goes down loses its queue, so the gate is open when the interface comes back.

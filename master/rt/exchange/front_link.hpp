@@ -10,16 +10,16 @@
 
 namespace takt {
 
-/// The front thread as the bus loop sees it: all that the loop takes from there, and the replies
-/// and events that it gives. Beside `Port` this is the only input of the loop, so a recording of
-/// both has all that decides what the loop does. A link is a handle that the loop
+/// The front thread as the bus loop sees it: the inputs that the loop takes from it, and the
+/// replies and events that the loop gives to it. `Port` and this link are the only inputs of the
+/// loop, so a recording of both determines what the loop does. A link is a handle that the loop
 /// copies. No function allocates, locks or throws.
 template <class L>
 concept FrontLink = std::copy_constructible<L> &&
                     requires(L link, const L constant, std::uint64_t cycle, Request& request,
                              const Reply& reply, const Event& event, std::size_t words) {
-                      /// Images, states and times go straight to the exchange: nothing comes back
-                      /// from there.
+                      /// Images, states and times go straight to the exchange. They have no
+                      /// reply.
                       { link.exchange() } noexcept -> std::same_as<Exchange&>;
                       /// The newest set; valid until the next call.
                       { link.set_points() } noexcept -> std::same_as<const SetPointFrame&>;

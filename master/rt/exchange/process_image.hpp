@@ -25,8 +25,8 @@ struct ImageView : ImageStamp {
   std::span<const std::uint64_t> stale_bits;  ///< signal n is bit n % 64 of word n / 64
   std::span<const PdoMark> pdos{};            ///< rows of PdoTable::tpdos
 
-  /// Cycles since the newest frame of this TPDO; 0 if the frame came in this cycle. It means
-  /// nothing until the first frame has come (`received` of the mark is 0).
+  /// Cycles since the newest frame of this TPDO; 0 if the frame came in this cycle. It is
+  /// not valid until the first frame has come (`received` of the mark is 0).
   std::uint32_t age(std::size_t tpdo) const noexcept {
     return static_cast<std::uint32_t>(cycle) - pdos[tpdo].cycle;
   }

@@ -122,7 +122,7 @@ class RecordedPort {
     }
     if (parts != 0) reported_ = news;
   }
-  /// Nothing but the times has changed.
+  /// Returns true if only times have changed since the last record.
   bool same_state(const PortNews& news) const noexcept {
     PortNews recorded = reported_;
     recorded.since_1970 = news.since_1970;

@@ -91,7 +91,7 @@ class ReplayPort {
   void begin_part() const noexcept;
 
   std::span<const Recording> parts_;
-  // Reading the news does not change a port, but advances the recording; hence `mutable`.
+  // Reading the news does not change a port, but advances the recording. It is therefore `mutable`.
   mutable std::size_t part_ = 0;
   mutable std::span<const std::uint64_t> words_;
   mutable std::span<const Frame> frames_;

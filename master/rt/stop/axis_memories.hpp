@@ -26,7 +26,7 @@ class AxisMemories {
   std::span<const AxisMemory> all() const noexcept { return memories_; }
   AxisMemory& operator[](std::size_t axis) noexcept { return memories_[axis]; }
 
-  /// Takes what has come and what is commanded. Call this once a cycle.
+  /// Takes the received statuswords and the commanded controlwords. Call this once a cycle.
   void update() noexcept {
     for (std::size_t i = 0; i < memories_.size(); ++i) update(axes_[i], memories_[i]);
   }
@@ -81,7 +81,7 @@ class AxisMemories {
   std::uint8_t node_of(const StopAxis& axis) const noexcept {
     return bus_.plan.nodes[axis.node_index].id.value();
   }
-  /// A request that may bring a controlword to this axis is not answered yet.
+  /// Returns true while a request that may bring a controlword to this axis is not answered yet.
   bool word_under_way(const StopAxis& axis) const noexcept {
     const std::uint8_t node = node_of(axis);
     return bus_.pdo_requests.reaches(node) || bus_.services.writes(node, controlword_of(axis));

@@ -10,8 +10,8 @@
 namespace takt {
 
 /// The two stops of axes: the ordered stop of the whole bus, and the halt of the axes whose PDO
-/// exchange NMT is about to end. This class has what both need: what is remembered of the axes,
-/// their view of the bus, the controlwords that they force, their SDO requests, and the report on
+/// exchange NMT is about to end. This class has what both need: the memory of the axes, their
+/// view of the bus, the controlwords that they force, their SDO requests, and the report on
 /// axes that did not stop. Bus thread only.
 template <Services S>
 class AxisStops {
@@ -28,7 +28,7 @@ class AxisStops {
   /// The ordered stop has begun.
   bool stopping() const noexcept { return ordered_.stage() != StopStage::running; }
   bool halting() const noexcept { return halt_.stage() != StopStage::running; }
-  /// One of the two stops commands this axis.
+  /// Returns true if one of the two stops commands this axis.
   bool commands(std::size_t axis) noexcept {
     const OrderedStop& stop = active();
     return stop.stage() != StopStage::running && stop.reaches(axis);
@@ -79,7 +79,7 @@ class AxisStops {
                       .value = requests_.refusal()});
   }
 
-  /// What to report to the services about the axes of `stop`.
+  /// Returns the report to the services about the axes of `stop`.
   static AxesAtRest rest_of(const OrderedStop& stop) noexcept {
     return stop.result() == StopResult::unconfirmed ? AxesAtRest::unconfirmed
                                                     : AxesAtRest::confirmed;

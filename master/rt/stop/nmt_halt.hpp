@@ -59,7 +59,7 @@ class NmtHalt {
     return *node == 0 ? OrderedStop::every_node
                       : static_cast<std::uint8_t>(bus_.plan.index_of(*node));
   }
-  /// The command that the axes had to stop for has left.
+  /// Returns true if the command for which the axes had to stop has left.
   bool is_over() const noexcept { return stops_.halting() && wanted() != stops_.halt().target(); }
   void begin(Time now, std::uint8_t node_index) noexcept {
     stops_.halt().begin(now, bus_.services.nodes(), node_index, stops_.memories().all());

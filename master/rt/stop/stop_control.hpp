@@ -27,7 +27,7 @@ class StopControl {
 
   AxisStops<S>& stops() noexcept { return stops_; }
   const OrderedStop& ordered() const noexcept { return stops_.ordered(); }
-  /// The ordered stop is complete.
+  /// Returns true if the ordered stop is complete.
   bool done() const noexcept { return sequence_.done(); }
 
   /// Begins or ends the reaction to the loss of another device's SYNC. `lost`: it is lost now.
@@ -55,14 +55,14 @@ class StopControl {
   /// Stops the drives in the group of a lost node. Call this before the outputs are packed.
   void stop_after_loss() noexcept { loss_stop_.step(); }
 
-  /// The master sends no SYNC, see NmtHalt.
+  /// Returns true if the master sends no SYNC, see NmtHalt.
   bool silences_master() const noexcept { return stops_.halting() && halt_.silences_master(); }
   /// The master sends no RPDOs in this cycle. In NMT Stopped it sends only fallbacks that an
   /// inhibit time holds back.
   bool withholds_outputs() noexcept {
     return sync_loss_.withholds_outputs() || (silences_master() && !bus_.pdos.outputs().pending());
   }
-  /// No stop and no reaction is under way, except for a SYNC that is lost.
+  /// Returns true if no stop and no reaction is in progress, except for a lost SYNC.
   bool idle() const noexcept {
     return !stops_.stopping() && !stops_.halting() && !sync_loss_.writes_wait();
   }

@@ -32,13 +32,13 @@ class SyncLossReaction {
         return lost ? bus_.services.on_sync_loss() : bus_.services.on_sync_back();
     }
   }
-  /// No outputs are sent until SYNC is back.
+  /// Returns true if the loop sends no outputs until SYNC returns.
   bool withholds_outputs() const noexcept {
     return supply_ == SyncSupply::lost && bus_.plan.cycle.on_sync_loss == SyncLoss::hold &&
            !stops_.stopping();
   }
 
-  /// Fallbacks wait to be written by SDO.
+  /// Returns true if fallbacks wait to be written by SDO.
   bool writes_wait() const noexcept { return fallbacks_.waits(); }
   void write_fallbacks(Time now) noexcept {
     for (; fallbacks_.waits(); fallbacks_.submitted()) {
