@@ -44,7 +44,7 @@ class RequestTable {
   /// waits.
   RequestSlot* next(std::uint8_t lane) noexcept;
   bool has_waiting(std::uint8_t lane) const noexcept;
-  /// An SDO download to this object of the node is not answered yet.
+  /// Returns true if an SDO download to this object of the node is not answered yet.
   bool has_download(std::uint8_t node, ObjectKey object) const noexcept;
   void answer(RequestSlot& slot, SdoFault fault, std::uint32_t abort_code = 0,
               std::size_t size = 0) noexcept;
@@ -54,7 +54,7 @@ class RequestTable {
   void withdraw(std::uint64_t id) noexcept;
   /// Takes the oldest reply. Returns false if there is none.
   bool take(Reply& reply) noexcept;
-  /// No request is under way, and no reply waits to be taken.
+  /// Returns true if no request is under way, and no reply waits to be taken.
   bool idle() const noexcept { return waiting_ == 0 && answered_ == 0; }
 
   template <class Archive>

@@ -119,7 +119,8 @@ std::string against_mismatch(const NodePlan& node, const BootStep& step,
          " than the network file expects: correct the device or the network file";
 }
 
-/// The device has accepted a block download and then became silent. CiA 301, 7.2.4.3.9.
+/// Returns true if the device has accepted a block download and then became silent. CiA 301,
+/// 7.2.4.3.9.
 bool accepted_block(const BootFailure& failure) noexcept {
   return failure.received_size != 0 && (failure.received[0] & 0xE3) == 0xA0;
 }
@@ -162,7 +163,7 @@ std::string against_short_answer(const BootFailure& failure) {
                           frame.length));
 }
 
-/// The device has answered a request after its time-out.
+/// Returns true if the device has answered a request after its time-out.
 bool was_late(const NodePlan& node, const BootFailure& failure) noexcept {
   return failure.late > node.sdo_timeout && node.sdo_timeout > Time{};
 }
@@ -270,7 +271,7 @@ std::string against_dead_node(const BootStep& step) {
                    : "Let the device keep its heartbeat (0x1017, stored with 0x1010)");
 }
 
-/// The device has given an answer that tells something about its software.
+/// Returns true if the device has given an answer that tells something about its software.
 bool reports_of_program(const BootFailure& failure) noexcept {
   if (failure.letter < 'G' || failure.letter > 'I') return false;
   return failure.fault == SdoFault::none || failure.fault == SdoFault::aborted_by_device ||

@@ -155,7 +155,7 @@ std::string against_length(const NodePlan& node, const BootStep& step, const Boo
       object, bytes);
 }
 
-/// The boot has reset the node before the step that failed.
+/// Returns true if the boot has reset the node before the step that failed.
 bool was_reset(const NodePlan& node, const BootFailure& failure) {
   const auto& steps = node.boot_plan.steps;
   const auto before = std::min<std::size_t>(failure.step, steps.size());

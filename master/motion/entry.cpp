@@ -9,7 +9,8 @@ namespace {
 /// What rounding may add to a state at a limit, relative to the limit.
 constexpr double limit_rounding = 1e-13;
 
-/// The velocity is too high, or it would be before the acceleration is taken back to 0.
+/// Returns true if the velocity is too high, or it would be before the acceleration is taken back
+/// to 0.
 bool is_too_fast(const Transfer& t) noexcept {
   const double rise = std::max(t.start_acceleration, 0.0) * t.start_acceleration / 2;
   const double scale = t.max_velocity - t.min_velocity + rise;

@@ -17,7 +17,7 @@ class ArrivalPrediction {
   Time predicted() const noexcept { return predicted_; }
   bool learned() const noexcept { return seen_ >= learning; }
 
-  /// All expected PDOs had arrived at the first drain; the last one came at `arrival`.
+  /// Notes that all expected PDOs had arrived at the first drain; the last one came at `arrival`.
   void in_time(Time arrival) noexcept {
     if (seen_ < learning) {
       latest_ = std::max(latest_, arrival);
@@ -27,8 +27,8 @@ class ArrivalPrediction {
     predicted_ -= (predicted_ - std::min(predicted_, arrival + margin)) / slowness;
   }
 
-  /// The last expected PDO came at `arrival`, after the first drain. The caller reports nothing if
-  /// a PDO never came.
+  /// Notes that the last expected PDO came at `arrival`, after the first drain. The caller reports
+  /// nothing if a PDO never came.
   void late(Time arrival) noexcept {
     const Time excess = std::max(Time{0}, arrival - predicted_) + margin;
     predicted_ = std::min(window_, predicted_ + std::min(excess, step));

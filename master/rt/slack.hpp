@@ -41,8 +41,8 @@ class Slack {
   /// Runs one round of services: TIME, PDO requests and the state machines, until nothing more fits
   /// or is awaited.
   void run_round() noexcept;
-  /// A long cycle has many rounds, so that boots and heartbeats proceed as fast as in a short
-  /// cycle.
+  /// Returns true for a long cycle. It has many rounds, so that boots and heartbeats proceed as
+  /// fast as in a short cycle.
   bool has_many_rounds() const noexcept { return bus_.plan.cycle.period >= long_cycle; }
   /// Sleeps until the next round of a long cycle. Returns false if the outputs come next, or if a
   /// followed SYNC came early.

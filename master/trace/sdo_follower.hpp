@@ -45,11 +45,12 @@ class SdoFollower {
   std::optional<BlockFollower::Part> block_part() const noexcept { return newest_.part; }
   /// The newest block transfer.
   const BlockFollower& block() const noexcept { return block_; }
-  /// The beginning of the transfer of the newest frame was not seen.
+  /// Returns true if the beginning of the transfer of the newest frame was not seen.
   bool is_stray() const noexcept { return newest_.stray; }
-  /// The toggle bit of the newest frame, a segment or its confirmation, does not alternate.
+  /// Returns true if the toggle bit of the newest frame, a segment or its confirmation, does not
+  /// alternate.
   bool repeats_toggle() const noexcept { return newest_.repeats_toggle; }
-  /// The server has accepted a segmented transfer, and segments follow.
+  /// Returns true if the server has accepted a segmented transfer, and segments follow.
   bool expects_segments() const noexcept { return state_ == State::segments; }
 
   /// Returns the number of frames of transfers whose beginning is not in the recording.

@@ -27,7 +27,7 @@ struct NmtMessage {
 /// COB-ID of NMT commands.
 inline constexpr CobId nmt_cob_id = CobId::base(0x000);
 
-/// The command resets the node or its communication.
+/// Returns true if the command resets the node or its communication.
 constexpr bool is_reset(NmtCommand command) noexcept {
   return command == NmtCommand::reset_node || command == NmtCommand::reset_communication;
 }

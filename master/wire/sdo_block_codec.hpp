@@ -20,7 +20,7 @@ inline constexpr std::uint8_t most_block_segments = 127;
 /// Data bytes of one segment.
 inline constexpr std::size_t segment_bytes = 7;
 
-/// A sub-block has 1..127 segments.
+/// Returns true for 1..127, the permitted number of segments of a sub-block.
 constexpr bool valid_block_size(std::uint8_t segments) noexcept {
   return segments >= 1 && segments <= most_block_segments;
 }

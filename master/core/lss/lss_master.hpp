@@ -42,7 +42,8 @@ class LssMaster {
   /// Cancels the service; it gives no result.
   void cancel() noexcept { phase_ = Phase::idle; }
   bool idle() const noexcept { return phase_ == Phase::idle; }
-  /// The newest fast scan may have brought a device into configuration state, whatever its outcome.
+  /// Returns true if the newest fast scan may have brought a device into configuration state,
+  /// whatever its outcome.
   bool scan_may_have_switched() const noexcept { return fast_.may_have_switched(); }
 
  private:

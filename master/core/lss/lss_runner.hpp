@@ -42,7 +42,7 @@ class LssRunner {
   std::span<const LssResult> results() const noexcept {
     return std::span{results_}.first(results_count_);
   }
-  /// All services of the list have succeeded.
+  /// Returns true if all services of the list have succeeded.
   bool done() const noexcept { return state_ == State::done; }
 
   template <class Archive>

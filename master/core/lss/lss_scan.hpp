@@ -40,8 +40,8 @@ class LssFastScan {
   LssScanState state() const noexcept { return state_; }
   /// The address that was found, valid in LssScanState::found.
   const LssAddress& address() const noexcept { return address_; }
-  /// A device may be in configuration state because it has received the last question, even if its
-  /// answer was lost.
+  /// Returns true if a device may be in configuration state because it has received the last
+  /// question, even if its answer was lost.
   bool may_have_switched() const noexcept { return may_have_switched_; }
   /// Wait for the full time-out, because a question had an impossible reaction, or because this is
   /// the last question. There, a late answer would confirm a wrong address or leave a device in

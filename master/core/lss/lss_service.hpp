@@ -29,7 +29,7 @@ class LssService {
   /// Cancels all work; the network answers the requests. No device stays in configuration state.
   void stop(Time now) noexcept;
   bool stopped() const noexcept { return stopping_ && !runner_.running(); }
-  /// No search and no request is under way.
+  /// Returns true if no search and no request is under way.
   bool idle() const noexcept {
     return !runner_.running() && searched_ == nullptr && request_ == nullptr && !stopping_;
   }

@@ -5,12 +5,13 @@
 namespace takt {
 namespace {
 
-/// The word has the bits "switch on" and "enable voltage", and no quick stop. No axis leaves "ready
-/// to switch on" without them. CiA 402-2, 0x6040.
+/// Returns true if the word has the bits "switch on" and "enable voltage", and no quick stop. No
+/// axis leaves "ready to switch on" without them. CiA 402-2, 0x6040.
 bool enables(std::int64_t controlword) noexcept { return (controlword & 0x07) == 0x07; }
 
-/// The axis is disabled, and an enabling controlword that the drive already has changes nothing,
-/// because the drive needs the command "shutdown" first. CiA 402-2, transitions 2 and 3.
+/// Returns true if the axis is disabled, and an enabling controlword that the drive already has
+/// changes nothing, because the drive needs the command "shutdown" first. CiA 402-2, transitions 2
+/// and 3.
 bool inert(std::int64_t statusword) noexcept {
   const bool ready_to_switch_on = (statusword & 0x6F) == 0x21;
   return AxisStop::disabled(statusword) && !ready_to_switch_on;

@@ -51,13 +51,14 @@ class AxisMemory {
   void note_quick_stop(QuickStop what) noexcept { quick_stop_ = what; }
 
   QuickStop quick_stop() const noexcept { return quick_stop_; }
-  /// No enabling controlword can be on its way, or in force without an answer to it.
+  /// Returns true if no enabling controlword can be on its way, or in force without an answer to
+  /// it.
   bool quiet() const noexcept {
     return word_ == ServiceWord::harmless && quiet_ >= settling_cycles;
   }
-  /// The axis was seen disabled, and nothing could enable it since.
+  /// Returns true if the axis was seen disabled, and nothing could enable it since.
   bool disabled() const noexcept { return disabled_; }
-  /// The node has reported OPERATIONAL although this master has not booted it.
+  /// Returns true if the node has reported OPERATIONAL although this master has not booted it.
   bool operational() const noexcept { return operational_; }
 
   template <class Archive>

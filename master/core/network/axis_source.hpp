@@ -31,7 +31,7 @@ class AxisSource {
   std::optional<std::int64_t> take(Time now, const ReceivedValues& received) noexcept;
   /// Returns the newest value, from before the stop too, unless it may be old.
   std::optional<std::int64_t> newest(const ReceivedValues& received) const noexcept;
-  /// The value comes by TPDO, and often enough to judge an axis by it.
+  /// Returns true if the value comes by TPDO, and often enough to judge an axis by it.
   bool serves(Time now) const noexcept {
     return signal_ && !slow_ && !stale_ && now - newest_ < longest_silence;
   }

@@ -74,18 +74,18 @@ class Standstill {
 
   /// Takes a new sample.
   void take(Time now, const AxisSample& sample) noexcept;
-  /// The value has stayed within the window for long enough.
+  /// Returns true if the value has stayed within the window for long enough.
   bool certain() const noexcept {
     return resting_ && samples_ >= enough_samples && last_ - since_ - pause_ >= standstill_time;
   }
-  /// The newest value lies outside the window.
+  /// Returns true if the newest value lies outside the window.
   bool moves() const noexcept { return measured_ && !resting_; }
-  /// The newest value shows standstill and is no newer than `latest`. One difference of positions
-  /// shows nothing.
+  /// Returns true if the newest value shows standstill and is no newer than `latest`. One
+  /// difference of positions shows nothing.
   bool rests(Time latest) const noexcept {
     return last_ <= latest && resting_ && (!by_position_ || certain());
   }
-  /// This value of 0x606C lies within the window.
+  /// Returns true if this value of 0x606C lies within the window.
   bool rests_at(std::int64_t velocity) const noexcept {
     return std::abs(velocity) <= velocity_window_;
   }
@@ -96,7 +96,7 @@ class Standstill {
   }
   /// The unit is that of 0x606C in the device, or counts of 0x6064 per second.
   std::int64_t velocity() const noexcept { return velocity_; }
-  /// The newest velocity comes from differences of 0x6064.
+  /// Returns true if the newest velocity comes from differences of 0x6064.
   bool by_position() const noexcept { return by_position_; }
 
  private:
@@ -160,7 +160,7 @@ class AxisStop {
               std::optional<std::int64_t> velocity) noexcept;
   /// Takes a new sample and advances the stop.
   void step(Time now, const AxisSample& sample) noexcept;
-  /// The time in which the axis can come to standstill is over.
+  /// Notes that the time in which the axis can come to standstill is over.
   void cut() noexcept;
   /// Notes that the device has refused the read of its statusword with this abort code.
   void refuse(std::uint32_t abort_code) noexcept { refusal_ = abort_code; }
@@ -172,19 +172,19 @@ class AxisStop {
   }
 
   AxisState state() const noexcept { return state_; }
-  /// A statusword has come since the stop began.
+  /// Returns true if a statusword has come since the stop began.
   bool seen() const noexcept {
     return state_ != AxisState::unseen && state_ != AxisState::asked && state_ != AxisState::rested;
   }
-  /// The stop has nothing more to wait for.
+  /// Returns true if the stop has nothing more to wait for.
   bool settled() const noexcept;
-  /// The stop is confirmed, or there was nothing to stop.
+  /// Returns true if the stop is confirmed, or there was nothing to stop.
   bool confirmed() const noexcept {
     return state_ == AxisState::stopped || state_ == AxisState::exempt ||
            state_ == AxisState::asked || state_ == AxisState::rested;
   }
-  /// The axis was seen at standstill and disabled, and its newest statusword still shows that it is
-  /// disabled.
+  /// Returns true if the axis was seen at standstill and disabled, and its newest statusword still
+  /// shows that it is disabled.
   bool rests() const noexcept { return state_ == AxisState::stopped && !powered_; }
   /// The controlword that this axis has to receive now.
   std::int64_t controlword() const noexcept;
@@ -198,8 +198,8 @@ class AxisStop {
   /// The report on this axis. `exchanging` tells whether the node exchanges PDOs.
   AxisVerdict verdict(Time now, bool exchanging) const noexcept;
 
-  /// The power stage is off: the state is "not ready to switch on", "switch on disabled", "fault"
-  /// or "ready to switch on". CiA 402-2, 0x6041.
+  /// Returns true if the power stage is off: the state is "not ready to switch on", "switch on
+  /// disabled", "fault" or "ready to switch on". CiA 402-2, 0x6041.
   static constexpr bool disabled(std::int64_t statusword) noexcept {
     const std::int64_t state = statusword & 0x4F;
     return state == 0x00 || state == 0x40 || state == 0x08 || (statusword & 0x6F) == 0x21;

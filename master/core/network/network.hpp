@@ -71,7 +71,7 @@ class Network {
   bool submit(const Request& request, Time now) noexcept;
   /// Takes the next reply. Returns false if there is none.
   bool take(Reply& reply) noexcept { return requests_.take(reply); }
-  /// An SDO download to this object of the node is not answered yet.
+  /// Returns true if an SDO download to this object of the node is not answered yet.
   bool writes(std::uint8_t node, ObjectKey object) const noexcept {
     return requests_.has_download(node, object);
   }
@@ -84,12 +84,12 @@ class Network {
 
   /// The status of all nodes, in the order of plan.nodes.
   std::span<const NodeStatus> nodes() const noexcept { return statuses_; }
-  /// The node is booted and, as far as is known, OPERATIONAL.
+  /// Returns true if the node is booted and, as far as is known, OPERATIONAL.
   bool exchanges_pdos(std::size_t node_index) const noexcept {
     return node_index < statuses_.size() && statuses_[node_index].exchanging;
   }
-  /// The boot of the node has sent NMT start. The node may be OPERATIONAL some time before it
-  /// reports that state.
+  /// Returns true if the boot of the node has sent NMT start. The node may be OPERATIONAL some time
+  /// before it reports that state.
   bool starts(std::size_t node_index) const noexcept {
     return node_index < sessions_.size() && sessions_[node_index].starts();
   }
@@ -102,12 +102,12 @@ class Network {
   /// The limits and quick stop option codes that the newest boot of this node has read.
   std::span<const LimitReading> limits_read(std::size_t node_index) const noexcept;
 
-  /// The loss of some node of the plan stops drives.
+  /// Returns true if the loss of some node of the plan stops drives.
   bool stops_drives() const noexcept { return stops_drives_; }
-  /// A node is lost, and its loss demands a quick stop of the drives of this node.
+  /// Returns true if a node is lost, and its loss demands a quick stop of the drives of this node.
   /// LossReaction::quick_stop.
   bool demands_quick_stop(std::size_t node_index) const noexcept;
-  /// A block transfer is under way; frames come without a request for each.
+  /// Returns true if a block transfer is under way; frames come without a request for each.
   bool streams() const noexcept { return streaming_ != 0; }
   /// Number of sub-blocks of block uploads that were requested, including requests that are still
   /// to be sent.
@@ -116,8 +116,8 @@ class Network {
   /// sent.
   std::size_t awaited_answers() const noexcept { return awaited_; }
 
-  /// The master has left the NMT state STOPPED or was reset, so the counter of its SYNC starts
-  /// at 1. The function returns true once. CiA 301, 7.2.5.2.
+  /// Returns true once if the master has left the NMT state STOPPED or was reset, so that the
+  /// counter of its SYNC starts at 1. CiA 301, 7.2.5.2.
   bool take_sync_restart() noexcept { return std::exchange(sync_restarts_, false); }
 
   /// Handles the loss of the SYNC of another device: NMT stop goes to every other node.
@@ -142,7 +142,8 @@ class Network {
     axes_at_rest_ = awaits_axes_;
     rest_ = how;
   }
-  /// Every axis was stopped by an ordered stop; until its end, no command waits for axes.
+  /// Notes that every axis was stopped by an ordered stop; until its end, no command waits for
+  /// axes.
   void every_axis_at_rest(AxesAtRest how) noexcept {
     axes_at_rest_ = 0;
     rest_ = how;
@@ -154,9 +155,9 @@ class Network {
   void give_up_boots(Time now) noexcept;
   /// The NMT state of the master itself.
   NmtState own_state() const noexcept { return own_state_; }
-  /// All frames of the stop have been passed to the outbox.
+  /// Returns true if all frames of the stop have been passed to the outbox.
   bool stopped() const noexcept;
-  /// Nothing is under way, so keep() covers the whole state.
+  /// Returns true if nothing is under way, so keep() covers the whole state.
   bool idle() const noexcept;
 
   template <class Archive>

@@ -16,7 +16,7 @@ class NetworkStart {
 
   /// Begins the start-up; the boot time counts from `now`.
   void begin(Time now) noexcept;
-  /// Every mandatory node has booted.
+  /// Returns true if every mandatory node has booted.
   bool ready() const noexcept { return ready_; }
   /// Returns true once, when the network has become ready.
   bool update(std::span<const NodeStatus> nodes) noexcept;
@@ -25,8 +25,8 @@ class NetworkStart {
   Time deadline() const noexcept { return ready_ ? never : late_at_; }
   /// Number of mandatory nodes that are not ready.
   std::size_t missing(std::span<const NodeStatus> nodes) const noexcept;
-  /// The readiness of the network is worth an event, because nodes are mandatory or are started
-  /// together.
+  /// Returns true if the readiness of the network is worth an event, because nodes are mandatory or
+  /// are started together.
   bool matters() const noexcept;
 
   template <class Archive>

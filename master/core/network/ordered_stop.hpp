@@ -57,8 +57,8 @@ class OrderedStop {
   /// Value of target() for a stop of all nodes.
   static constexpr std::uint8_t every_node = 0xFF;
 
-  /// The node itself reports OPERATIONAL. The master only assumes the state of a node after it has
-  /// sent a broadcast.
+  /// Returns true if the node itself reports OPERATIONAL. The master only assumes the state of a
+  /// node after it has sent a broadcast.
   static bool says_operational(const NodeStatus& node) noexcept {
     return node.nmt == NmtState::operational && node.last_heartbeat != Time{};
   }
@@ -88,28 +88,29 @@ class OrderedStop {
   StopResult result() const noexcept;
   std::span<const StopAxis> axes() const noexcept { return axes_; }
   const AxisStop& axis(std::size_t index) const noexcept { return stops_[index]; }
-  /// The stop covers this axis. All other axes follow their commands.
+  /// Returns true if the stop covers this axis. All other axes follow their commands.
   bool reaches(std::size_t axis) const noexcept {
     return node_index_ == every_node || axes_[axis].node_index == node_index_;
   }
   /// The node whose axes are stopped, or every_node.
   std::uint8_t target() const noexcept { return node_index_; }
-  /// Every axis that is to be stopped was disabled when the stop began, or before.
+  /// Returns true if every axis that is to be stopped was disabled when the stop began, or before.
   bool nothing_to_stop() const noexcept;
-  /// The axes are at rest, or their time is over.
+  /// Returns true if the axes are at rest, or their time is over.
   bool axes_done() const noexcept { return stage_ > StopStage::disable; }
-  /// No TPDO brings the statusword of this axis often enough: it has to be read by SDO.
+  /// Returns true if no TPDO brings the statusword of this axis often enough: it has to be read by
+  /// SDO.
   bool needs_word(std::size_t axis, Time now) const noexcept {
     return !sources_[axis].word.serves(now);
   }
-  /// No TPDO brings the velocity or the position of this axis often enough.
+  /// Returns true if no TPDO brings the velocity or the position of this axis often enough.
   bool needs_motion(std::size_t axis, Time now) const noexcept {
     return !sources_[axis].velocity.serves(now) && !sources_[axis].position.serves(now);
   }
   /// The controlword that this axis has to receive now; std::nullopt leaves the commanded one.
   std::optional<std::int64_t> controlword(std::size_t axis) const noexcept;
 
-  /// The statusword shows that the power stage is off.
+  /// Returns true if the statusword shows that the power stage is off.
   static constexpr bool disabled(std::int64_t statusword) noexcept {
     return AxisStop::disabled(statusword);
   }

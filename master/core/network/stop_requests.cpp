@@ -23,7 +23,7 @@ bool keeps_alive(const NodePlan& node) {
   });
 }
 
-/// The step writes a value that makes the device supervise the master.
+/// Returns true if the step writes a value that makes the device supervise the master.
 bool arms(const BusPlan& plan, const BootStep& step) {
   if (step.action != BootAction::write && step.action != BootAction::write_if_differs) return false;
   const bool any = !all_zero(step.value);
@@ -42,9 +42,9 @@ bool arms(const BusPlan& plan, const BootStep& step) {
   }
 }
 
-/// The device type names another profile than that of drives. A device without a standard profile
-/// (0) may be a drive. So may a device with several logical devices, because its device type is
-/// that of the first one. CiA 301, 0x1000.
+/// Returns true if the device type names another profile than that of drives. A device without a
+/// standard profile (0) may be a drive. So may a device with several logical devices, because its
+/// device type is that of the first one. CiA 301, 0x1000.
 bool is_no_drive(std::uint32_t device_type) noexcept {
   constexpr std::uint32_t several_devices = 0xFFFF;
   const std::uint32_t profile = device_type & 0xFFFF;

@@ -54,7 +54,7 @@ class StopRequests {
     return static_cast<std::uint16_t>(0x6040 + axis.number * axis_step);
   }
 
-  /// All writes that disarm devices are answered or were skipped.
+  /// Returns true if all writes that disarm devices are answered or were skipped.
   bool disarmed() const noexcept { return answered_ == jobs_.size(); }
 
  private:

@@ -8,7 +8,8 @@ bool reads_identity(const BootStep& step) noexcept {
          (step.object.index == 0x1000 || step.object.index == 0x1018);
 }
 
-/// The step makes a node report its state, and does not disturb a node that is OPERATIONAL.
+/// Returns true if the step makes a node report its state, and does not disturb a node that is
+/// OPERATIONAL.
 bool makes_node_report(const BootStep& step) noexcept {
   const std::uint16_t index = step.object.index;
   switch (step.action) {
@@ -24,7 +25,7 @@ bool makes_node_report(const BootStep& step) noexcept {
   }
 }
 
-/// The step may change the node.
+/// Returns true if the step may change the node.
 bool changes_node(BootAction action) noexcept {
   switch (action) {
     case BootAction::nmt:

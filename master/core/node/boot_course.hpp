@@ -16,10 +16,11 @@ enum class BootCourse : std::uint8_t {
                         ///< not change the node. CiA 302-2, status L.
 };
 
-/// A boot on this course leaves out the step. `written` says that the boot has written anything.
+/// Returns true if a boot on this course leaves out the step. `written` says that the boot has
+/// written anything.
 bool skips(BootCourse course, const BootStep& step, bool written) noexcept;
 
-/// The step checks whether the right device is there.
+/// Returns true if the step checks whether the right device is there.
 bool identifies_device(const BootStep& step) noexcept;
 
 }  // namespace takt

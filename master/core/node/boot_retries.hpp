@@ -40,8 +40,8 @@ class BootRetries {
   const BootFailure& last_failure() const noexcept { return last_failure_; }
   /// Number of failures in a row by the same cause.
   std::uint32_t same_failures() const noexcept { return same_failures_; }
-  /// The failure with this number is reported: the first, second, fourth, eighth ... one, so that
-  /// an absent node does not fill the log.
+  /// Returns true if the failure with this number is reported: the first, second, fourth, eighth
+  /// ... one, so that an absent node does not fill the log.
   static bool is_reported(std::uint32_t number) noexcept;
 
   template <class Archive>

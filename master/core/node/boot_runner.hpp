@@ -69,9 +69,9 @@ class BootRunner {
   void start(From from, Time now) noexcept;
   /// Ends the boot; the state is idle.
   void stop() noexcept { state_ = State::idle; }
-  /// All steps have succeeded.
+  /// Returns true if all steps have succeeded.
   bool done() const noexcept { return state_ == State::done; }
-  /// A step has failed; failure() says why.
+  /// Returns true if a step has failed; failure() says why.
   bool failed() const noexcept { return state_ == State::failed; }
 
   /// Handles a boot-up message. Either the current step waits for it, or the node has restarted and
@@ -90,7 +90,7 @@ class BootRunner {
   /// the commands of the plan, the runner sends PRE-OPERATIONAL before a write, unless the node is
   /// known to be in that state.
   std::optional<NmtCommand> nmt_to_send() const noexcept;
-  /// The command of nmt_to_send() was sent.
+  /// Notes that the command of nmt_to_send() was sent.
   void nmt_sent(SdoClient& client) noexcept;
 
   /// Returns true while the runner probes whether the node exists. The node may then remain silent.
@@ -107,10 +107,11 @@ class BootRunner {
   /// The NMT state of the node, and what this boot has changed about it. After the NMT start, PDOs
   /// may arrive, because their mapping is verified.
   const KnownNmtState& nmt() const noexcept { return nmt_; }
-  /// The node was OPERATIONAL and the boot leaves it in that state. CiA 302-2, status L.
+  /// Returns true if the node was OPERATIONAL and the boot leaves it in that state. CiA 302-2,
+  /// status L.
   bool keeps_running() const noexcept { return course_ == BootCourse::keeping_operational; }
-  /// The boot has read nothing but the identity so far (From::identity). The value stays true if
-  /// the identity was wrong.
+  /// Returns true if the boot has read nothing but the identity so far (From::identity). The value
+  /// stays true if the identity was wrong.
   bool identifies() const noexcept { return course_ == BootCourse::identifying; }
   /// Number of objects that differ from the plan in a node that was left OPERATIONAL.
   std::uint16_t left_alone() const noexcept { return left_alone_; }
@@ -124,7 +125,7 @@ class BootRunner {
   std::span<const LimitReading> limits() const noexcept { return limits_.all(); }
   /// Size in bytes of the program that is being downloaded; 0 means no download.
   std::size_t program_size() const noexcept;
-  /// The plan has reached the step from which the node is guarded.
+  /// Returns true if the plan has reached the step from which the node is guarded.
   bool guards() const noexcept { return guarding_ == Guarding::begun; }
   /// The record of the failure, valid if failed().
   const BootFailure& failure() const noexcept { return failure_; }

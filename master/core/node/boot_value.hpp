@@ -49,7 +49,8 @@ inline bool may_be_redundant(const BootStep& step, std::uint32_t code) noexcept 
                            code == abort_code::invalid_value || code == abort_code::device_state);
 }
 
-/// The device is alive but not ready to answer. While it boots, the request is repeated.
+/// Returns true if the device is alive but not ready to answer. While it boots, the request is
+/// repeated.
 inline bool means_busy(std::uint32_t code) noexcept {
   return code >> 16 == 0x0503 || code >> 16 == 0x0504 || code == abort_code::resource_unavailable ||
          code == abort_code::cannot_store || code == abort_code::local_control ||

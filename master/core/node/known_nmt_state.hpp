@@ -10,20 +10,20 @@ namespace takt {
 /// NMT commands of this boot.
 class KnownNmtState {
  public:
-  /// The node has sent a boot-up message.
+  /// Notes that the node has sent a boot-up message.
   void on_bootup() noexcept {
     reported_ = NmtState::bootup;
     bootup_seen_ = true;
     preoperational_ = false;
     effect_ = Effect::none;
   }
-  /// The node has reported its state by a heartbeat or a guarding answer.
+  /// Notes that the node has reported its state by a heartbeat or a guarding answer.
   void on_heartbeat(NmtState state) noexcept {
     reported_ = state;
     heartbeat_seen_ = true;
     preoperational_ = state == NmtState::preoperational;
   }
-  /// A command of the boot plan was sent.
+  /// Notes that a command of the boot plan was sent.
   void commanded(NmtCommand command) noexcept {
     if (command == NmtCommand::start) effect_ = Effect::started;
     if (!is_reset(command)) return;
@@ -32,27 +32,28 @@ class KnownNmtState {
     effect_ = Effect::none;
     reset_sent_ = true;
   }
-  /// PRE-OPERATIONAL was sent before a write.
+  /// Notes that PRE-OPERATIONAL was sent before a write.
   void commanded_preoperational() noexcept {
     if (reported_ == NmtState::operational) note_taken_out();
     preoperational_ = true;
   }
   /// The device refuses a write because of its state, so it has left PRE-OPERATIONAL by itself.
   void left_preoperational() noexcept { preoperational_ = false; }
-  /// The boot has taken the node out of OPERATIONAL.
+  /// Notes that the boot has taken the node out of OPERATIONAL.
   void note_taken_out() noexcept { effect_ = Effect::taken_out; }
 
   /// The newest state that the node has reported in this boot.
   NmtState reported() const noexcept { return reported_; }
   bool heartbeat_seen() const noexcept { return heartbeat_seen_; }
   bool bootup_seen() const noexcept { return bootup_seen_; }
-  /// The node was commanded to or reports PRE-OPERATIONAL, and has reported no other state since.
+  /// Returns true if the node was commanded to or reports PRE-OPERATIONAL, and has reported no
+  /// other state since.
   bool preoperational() const noexcept { return preoperational_; }
-  /// This boot has sent a reset.
+  /// Returns true if this boot has sent a reset.
   bool reset_sent() const noexcept { return reset_sent_; }
-  /// This boot has started the node.
+  /// Returns true if this boot has started the node.
   bool started() const noexcept { return effect_ == Effect::started; }
-  /// This boot has taken the node out of OPERATIONAL, and has not started it since.
+  /// Returns true if this boot has taken the node out of OPERATIONAL, and has not started it since.
   bool taken_out() const noexcept { return effect_ == Effect::taken_out; }
 
  private:

@@ -20,7 +20,7 @@ class NodeGuard {
   /// Stops guarding, and expects toggle bit 0 in the first answer, because the node has reset it.
   void node_was_reset() noexcept;
 
-  /// A guarding request is due.
+  /// Returns true if a guarding request is due.
   bool wants_request(Time now) const noexcept { return now >= next_request_; }
   void request_sent(Time now) noexcept;
 

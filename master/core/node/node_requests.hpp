@@ -17,7 +17,7 @@ class NodeRequests {
   /// `plan` and `table` must outlive the object.
   NodeRequests(const NodePlan& plan, RequestTable& table) noexcept : plan_{&plan}, table_{&table} {}
 
-  /// A request is being served.
+  /// Returns true if a request is being served.
   bool active() const noexcept { return active_ != nullptr; }
   /// Answers the active request if its transfer has ended.
   void follow(SdoClient& client, NodeStatus& status, Time now) noexcept;

@@ -24,7 +24,7 @@ namespace takt {
 class NmtGate {
  public:
   explicit NmtGate(Time inhibit) noexcept : inhibit_{inhibit} {}
-  /// The inhibit time is over, and a command may be sent.
+  /// Returns true if the inhibit time is over, and a command may be sent.
   bool open(Time now) const noexcept { return now >= next_; }
   void sent(Time now) noexcept { next_ = now + inhibit_; }
 
@@ -93,12 +93,12 @@ class NodeSession {
   void on_heartbeat(const Heartbeat& sign, Time now) noexcept;
   /// Takes an EMCY of any length.
   void on_emcy(const Frame& frame, Time now) noexcept;
-  /// A request for this node has been accepted.
+  /// Notes that a request for this node has been accepted.
   void on_request(Time now) noexcept { advance(now); }
   /// Cancels and answers the active request if it has this id and nothing of it was sent so far.
   /// Returns false if there is no such request.
   bool withdraw(std::uint64_t id) noexcept { return requests_.withdraw(id, client_, status_); }
-  /// An NMT command that covers this node has been sent for an application.
+  /// Notes that an NMT command that covers this node has been sent for an application.
   void on_commanded(NmtCommand command, Time now) noexcept;
   /// Handles time-outs and sends frames. Returns false if nothing was sent, because there was
   /// nothing to send or `out` has no room.
@@ -110,11 +110,12 @@ class NodeSession {
 
   /// The limits and quick stop option codes that the newest boot has read.
   std::span<const LimitReading> limits_read() const noexcept { return runner_.limits(); }
-  /// The boot has sent NMT start and waits for the confirmation.
+  /// Returns true if the boot has sent NMT start and waits for the confirmation.
   bool starts() const noexcept { return booting() && runner_.nmt().started(); }
-  /// The network is started. Nodes that boot later are started as soon as they are ready.
+  /// Notes that the network is started. Nodes that boot later are started as soon as they are
+  /// ready.
   void on_network_start() noexcept { network_ = NetworkPhase::started; }
-  /// The network starts up again. No node is started until the network is complete.
+  /// Notes that the network starts up again. No node is started until the network is complete.
   void on_network_reset() noexcept {
     network_ = NetworkPhase::starting;
     status_.boot_tried = false;
@@ -140,17 +141,18 @@ class NodeSession {
   /// begin_stop() was called, and the last command and all aborts were sent.
   bool stopped() const noexcept { return stopping() && !own_command_ && client_.idle(); }
 
-  /// A block transfer is under way.
+  /// Returns true if a block transfer is under way.
   bool streams() const noexcept { return client_.streams(); }
-  /// The node was requested to send a sub-block of a block upload, or is sending one.
+  /// Returns true if the node was requested to send a sub-block of a block upload, or is sending
+  /// one.
   bool awaits_sub_block() const noexcept { return client_.awaits_sub_block(); }
-  /// An answer of the SDO server is outstanding. Probes do not count, because the node may not
-  /// exist.
+  /// Returns true if an answer of the SDO server is outstanding. Probes do not count, because the
+  /// node may not exist.
   bool awaits_answer() const noexcept {
     return client_.awaits_answer() && !(booting() && runner_.probing());
   }
-  /// No boot has succeeded so far, and the newest one has failed because the device refused the SDO
-  /// transfer of NodeStatus::boot_step.
+  /// Returns true if no boot has succeeded so far, and the newest one has failed because the device
+  /// refused the SDO transfer of NodeStatus::boot_step.
   bool boot_refused() const noexcept {
     const BootFailure& failure = retries_.last_failure();
     return status_.boot == BootState::failed && status_.boot_count == 0 &&
@@ -158,10 +160,11 @@ class NodeSession {
   }
   const NodePlan& plan() const noexcept { return *plan_; }
   NodeStatus status() const noexcept;
-  /// The node is booted, or is only watched, and is OPERATIONAL. One heartbeat with OPERATIONAL is
-  /// not enough after an NMT command that ends the exchange of PDOs: it may have been under way.
+  /// Returns true if the node is booted, or is only watched, and is OPERATIONAL. One heartbeat with
+  /// OPERATIONAL is not enough after an NMT command that ends the exchange of PDOs: it may have
+  /// been under way.
   bool exchanges_pdos() const noexcept;
-  /// No boot, no transfer and no command is under way.
+  /// Returns true if no boot, no transfer and no command is under way.
   bool idle() const noexcept {
     return !booting() && !requests_.active() && !own_command_ && client_.idle() && !stopping() &&
            !loss_to_report_;

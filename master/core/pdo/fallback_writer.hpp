@@ -22,13 +22,13 @@ class FallbackWriter {
   /// Drops all writes that are not submitted yet.
   void stop() noexcept { next_ = values_.size(); }
 
-  /// A write waits to be submitted.
+  /// Returns true if a write waits to be submitted.
   bool waits() const noexcept { return next_ < values_.size(); }
   /// Node index of the write that waits.
   std::size_t node_index() const noexcept { return values_[next_].node_index; }
   /// The request of the write that waits.
   const Request& request() noexcept;
-  /// The network has accepted request().
+  /// Notes that the network has accepted request().
   void submitted() noexcept;
 
   /// Returns true if the reply belongs to a request of this class.

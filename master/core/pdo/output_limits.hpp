@@ -64,11 +64,11 @@ class OutputLimits {
   std::span<const std::uint16_t> dependents(SignalIndex signal) const noexcept {
     return dependents_[signal];
   }
-  /// A command to this output is judged: the output is limited, or it is the offset or the mode of
-  /// operation of a limited output.
+  /// Returns true if a command to this output is judged: the output is limited, or it is the offset
+  /// or the mode of operation of a limited output.
   bool judges(SignalIndex signal) const noexcept { return judged_[signal] != 0; }
-  /// The output at `place` is an offset, and the drive certainly adds it to its target in this
-  /// commanded mode, so that the check of the target covers it.
+  /// Returns true if the output at `place` is an offset, and the drive certainly adds it to its
+  /// target in this commanded mode, so that the check of the target covers it.
   bool covered_by_target(std::size_t place, std::int64_t mode) const noexcept;
 
   /// The node exchanges PDOs from now on, and nothing was sent to it so far.
@@ -78,16 +78,16 @@ class OutputLimits {
   /// `high`. It holds until open() is called again. Returns false, and ignores the limit, if it is
   /// implausible.
   bool narrow(const DeviceLimit& what, std::uint32_t low, std::uint32_t high) noexcept;
-  /// This output has a limit in the file or from the device.
+  /// Returns true if this output has a limit in the file or from the device.
   bool bounds(std::size_t place) const noexcept { return slots_[place].bounded; }
 
-  /// Nothing was sent so far, and the device has not sent its actual position yet, so no distance
-  /// can be measured. `mode` is the commanded mode of operation of the axis.
+  /// Returns true if nothing was sent so far, and the device has not sent its actual position yet,
+  /// so no distance can be measured. `mode` is the commanded mode of operation of the axis.
   bool lacks_start(std::size_t place, std::int64_t mode) const noexcept;
   /// Checks a command. Returns std::nullopt if it may be sent.
   std::optional<LimitBreach> judge(std::size_t place, const AxisCommand& command, Obeying obeying,
                                    std::uint64_t cycle) const noexcept;
-  /// The controlword `order` asks an axis that is not enabled to enable operation.
+  /// Returns true if the controlword `order` asks an axis that is not enabled to enable operation.
   bool begins(std::size_t place, std::int64_t order) const noexcept;
   /// The controlword of the axis that was sent last; 0 if none was sent.
   std::int64_t order(std::size_t place) const noexcept { return slots_[place].order; }
@@ -102,7 +102,7 @@ class OutputLimits {
   void expire(std::uint64_t cycle) noexcept {
     if (holds_any()) end_old_refusals(cycle);
   }
-  /// A command to this node was outside its limits, and no later one was inside.
+  /// Returns true if a command to this node was outside its limits, and no later one was inside.
   bool holds(std::size_t node_index) const noexcept { return held_[node_index] != 0; }
   bool holds_any() const noexcept { return held_nodes_ != 0; }
   /// Notes that the command is accepted and will be sent.
@@ -158,7 +158,7 @@ class OutputLimits {
     Start start = Start::moving;
   };
 
-  /// The controlword asks the axis to enable operation.
+  /// Returns true if the controlword asks the axis to enable operation.
   static bool enables(std::int64_t order) noexcept {
     constexpr std::int64_t enable_operation = 0x0F;
     return (order & enable_operation) == enable_operation;
@@ -193,15 +193,15 @@ class OutputLimits {
     bool both() const noexcept { return commanded && shown; }
   };
   Leads leads(std::size_t place, std::int64_t mode) const noexcept;
-  /// The drive follows each value of the output. The steps of target velocities and torques count
-  /// in every mode, because the next mode may follow them.
+  /// Returns true if the drive follows each value of the output. The steps of target velocities and
+  /// torques count in every mode, because the next mode may follow them.
   bool follows_each(std::size_t place, Leads found) const noexcept {
     return limits_[place].quantity != AxisQuantity::position || found.any();
   }
   double cycles_since(const Slot& slot, std::uint64_t cycle) const noexcept;
   /// The largest permitted difference, rounded to counts that the frame can carry.
   double most(std::size_t place, double counts, double at) const noexcept;
-  /// A difference is larger than permitted.
+  /// Returns true if a difference is larger than permitted.
   bool exceeds(std::size_t place, double length, double counts, double at) const noexcept;
   std::optional<LimitBreach> outside(std::size_t place, double value,
                                      bool from_actual) const noexcept;

@@ -41,7 +41,7 @@ class PdoInputs {
   /// Takes a frame. Returns false if it is no TPDO of this bus.
   bool receive(const StampedFrame& stamped) noexcept;
 
-  /// No TPDO that this beat waits for is outstanding.
+  /// Returns true if no TPDO that this beat waits for is outstanding.
   bool complete() const noexcept { return outstanding_ == 0; }
   /// Number of TPDOs for which this beat waits or has waited.
   std::uint32_t expected() const noexcept { return expected_; }
@@ -56,7 +56,8 @@ class PdoInputs {
     for (PdoMark& mark : marks_) mark.flags = 0;
   }
 
-  /// The TPDO of this signal has arrived since its reception began, and is not overdue.
+  /// Returns true if the TPDO of this signal has arrived since its reception began, and is not
+  /// overdue.
   bool fresh(SignalIndex signal) const noexcept { return !image_.is_stale(signal); }
 
   std::size_t size() const noexcept { return rows_.size(); }

@@ -49,7 +49,8 @@ class PdoOutputs {
   /// Makes the frames that are due, in the order of the table. They are valid until the next call.
   /// `set_points` holds one set-point for each output signal.
   std::span<const Frame> pack(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
-  /// A value has changed and is not sent yet, for example because of an inhibit time.
+  /// Returns true if a value has changed and is not sent yet, for example because of an inhibit
+  /// time.
   bool pending() const noexcept {
     return std::ranges::any_of(rows_, [](const Row& r) { return r.open && r.ready && r.pending; });
   }
@@ -71,9 +72,9 @@ class PdoOutputs {
   void fall_back() noexcept;
   /// Ends fall_back(). Each output keeps its fallback until its next command.
   void hear_again() noexcept { stopping_ = false; }
-  /// The output has a value that can be sent.
+  /// Returns true if the output has a value that can be sent.
   bool known(SignalIndex signal) const noexcept { return outputs_[output_of(signal)].known; }
-  /// The output was commanded, and its fallback is in force.
+  /// Returns true if the output was commanded, and its fallback is in force.
   bool fallen(SignalIndex signal) const noexcept { return outputs_[output_of(signal)].fallen; }
   /// Forces this value from now on and refuses commands to the output, for an ordered stop or the
   /// loss of a node.
@@ -83,7 +84,7 @@ class PdoOutputs {
 
   /// Number of commands that the last pack() has seen for the first time.
   std::uint32_t fresh_commands() const noexcept { return fresh_commands_; }
-  /// Every signal of this RPDO has a value that can be sent.
+  /// Returns true if every signal of this RPDO has a value that can be sent.
   bool ready(std::size_t row) const noexcept { return rows_[row].ready; }
   /// Status of an RPDO; `row` is the index into PdoTable::rpdos.
   RpdoStatus status(std::size_t row) const noexcept {
@@ -164,8 +165,8 @@ class PdoOutputs {
     const bool configured = output.limit != 0 && output.limit < set_point.time_to_live;
     return set_point.time_to_live == 0 || configured ? output.limit : set_point.time_to_live;
   }
-  /// The command has expired before the bus thread has seen it. A command without limit may wait
-  /// for one second.
+  /// Returns true if the command has expired before the bus thread has seen it. A command without
+  /// limit may wait for one second.
   bool is_late(const Output& output, const SetPoint& set_point,
                OutputMoment moment) const noexcept {
     const std::uint32_t waited = age(set_point, moment);
@@ -196,7 +197,7 @@ class PdoOutputs {
   void check_limits(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
   /// Checks one command from within the bus thread. Returns false if it is dropped.
   bool within_limits(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
-  /// This command is new, and is accepted if it is inside its limits.
+  /// Returns true if this command is new, and is accepted if it is inside its limits.
   bool is_news(const Output& output, const SetPoint& set_point,
                OutputMoment moment) const noexcept {
     return set_point.generation != output.generation && set_point.time_to_live != output_released &&

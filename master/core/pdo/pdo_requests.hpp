@@ -33,15 +33,16 @@ class PdoRequests {
                Outbox& out) noexcept;
   /// Extends all time-outs by the time for which the master itself did not run.
   void excuse(Time away) noexcept;
-  /// A request waits for a TPDO, so on_frame() needs the TPDOs that come.
+  /// Returns true if a request waits for a TPDO, so on_frame() needs the TPDOs that come.
   bool waiting() const noexcept { return waiting_ != 0 || owed_ != 0; }
   /// Takes a received TPDO; `row` is the index into PdoTable::tpdos.
   void on_frame(std::uint16_t row, const StampedFrame& stamped) noexcept;
   /// Takes the next reply. Returns false if there is none.
   bool take(Reply& reply) noexcept;
-  /// No request is under way, and no late answer can still come.
+  /// Returns true if no request is under way, and no late answer can still come.
   bool idle() const noexcept { return used_ == 0 && owed_ == 0; }
-  /// A request to this node is not answered yet. The request may be an exchange that sends an RPDO.
+  /// Returns true if a request to this node is not answered yet. The request may be an exchange
+  /// that sends an RPDO.
   bool reaches(std::uint8_t node) const noexcept;
   /// Cancels and answers all requests.
   void cancel_all() noexcept;

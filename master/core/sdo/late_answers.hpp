@@ -18,7 +18,7 @@ class LateAnswers {
   /// Whether a frame also fits the request that is under way.
   enum class Fits : std::uint8_t { only_earlier, request_under_way };
 
-  /// The request, which was sent at `sent`, has timed out.
+  /// Notes that the request, which was sent at `sent`, has timed out.
   void timed_out(const SdoQuestion& request, Time sent) noexcept {
     if (count_ == open_.size()) forget(0);
     open_[count_++] = {.request = request, .sent = sent};
@@ -45,7 +45,7 @@ class LateAnswers {
   /// The longest time from a request that had timed out to its answer; 0 means that no such answer
   /// has come.
   Time longest() const noexcept { return longest_; }
-  /// The server was reset and will not answer the earlier requests.
+  /// Notes that the server was reset and will not answer the earlier requests.
   void forget_requests() noexcept { count_ = 0; }
   void reset() noexcept {
     count_ = 0;

@@ -55,7 +55,7 @@ class OwnDictionary {
  private:
   static constexpr std::uint8_t no_node = 0xFF;
 
-  /// The object has one sub-index for each node.
+  /// Returns true if the object has one sub-index for each node.
   static bool is_of_nodes(std::uint16_t index) noexcept;
   Value read_communication(ObjectKey key) const noexcept;
   Value read_variable(std::uint16_t index) const noexcept;

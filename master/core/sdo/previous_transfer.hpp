@@ -36,7 +36,7 @@ struct PreviousTransfer {
     }
     return in_block_upload ? End::abandoned_in_block : End::abandoned;
   }
-  /// The server was reset: it sends no segments and refuses no repetition any more.
+  /// Notes that the server was reset: it sends no segments and refuses no repetition any more.
   void server_was_reset() noexcept {
     if (end == End::block) end = End::regular;
     if (end == End::violated_in_block) end = End::violated;

@@ -30,15 +30,15 @@ class SdoBlockDownload {
 
   /// The frame to send now, or std::nullopt if the client waits for the server.
   std::optional<Frame> to_send() const noexcept;
-  /// The frame of to_send() was sent.
+  /// Notes that the frame of to_send() was sent.
   void sent() noexcept;
-  /// The server will answer the frame that is to be sent next.
+  /// Returns true if the server will answer the frame that is to be sent next.
   bool answered() const noexcept;
 
   /// Takes a frame of the server, except for aborts.
   SdoStep on_frame(const Frame& frame) noexcept;
 
-  /// The server has not accepted the transfer yet.
+  /// Returns true if the server has not accepted the transfer yet.
   bool initiates() const noexcept { return state_ == State::initiate; }
   /// Bytes that the server has confirmed.
   std::size_t moved() const noexcept { return confirmed_; }

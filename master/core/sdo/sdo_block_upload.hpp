@@ -43,13 +43,13 @@ class SdoBlockUpload {
 
   /// The frame to send now, or std::nullopt if the client waits for the server.
   std::optional<Frame> to_send() const noexcept;
-  /// The frame of to_send() was sent.
+  /// Notes that the frame of to_send() was sent.
   void sent() noexcept { to_send_ = Next::nothing; }
-  /// The server will answer the frame that is to be sent next with a sub-block.
+  /// Returns true if the server will answer the frame that is to be sent next with a sub-block.
   bool asks_for_sub_block() const noexcept {
     return state_ == State::segments && to_send_ != Next::nothing;
   }
-  /// A sub-block was requested and has not ended.
+  /// Returns true if a sub-block was requested and has not ended.
   bool awaits_sub_block() const noexcept {
     return state_ == State::segments && to_send_ == Next::nothing;
   }
@@ -67,7 +67,7 @@ class SdoBlockUpload {
     return state_ == State::segments && held_back_ != Held::nothing && !asked_again_;
   }
 
-  /// The server has not accepted the transfer yet.
+  /// Returns true if the server has not accepted the transfer yet.
   bool initiates() const noexcept { return state_ == State::initiate; }
   /// Number of bytes that were received in sequence. At the end, the number is exact; before, it
   /// does not include the newest segment.

@@ -75,7 +75,8 @@ class SdoClient {
                      std::uint8_t segments = most_block_segments) noexcept
       : channel_{channel}, block_use_{block}, segments_{segments} {}
 
-  /// No transfer is running, no result waits to be taken and no abort waits to be sent.
+  /// Returns true if no transfer is running, no result waits to be taken and no abort waits to be
+  /// sent.
   bool idle() const noexcept { return state_ == State::idle && !result_ && !closing_; }
 
   /// Begins an upload; the client must be idle. `timeout` is the longest permitted silence of the
@@ -115,18 +116,19 @@ class SdoClient {
     if (deadline_ != never) deadline_ += away;
   }
 
-  /// A block transfer is under way, so the next frame of the server comes soon.
+  /// Returns true if a block transfer is under way, so the next frame of the server comes soon.
   bool streams() const noexcept { return state_ == State::running && is_block(); }
-  /// The server sends a sub-block, one segment after another, as fast as the wire permits.
+  /// Returns true if the server sends a sub-block, one segment after another, as fast as the wire
+  /// permits.
   bool awaits_sub_block() const noexcept {
     return state_ == State::running && block_upload() && block_upload()->awaits_sub_block();
   }
-  /// A frame was sent, and the server has not answered it.
+  /// Returns true if a frame was sent, and the server has not answered it.
   bool awaits_answer() const noexcept { return deadline_ != never && !next_frame(); }
   const SdoChannel& channel() const noexcept { return channel_; }
   /// The newest frames of the newest transfer.
   const SdoTrace& trace() const noexcept { return trace_; }
-  /// A frame of the newest transfer was sent.
+  /// Returns true if a frame of the newest transfer was sent.
   bool begun() const noexcept { return trace_.sent.length != 0; }
   /// When the newest frame of the server came, whatever it was.
   Time heard_at() const noexcept { return heard_at_; }
@@ -179,9 +181,9 @@ class SdoClient {
   bool is_block() const noexcept { return block_upload() || block_download(); }
   bool initiates() const noexcept;
   bool runs() const noexcept { return state_ == State::running || state_ == State::without_block; }
-  /// The first request of a transfer without blocks is not answered yet.
+  /// Returns true if the first request of a transfer without blocks is not answered yet.
   bool initiates_plain() const noexcept { return runs() && !is_block() && initiates(); }
-  /// The first request of a block transfer is not answered yet.
+  /// Returns true if the first request of a block transfer is not answered yet.
   bool unanswered_block() const noexcept { return streams() && initiates(); }
   bool may_use_block() const noexcept {
     return block_use_ != SdoBlockUse::off && block_support_ == BlockSupport::assumed;

@@ -8,8 +8,8 @@ namespace takt {
 
 namespace {
 
-/// The abort code says that the server does not support block transfer at all, rather than that it
-/// refuses this one.
+/// Returns true if the abort code says that the server does not support block transfer at all,
+/// rather than that it refuses this one.
 bool refuses_block(std::uint32_t code) noexcept {
   switch (code) {
     case abort_code::command_unknown:

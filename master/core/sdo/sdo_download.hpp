@@ -31,12 +31,12 @@ class SdoDownload {
 
   /// The frame to send now, or std::nullopt if the client waits for the server.
   std::optional<Frame> to_send() const noexcept { return to_send_; }
-  /// The frame of to_send() was sent.
+  /// Notes that the frame of to_send() was sent.
   void sent() noexcept { to_send_.reset(); }
 
   /// The request that was sent last.
   SdoQuestion question() const noexcept;
-  /// No data were transferred yet.
+  /// Returns true if no data were transferred yet.
   bool initiates() const noexcept { return state_ == State::initiate; }
   /// Takes a frame that fits question().
   SdoStep on_answer(const Frame& frame) noexcept;

@@ -26,7 +26,8 @@ struct SdoQuestion {
     return initiates(kind) || sdo_toggle(frame) == toggle ? Fit::fits : Fit::other_toggle;
   }
 
-  /// The frame is an answer to this request. An abort for the object answers every request.
+  /// Returns true if the frame is an answer to this request. An abort for the object answers every
+  /// request.
   bool is_answered_by(const Frame& frame) const noexcept {
     if (sdo_answer(frame) == SdoAnswer::abort) return sdo_object(frame) == object;
     return compare(frame) == Fit::fits;

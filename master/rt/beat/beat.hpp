@@ -42,8 +42,8 @@ class Beat {
   Time window_end() const noexcept {
     return std::min(sync_at_ + plan_.receive_window, outputs_due());
   }
-  /// This thread has stood still since SYNC. The time-outs must take this absence into account
-  /// before the state machines run again.
+  /// Returns true if this thread has stood still since SYNC. The time-outs must take this absence
+  /// into account before the state machines run again.
   bool stalled(Time now) const noexcept { return now - sync_at_ > longest_lapse * period(); }
   /// Returns the time for which this thread stood still before this SYNC; 0 if it was so short that
   /// time-outs need not take it into account. Call this once a cycle.

@@ -25,7 +25,7 @@ class AxisStops {
   const OrderedStop& ordered() const noexcept { return ordered_; }
   OrderedStop& halt() noexcept { return halt_; }
   const OrderedStop& halt() const noexcept { return halt_; }
-  /// The ordered stop has begun.
+  /// Returns true if the ordered stop has begun.
   bool stopping() const noexcept { return ordered_.stage() != StopStage::running; }
   bool halting() const noexcept { return halt_.stage() != StopStage::running; }
   /// Returns true if one of the two stops commands this axis.

@@ -43,8 +43,8 @@ class NmtHalt {
     halt.call_off();
     if (halt.target() == OrderedStop::every_node) outputs.hear_again();
   }
-  /// The master sends no SYNC, because it is in NMT Stopped. An ordered stop needs SYNC again to
-  /// see the axes.
+  /// Returns true if the master sends no SYNC, because it is in NMT Stopped. An ordered stop needs
+  /// SYNC again to see the axes.
   bool silences_master() const noexcept {
     return !stops_.stopping() && stops_.halt().axes_done() &&
            bus_.services.own_state() == NmtState::stopped;

@@ -57,8 +57,8 @@ class StopControl {
 
   /// Returns true if the master sends no SYNC, see NmtHalt.
   bool silences_master() const noexcept { return stops_.halting() && halt_.silences_master(); }
-  /// The master sends no RPDOs in this cycle. In NMT Stopped it sends only fallbacks that an
-  /// inhibit time holds back.
+  /// Returns true if the master sends no RPDOs in this cycle. In NMT Stopped it sends only
+  /// fallbacks that an inhibit time holds back.
   bool withholds_outputs() noexcept {
     return sync_loss_.withholds_outputs() || (silences_master() && !bus_.pdos.outputs().pending());
   }

@@ -62,7 +62,7 @@ class BusNode {
   }
   /// No queued frame expires earlier.
   Time first_expiry() const noexcept { return first_expiry_; }
-  /// The order of arrival does not decide which frame is offered.
+  /// Returns true if the order of arrival does not decide which frame is offered.
   bool offers_any() const noexcept {
     return options.order == QueueOrder::priority && queue_.size() > 1;
   }

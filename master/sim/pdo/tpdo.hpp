@@ -31,7 +31,7 @@ class Tpdo {
     if (active_) sample_at_sync(counter, ready, window_end, out);
   }
   void on_request(Time ready, Transmitter& out) noexcept;
-  /// The RPDO with the same number was received.
+  /// Answers the RPDO with the same number, which was received.
   void answer(Time ready, Transmitter& out) noexcept;
   /// Called when mapped values may have changed.
   void notice(Time now, Transmitter& out) noexcept {

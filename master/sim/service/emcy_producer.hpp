@@ -42,7 +42,7 @@ class EmcyProducer {
   }
   /// Sends an EMCY and enters the error in the history, but not in the list of active errors.
   void announce(std::uint16_t code, Detail detail = {}) noexcept;
-  /// No error is active, and no message waits.
+  /// Returns true if no error is active, and no message waits.
   bool quiet() const noexcept { return active_count_ == 0 && waiting_ == 0; }
   bool is_active(std::uint16_t code, std::uint8_t source = 0) const noexcept;
 
