@@ -12,8 +12,8 @@ namespace takt {
 
 /// The bus of `--bus sim`: simulates the devices of the plan behind a Port, in real time and inside
 /// the bus thread. Each call first advances the world to the current time, so no further thread is
-/// needed. If the machine stalls the bus thread, the devices stall too: a simulation that went on
-/// alone would say nothing about a real bus.
+/// needed. If the machine stalls the bus thread, the devices stall too: a simulation that
+/// continued alone would not behave as a real bus.
 class SimulatedBus {
  public:
   SimulatedBus(std::span<const DeviceTable> devices, const BusPlan& plan, Time spin);

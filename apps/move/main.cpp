@@ -20,8 +20,8 @@ volatile std::sig_atomic_t stop = 0;
 
 void on_signal(int) { stop = stop == 0 ? 1 : 2; }
 
-/// The terminal is gone. SIGHUP and SIGPIPE may come several times; they never count as the second
-/// signal.
+/// The terminal was closed. SIGHUP and SIGPIPE may come several times; they never count as the
+/// second signal.
 void on_hangup(int) {
   if (stop == 0) stop = 1;
 }

@@ -18,8 +18,8 @@ struct MoveOptions {
   std::vector<double> to;
   bool point = true;
   bool sine = true;
-  /// Longest duration of the move and the sine together. Empty means what the move takes, and a
-  /// sine up to the tenth second, but at least one period.
+  /// Longest duration of the move and the sine together. Empty means that the sine
+  /// follows the move until the tenth second, but for at least one period.
   std::optional<double> seconds;
   std::optional<double> amplitude;
   double frequency = 0.5;

@@ -18,7 +18,7 @@ namespace takt {
 class AsciiFront {
  public:
   /// Listens on `unix:PATH` or `tcp:PORT`. `plan` must outlive the AsciiFront. `warn`
-  /// receives troubles of the socket later on. The error is a sentence for the user.
+  /// receives messages on later failures of the socket. The error is a sentence for the user.
   static std::expected<std::unique_ptr<AsciiFront>, std::string> open(
       const std::string& where, const BusPlan& plan,
       std::function<void(const std::string& sentence)> warn);

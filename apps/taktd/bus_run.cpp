@@ -99,7 +99,7 @@ void BusRun::watch_lateness() {
 
 /// Ends the run if the boot of a mandatory node fails before the node was ever ready, and the next
 /// try will not ask the node in another way. A node that was ready before is booted again by its
-/// plan, while the other nodes go on.
+/// plan, while the other nodes continue.
 void BusRun::on_notice(const Notice& notice) {
   front_.reporter.announce(network_.plan, notice);
   recorder_.on_fault(notice);

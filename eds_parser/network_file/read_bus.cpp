@@ -71,7 +71,7 @@ constexpr Key<LcmOptions> lcm_keys[] = {
                            "Key file: `taktd` then accepts commands, requests and files in "
                            "envelopes only."),
     key<read_authenticate>("authenticate", word_of(signed_words), "`commands`",
-                           "`images`: `taktd` also sends what it publishes in envelopes. Needs "
+                           "`images`: `taktd` also signs the messages that it publishes. Needs "
                            "`keys`."),
     key<&LcmOptions::typed>("typed", "true",
                             "`BUS_NODE_STATE` and `BUS_NODE_COMMAND` of each node, in the types "

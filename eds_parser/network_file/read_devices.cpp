@@ -164,8 +164,8 @@ constexpr Key<TimerRule> timer_keys[] = {
 
 constexpr Key<SyncRule> sync_keys[] = {
     key<&SyncRule::own_tpdos_from>("own_tpdos_from", "none",
-                                   "The firmware from which a SYNC of its own triggers the TPDOs "
-                                   "of the device."),
+                                   "The first firmware in which the SYNC that the device itself "
+                                   "sends triggers its TPDOs."),
     key<&SyncRule::tx_identifier>("tx_identifier", object_index, "none",
                                   "This object is its identifier for sending SYNC; the rule only "
                                   "holds while it is equal to 0x1005."),

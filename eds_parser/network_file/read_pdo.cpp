@@ -98,7 +98,7 @@ constexpr Key<PdoSpec> pdo_keys[] = {
     key<&PdoSpec::on_request>("request", "false; true for a parameter channel of the device data",
                               "The PDO is not part of the image: requests alone use it."),
     key<&PdoSpec::drop_late>("late", word_of(late_words), "`use`",
-                             "TPDO: what becomes of a synchronous frame that comes too late."),
+                             "TPDO: whether a synchronous frame that comes too late is used."),
     key<read_mpdo>("mpdo", word_of(mpdo_words), "from the EDS",
                    "Multiplexed PDO, by source address (`sam`) or by destination (`dam`)."),
     key<read_mapping>("mapping", {.type = KeyType::list, .parts = rows_of<mapping_keys>},

@@ -18,7 +18,7 @@ enum class SdoFault : std::uint8_t {
                       ///< master has sent.
   timeout,   ///< The device has not answered in time; the master has sent abort code 0504 0000.
   too_long,  ///< The answer does not fit into the buffer; the master has sent abort code 0504 0005.
-  cancelled,  ///< The node was reset, the master stops, or the sender has called the request off.
+  cancelled,       ///< The node was reset, the master stops, or the sender has cancelled it.
   no_such_node,    ///< Requests: the network file has no such node.
   refused,         ///< Requests: the master only observes.
   no_such_pdo,     ///< PDO requests: the network file has no such PDO of the node.

@@ -11,7 +11,7 @@ namespace takt {
 /// Additional time that the ordered stop of a simulated master may take beyond the plan's limit.
 inline constexpr Time stop_slack = std::chrono::seconds{1};
 
-/// Collects the outcome of a run while it goes on.
+/// Collects the outcome of a run during the run.
 class OutcomeLedger {
  public:
   OutcomeLedger(const BusPlan& plan, const WireStatistics& wire, std::uint64_t seed);

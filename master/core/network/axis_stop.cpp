@@ -10,7 +10,7 @@ constexpr Time silent_after = std::chrono::milliseconds{500};
 
 }  // namespace
 
-/// A rest that this value begins lasts since `from`.
+/// Takes a value. `from` is the begin of the rest if this value is its first one.
 void Standstill::rest(Time from, Time now, bool within) noexcept {
   if (!within || !resting_) {
     since_ = last_ = from;

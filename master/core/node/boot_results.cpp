@@ -4,7 +4,7 @@
 #include "master/core/node/boot_runner.hpp"
 #include "master/core/node/boot_value.hpp"
 
-// The results of the SDO transfers of a boot, and what follows from them.
+// Evaluates the results of the SDO transfers of a boot.
 
 namespace takt {
 

@@ -5,8 +5,7 @@
 
 #include "eds_parser/table/waits.hpp"
 
-// The way of the boot through its steps: the waits, the NMT commands, and the begin of each
-// transfer.
+// Runs the boot from step to step: the waits, the NMT commands, and the begin of each transfer.
 
 namespace takt {
 namespace {
@@ -241,8 +240,8 @@ bool BootRunner::begin_transfer(Time now, SdoClient& client) noexcept {
 }
 
 /// Parameters are written in PRE-OPERATIONAL. A device that starts by itself leaves this state
-/// unasked, and a device in STOPPED answers no SDO at all. A node that is or may be OPERATIONAL is
-/// not written to.
+/// without a command, and a device in STOPPED answers no SDO at all. A node that is or may be
+/// OPERATIONAL is not written to.
 bool BootRunner::needs_preop() const noexcept {
   const bool leaves_state =
       course_ == BootCourse::keeping_operational || course_ == BootCourse::probing_silent_node;

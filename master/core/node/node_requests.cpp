@@ -19,7 +19,7 @@ void NodeRequests::follow(SdoClient& client, NodeStatus& status, Time now) noexc
   if (const auto result = client.take_result()) answer(*result, client, status);
 }
 
-/// Publishes the progress of a transfer, and cancels it if the sender has called it off.
+/// Publishes the progress of a transfer, and cancels it if its sender asks for that.
 void NodeRequests::follow_transfer(SdoTransfer& transfer, SdoClient& client, Time now) noexcept {
   transfer.done.store(static_cast<std::uint32_t>(client.progress()), std::memory_order_relaxed);
   transfer.announced.store(static_cast<std::uint32_t>(client.announced()),
@@ -62,7 +62,7 @@ void NodeRequests::begin_next(SdoClient& client, Time now) noexcept {
   client.download(request.object, std::span{request.data}.first(size), timeout);
 }
 
-/// Activates the next request. Requests that were called off while they waited are answered at
+/// Activates the next request. Requests that were cancelled while they waited are answered at
 /// once.
 bool NodeRequests::activate_next() noexcept {
   for (;;) {

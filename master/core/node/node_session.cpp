@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-// Beginning, and what the node reports.
+// The start of the session, and the evaluation of the node's frames.
 
 namespace takt {
 
@@ -79,7 +79,7 @@ void NodeSession::on_heartbeat(const Heartbeat& sign, Time now) noexcept {
   advance(now);
 }
 
-/// Brings a node back that leaves OPERATIONAL unasked, for example because it has missed the
+/// Brings a node back that leaves OPERATIONAL by itself, for example because it has missed the
 /// heartbeat of the master. The first such heartbeat is ignored, because it may have been under way
 /// while the node was started.
 void NodeSession::look_for_fall(NmtState state, Time now) noexcept {

@@ -31,7 +31,7 @@ bool OutputLimits::enabled(std::size_t place) const noexcept {
 
 /// The axis is not enabled, so that it would start from its actual position, and this position is
 /// known. A drive that has left Operation enabled by itself, while its application still commands a
-/// motion, can't be enabled without another controlword. Its set-points may go on until then.
+/// motion, can't be enabled without another controlword. Its set-points may continue until then.
 bool OutputLimits::starts_from_actual(std::size_t place, std::int64_t order) const noexcept {
   if (enabled(place) || !actual(place)) return false;
   const auto statusword = limits_[place].statusword;

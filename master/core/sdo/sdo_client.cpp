@@ -159,7 +159,7 @@ void SdoClient::on_silence() noexcept {
     state_ = State::withdrawing;
     return;
   }
-  // Nothing came but the answer that was ignored, so that answer was meant.
+  // No other answer came than the ignored one, so that one belonged to this request.
   if (asked_.misanswered) return abort(SdoFault::aborted_by_master, abort_code::command_unknown);
   give_up_late();
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
 /// A connection to LCM, and the keys of a bus that accepts only signed commands. The message types
-/// are those of share/lcm: `#include <takt/image_t.hpp>` and the like, made by lcm-gen.
+/// are those of share/lcm. lcm-gen makes one header for each, such as <takt/image_t.hpp>.
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -278,7 +278,7 @@ void LimitJudge::judge(Time now) {
 
 /// Returns the value that the limits of an output hold for: the sum with its offset if the drive
 /// adds both. The result is empty if they hold for a sum to which the output belongs, or if the
-/// mode has changed so recently that one cannot say.
+/// mode has changed so recently that this is uncertain.
 std::optional<double> LimitJudge::limited_value(const Place& place) const noexcept {
   const OutputLimit& limit = *place.limit;
   const double value = sent_[limit.signal - plan_.layout.inputs];

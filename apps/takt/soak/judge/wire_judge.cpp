@@ -116,7 +116,7 @@ void WireJudge::judge_holder(const Signal& signal, const Known& known, Time now)
                     std::countr_zero(holder.sender), (holder.until - now) / 1us));
   }
   if (holder.sender != known.senders) holder = {.sender = known.senders, .until = {}};
-  // A value from before the release may still be on its way to the wire, and holds nothing.
+  // A value from before the release may come to the wire later; it does not hold the node.
   if (known.computed_from > released_[sender]) {
     holder.until = std::max(holder.until, known.held_until);
   }
