@@ -46,8 +46,8 @@ class MutantTree:
     """The copy lies in `folder`/tree and is built in tree/build/mutants, as a checkout is, so that ccache finds what it has
     compiled there."""
 
-    def __init__(self, project, folder, jobs, programs):
-        self.project, self.folder, self.jobs, self.programs = project, folder, jobs, programs
+    def __init__(self, project, folder, jobs, programs, rooms=()):
+        self.project, self.folder, self.jobs, self.programs, self.rooms = project, folder, jobs, programs, rooms
         self.tree = folder / "tree"
         self.build = self.tree / "build/mutants"
         self.refused = KeptSet(folder / "refused.json")  # keys of mutants
@@ -56,7 +56,7 @@ class MutantTree:
 
     def make(self, choice):
         """Builds the programs; returns the mutants that compile, as many for each room as is its share."""
-        mutants = {room: self.take(choice, room, share + -(-share // SPARE)) for room, share in choice.shares.items() if share}
+        mutants = {room: self.take(choice, room, share + -(-share // SPARE)) for room, share in self.shares(choice).items()}
         while True:
             self.write([mutant for found in mutants.values() for mutant in found])
             refused = self.refused_headers() or self.refused_sources()
@@ -70,6 +70,11 @@ class MutantTree:
                 found[:] = [mutant for mutant in found if mutant.number not in refused]
                 found += self.take(choice, room, choice.shares[room] - len(found))
         return [mutant for room, found in mutants.items() for mutant in found[:choice.shares[room]]]
+
+    def shares(self, choice):
+        """The share of each wanted room. A room is wanted if no room is named, or if it or a folder above it is named."""
+        return {room: share for room, share in choice.shares.items()
+                if share and (not self.rooms or any(f"{room}/".startswith(f"{named}/") for named in self.rooms))}
 
     def take(self, choice, room, count):
         """The next mutants of the room that have not been refused by an earlier run."""

@@ -5,6 +5,7 @@
   mutate.py --list               only prints the mutants, without those that turn out not to compile
   mutate.py --only 17,23         runs only these mutants, for example after a test has been written
   mutate.py --programs unit_eds,unit_plan     builds and runs only these programs
+  mutate.py --rooms master/wire --programs unit_wire   runs only those of the 200 mutants that are in this folder
   mutate.py --self-test          shows with a small project that mutants are caught, that they survive, and what is mutated
 
 All mutants are in one copy of the tree, and an environment variable selects one of them at run time; so the programs are built
@@ -87,9 +88,9 @@ def run(project, options, folder, reasons, least_limit=5.0):
     choice = Choice(read_sources(project.root, project.folders), options.seed, options.count)
     print(f"{choice.places} possible mutations in {choice.lines} lines of {len(choice.shares)} rooms", flush=True)
     folder.mkdir(parents=True, exist_ok=True)
-    tree = MutantTree(project, folder, options.jobs, options.programs)
+    tree = MutantTree(project, folder, options.jobs, options.programs, options.rooms)
     if options.list:
-        for room, share in choice.shares.items():
+        for room, share in tree.shares(choice).items():
             for mutant in tree.take(choice, room, share):
                 print(f"{mutant.where()}: {mutant.mutation.title()}")
         return 0
@@ -117,6 +118,7 @@ def main():
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--only", type=lambda text: {int(number) for number in text.split(",")})
     parser.add_argument("--programs", type=lambda text: tuple(text.split(",")), default=TAKT.programs)
+    parser.add_argument("--rooms", type=lambda text: tuple(text.split(",")), default=())
     parser.add_argument("--self-test", action="store_true")
     options = parser.parse_args()
     if options.self_test:

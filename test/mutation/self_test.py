@@ -111,7 +111,7 @@ def wrong_verdicts():
             shutil.copy(HERE / name, root / "test/mutation")
         subprocess.run(["git", "init", "-q", root], check=True)
         project = Project(root, ("code",), (), ("small",), ("-G", "Ninja"))
-        every = argparse.Namespace(seed=1, count=100, jobs=1, list=False, only=None, programs=("small",))
+        every = argparse.Namespace(seed=1, count=100, jobs=1, list=False, only=None, rooms=(), programs=("small",))
         told = io.StringIO()
         with contextlib.redirect_stdout(told):
             code = mutate.run(project, every, pathlib.Path(folder, "work"), set(), least_limit=1.0)
