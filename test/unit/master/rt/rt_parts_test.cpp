@@ -208,6 +208,20 @@ TEST(PortWatch, ReportsEachChangeOnce) {
                                          EventKind::receive_overrun}));
 }
 
+TEST(PortWatch, GivesTheErrorOfAnInterfaceOnlyWhileItIsDown) {
+  auto events = std::make_unique<EventQueue>();
+  PortWatch watch{*events};
+  watch.on_news({.interface_down = true, .last_error = ENETDOWN}, 1ms);
+  watch.on_news({.last_error = ENETDOWN}, 2ms);
+  Event event;
+  ASSERT_TRUE(events->pop(event));
+  EXPECT_EQ(event.kind, EventKind::interface_down);
+  EXPECT_EQ(event.detail, static_cast<std::uint32_t>(ENETDOWN));
+  ASSERT_TRUE(events->pop(event));
+  EXPECT_EQ(event.kind, EventKind::interface_up);
+  EXPECT_EQ(event.detail, 0U);
+}
+
 TEST(PortWatch, NamesTheCauseOfAFullBuffer) {
   auto events = std::make_unique<EventQueue>();
   PortWatch watch{*events};

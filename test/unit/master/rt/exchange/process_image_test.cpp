@@ -13,6 +13,17 @@ void publish(ImageRing& ring, std::uint64_t cycle, std::size_t signals) {
   ring.publish({.cycle = cycle}, values, stale);
 }
 
+TEST(ImageView, CountsTheCyclesSinceTheNewestFrameOfATpdo) {
+  const PdoMark marks[]{{.cycle = 1000}, {.cycle = 997}, {.cycle = 0xFFFF'FFFE}};
+  ImageView image;
+  image.pdos = marks;
+  image.cycle = 1000;
+  EXPECT_EQ(image.age(0), 0U);
+  EXPECT_EQ(image.age(1), 3U);
+  image.cycle = 0x1'0000'0001;  // A mark has only the low 32 bits of the cycle.
+  EXPECT_EQ(image.age(2), 3U);
+}
+
 TEST(ImageRing, GivesImagesInOrder) {
   ImageRing ring{70};
   ImageView image;
