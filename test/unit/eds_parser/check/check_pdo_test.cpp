@@ -57,6 +57,16 @@ TEST(CheckPdo, NoTransmissionTypeSparesNoOtherEntry) {
   EXPECT_TRUE(has(check(read(sub("1800sub6", 5, "241")).dictionary), "pdo-sync-start"));
 }
 
+TEST(CheckPdo, ASyncStartValueIsACounterOfSync) {
+  const auto reported = [](const std::string& value) {
+    return has(check(read(sub("1800sub6", 5, value)).dictionary), "pdo-sync-start");
+  };
+
+  EXPECT_FALSE(reported("0"));
+  EXPECT_FALSE(reported("240"));
+  EXPECT_TRUE(reported("241"));
+}
+
 TEST(CheckPdo, AnEventTimerBesideASynchronousTypeIsReported) {
   const auto reported = [](const Record& record) {
     return has(judged(record), "pdo-event-timer-unused");

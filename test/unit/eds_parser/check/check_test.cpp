@@ -363,6 +363,12 @@ TEST(Check, LooksAtEachModuleOfADeviceOfSeveral) {
             (Indices{"6800"}));
 }
 
+// The objects of the third module are higher by 0x1000, so object 0x1000, which every device has,
+// is none of its channels.
+TEST(Check, TheDeviceTypeIsNoChannelOfTheThirdModule) {
+  EXPECT_EQ(missing("0xFFFF0191", entry("77FF", "7", "0x00030191")), (Indices{"7000", "7200"}));
+}
+
 TEST(Check, DemandsTheObjectsOfAnEncoder) {
   EXPECT_EQ(missing("0x00010196"),
             (Indices{"6000", "6500", "6501", "6503", "6504", "6507", "6004"}));

@@ -38,6 +38,21 @@ TEST(WidthOfLimits, OfAnSdoChannelCostItsSwitch) {
   EXPECT_FALSE(has(judged(object("1200sub1", "7", "0", "65535", "ro")), "limits-of-16-bits"));
 }
 
+TEST(WidthOfLimits, OfAMappingCostTheIndexOfTheObject) {
+  const auto findings = judged(object("1A00sub1", "7", "0", "65535"));
+
+  ASSERT_TRUE(has(findings, "limits-of-16-bits"));
+  EXPECT_NE(find(findings, "limits-of-16-bits")->message.find("nothing can be mapped"),
+            std::string::npos);
+}
+
+TEST(WidthOfLimits, OfAnEntryOfAnotherRecordAreTheRangeThatIsLeft) {
+  const auto findings = judged(object("2000sub1", "7", "0", "65535"));
+
+  EXPECT_TRUE(has(findings, "range-of-16-bits"));
+  EXPECT_FALSE(has(findings, "limits-of-16-bits"));
+}
+
 TEST(WidthOfLimits, OfAPositionAreTheRangeThatIsLeft) {
   const auto findings = judged(object("607A", "4", "-32768", "32767"));
 
