@@ -9,7 +9,7 @@ function(takt_unite united_list name)
   list(FILTER singles EXCLUDE REGEX "_test\\.cpp$")
   set(tests ${${united_list}})
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
-  set(group_size 8)  # as many as a compiler takes without more than 1 GB of memory
+  set(group_size 16)  # as many as a compiler takes without more than 1 GB of memory
   set(united)
   list(LENGTH tests left)
   while(left GREATER 0)
