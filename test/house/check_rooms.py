@@ -103,6 +103,7 @@ ROOMS = {
     "master/sim/bus": ("the wire, its faults, and the world of all devices",
                        "master/wire master/sim master/sim/device master/rt/port.hpp"),
     "master/motion": ("trajectories of axes within their limits", ""),
+    "master/motion/beat": ("runs the motions of all axes cycle by cycle", "master/motion"),
     "master/units": ("raw values of the image, and SI units", ""),
     "master/lcm": ("messages of takt on LCM, and the transport", "eds_parser/lcm master/linux"),
     "master/lcm/envelope": ("signed messages and their keys", "eds_parser/lcm master/lcm master/linux"),

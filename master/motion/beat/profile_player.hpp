@@ -1,0 +1,50 @@
+#pragma once
+#include <cstddef>
+
+#include "master/motion/beat/motion_order.hpp"
+
+namespace takt::motion {
+
+/// Gives the states of a motion at times that only rise. It passes each segment once, so that a
+/// cycle costs as much for a long motion as for a short one.
+class ProfilePlayer {
+ public:
+  ProfilePlayer() noexcept = default;
+  ProfilePlayer(const Profile& profile, const State& from, Ending ending) noexcept
+      : profile_{profile}, start_{from}, duration_{profile.duration()}, ending_{ending} {
+    if (profile.segments().empty()) end();
+  }
+
+  /// Returns the state `time` seconds after the begin.
+  State at(double time) noexcept {
+    const auto segments = profile_.segments();
+    while (segment_ < segments.size() && time - passed_ >= segments[segment_].duration) {
+      const Segment& segment = segments[segment_++];
+      start_ = advanced(start_, segment.duration, segment.jerk);
+      passed_ += segment.duration;
+      if (segment_ == segments.size()) end();
+    }
+    const double jerk = is_over() ? 0.0 : segments[segment_].jerk;
+    return advanced(start_, time - passed_, jerk);
+  }
+
+  bool is_over() const noexcept { return segment_ == profile_.segments().size(); }
+  Ending ending() const noexcept { return ending_; }
+  double duration() const noexcept { return duration_; }  ///< s
+
+ private:
+  /// What rounding has left of an acceleration, and of a velocity at rest, would move the axis on.
+  void end() noexcept {
+    start_.acceleration = 0.0;
+    if (ending_ == Ending::rest) start_.velocity = 0.0;
+  }
+
+  Profile profile_;
+  State start_;  ///< of the segment
+  double passed_ = 0.0;
+  double duration_ = 0.0;
+  std::size_t segment_ = 0;
+  Ending ending_ = Ending::rest;
+};
+
+}  // namespace takt::motion
