@@ -47,7 +47,7 @@ enum class Outcome : std::uint8_t {
   // The others are refusals: the order did not begin.
   too_late,           ///< its first cycle had passed
   other_start,        ///< it does not begin where the axis is commanded to be
-  no_rest,            ///< its profile does not end as its Ending says
+  no_rest,            ///< the end of its profile contradicts `ending`
   not_powered,        ///< the drive does not follow set-points
   is_stopping,        ///< the axis must come to rest first
   sender_was_silent,  ///< longer than the timeout, before its first cycle

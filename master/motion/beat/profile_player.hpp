@@ -33,7 +33,7 @@ class ProfilePlayer {
   double duration() const noexcept { return duration_; }  ///< s
 
  private:
-  /// What rounding has left of an acceleration, and of a velocity at rest, would move the axis on.
+  /// Rounding leaves a small acceleration at the end. It must be set to 0, or the axis drifts.
   void end() noexcept {
     start_.acceleration = 0.0;
     if (ending_ == Ending::rest) start_.velocity = 0.0;
