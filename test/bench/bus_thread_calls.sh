@@ -14,7 +14,7 @@ trap end EXIT
 
 sed -e "s|\.\./eds/|$here/share/eds/|" -e 's/sync_period: 2000 /sync_period: 20000 /' \
   "$here/share/demo/two_axes.yaml" >"$tmp/network.yaml"
-export LCM_DEFAULT_URL=tcpq://127.0.0.1:$((20000 + $$ % 20000))
+export LCM_DEFAULT_URL=tcpq://127.0.0.1:$((20000 + $$ % 12000))
 "$bin/takt" sim "$tmp/network.yaml" --bus "unix:$tmp/bus" 2>"$tmp/devices" &
 devices=$!
 for _ in $(seq 50); do grep -q 'devices on' "$tmp/devices" && break || sleep 0.1; done
