@@ -98,7 +98,7 @@ build() {
 run_benchmarks() {
   bin=build/release/bin
   $bin/pdo_benchmark --benchmark_min_time=0.1 && $bin/trajectory_cost --benchmark_min_time=0.1 &&
-    $bin/envelope_cost --benchmark_min_time=0.1 && $bin/loop_cost 8 &&
+    $bin/beat_cost --benchmark_min_time=0.1 && $bin/envelope_cost --benchmark_min_time=0.1 && $bin/loop_cost 8 &&
     $bin/sync_lateness 1 1000 && $bin/virtual_factor 5000 && $bin/eds_speed share/eds/takt_drive402.eds
 }
 

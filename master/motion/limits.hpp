@@ -9,6 +9,11 @@ struct Limits {
   double max_acceleration = 0.0;  ///< greater than 0
   double min_acceleration = 0.0;  ///< less than 0
   double jerk = 0.0;              ///< greater than 0, for both directions
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(max_velocity, min_velocity, max_acceleration, min_acceleration, jerk);
+  }
 };
 
 /// Returns the limits of the mirrored axis, whose positive direction is the negative one of this

@@ -11,12 +11,22 @@ struct State {
   double position = 0.0;
   double velocity = 0.0;
   double acceleration = 0.0;
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(position, velocity, acceleration);
+  }
 };
 
 /// A part of a motion with constant jerk.
 struct Segment {
   double duration = 0.0;  ///< s, never negative
   double jerk = 0.0;      ///< units/s^3
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(duration, jerk);
+  }
 };
 
 /// Returns the state after `duration` seconds of constant jerk.
@@ -71,6 +81,12 @@ class Profile {
       state = advanced(state, segment.duration, segment.jerk);
     }
     return state;
+  }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(segments_);
+    state.position(size_, capacity + 1);
   }
 
  private:

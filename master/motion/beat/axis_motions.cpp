@@ -1,82 +1,117 @@
 #include "master/motion/beat/axis_motions.hpp"
 
+#include <algorithm>
+
 namespace takt::motion {
 
-AxisMotions::AxisMotions(std::size_t axes, double period)
-    : runners_(axes, AxisRunner{period}), reports_(axes) {}
-
-bool AxisMotions::take(const MotionOrder& order, Cycle cycle) noexcept {
-  if (order.axis >= runners_.size() || order.group >= max_axes) return false;
-  sender_heard(order.group, cycle);
-  runners_[order.axis].wait(order);
-  return true;
-}
-
-void AxisMotions::stop_group(std::uint8_t group, StopCause cause) noexcept {
-  if (stops_[group].cause == StopCause::none) stops_[group] = {.cause = cause};
-}
-
-void AxisMotions::stop_all(StopCause cause) noexcept {
-  for (const AxisRunner& runner : runners_) stop_group(runner.group(), cause);
-}
-
-std::span<const AxisReport> AxisMotions::run(Cycle cycle,
-                                             std::span<const AxisInput> inputs) noexcept {
-  observe(cycle, inputs);
-  stop_groups(cycle);
-  begin_orders(cycle);
-  for (std::size_t i = 0; i < runners_.size(); ++i) reports_[i] = runners_[i].run(cycle);
-  return reports_;
-}
-
-void AxisMotions::observe(Cycle cycle, std::span<const AxisInput> inputs) noexcept {
-  for (std::size_t i = 0; i < runners_.size(); ++i) {
-    const std::uint8_t group = runners_[i].group();
-    const StopCause cause = runners_[i].observe(cycle, inputs[i], cycle - heard_[group]);
-    Stop& stop = stops_[group];
-    if (cause == StopCause::none || stop.cause != StopCause::none) continue;
-    stop = {.cause = cause, .axis = static_cast<std::uint8_t>(i)};
+AxisMotions::AxisMotions(std::size_t axes, double period) : reports_(std::min(axes, max_axes)) {
+  for (std::size_t i = 0; i < reports_.size(); ++i) {
+    runners_.emplace_back(period, static_cast<std::uint8_t>(i));
   }
 }
 
-void AxisMotions::stop_groups(Cycle cycle) noexcept {
+Outcome AxisMotions::take(const MotionOrder& order, BeatNumber beat) noexcept {
+  if (order.axis >= runners_.size() || order.group >= runners_.size()) return Outcome::unsound;
+  const Outcome refusal = runners_[order.axis].wait(order);
+  if (refusal == Outcome::none) sender_heard(order.sender, beat);
+  return refusal;
+}
+
+void AxisMotions::sender_heard(std::uint8_t sender, BeatNumber beat) noexcept {
+  if (sender < max_axes) heard_[sender] = beat;
+}
+
+void AxisMotions::stop_axis(std::uint8_t axis, StopCause cause) noexcept {
+  if (axis >= runners_.size()) return;
+  if (runners_[axis].waiting() != nullptr) runners_[axis].refuse(Outcome::stopped);
+  add_stop(axis, cause);
+}
+
+void AxisMotions::stop_all(StopCause cause) noexcept {
+  for (std::size_t i = 0; i < runners_.size(); ++i) stop_axis(static_cast<std::uint8_t>(i), cause);
+}
+
+/// Two motions can have the same group while one of them replaces the other axis by axis. If both
+/// have a cause in the same beat, all axes of the group stop.
+void AxisMotions::add_stop(std::size_t axis, StopCause cause) noexcept {
+  GroupStop& stop = stops_[runners_[axis].group()];
+  const std::uint32_t id = runners_[axis].newest();
+  if (stop.stop.cause == StopCause::none) {
+    stop = {.stop = {.cause = cause, .axis = static_cast<std::uint8_t>(axis)}, .id = id};
+  } else if (stop.id != id) {
+    stop.id = 0;
+  }
+}
+
+std::span<const AxisReport> AxisMotions::run(BeatNumber beat,
+                                             std::span<const AxisInput> inputs) noexcept {
+  observe(beat, inputs);
+  stop_groups(beat);
+  begin_orders(beat);
+  for (std::size_t i = 0; i < runners_.size(); ++i) {
+    reports_[i] = runners_[i].run(beat);
+    runners_[i].forget_ended();
+  }
+  return reports_;
+}
+
+void AxisMotions::observe(BeatNumber beat, std::span<const AxisInput> inputs) noexcept {
+  for (std::size_t i = 0; i < runners_.size(); ++i) {
+    const BeatNumber silence = silence_of(runners_[i].sender(), beat);
+    const StopCause cause = runners_[i].observe(beat, inputs[i], silence);
+    if (cause != StopCause::none) add_stop(i, cause);
+  }
+}
+
+void AxisMotions::stop_groups(BeatNumber beat) noexcept {
   for (AxisRunner& runner : runners_) {
-    const Stop& stop = stops_[runner.group()];
-    if (stop.cause != StopCause::none) runner.stop(cycle, stop);
+    const GroupStop& stop = stops_[runner.group()];
+    if (stop.stop.cause == StopCause::none) continue;
+    if (stop.id == 0 || stop.id == runner.newest()) runner.stop(beat, stop.stop);
   }
   stops_ = {};
 }
 
-void AxisMotions::begin_orders(Cycle cycle) noexcept {
-  ready_ = {};
+/// An order begins if all orders of its group are due, have its id, and may begin.
+void AxisMotions::begin_orders(BeatNumber beat) noexcept {
   std::array<Outcome, max_axes> objections{};
+  std::array<std::uint8_t, max_axes> ready{};  // orders of each group
+  const auto leads = [&](const MotionOrder& order) {
+    const MotionOrder* first = runners_[order.group].due(beat);
+    return first != nullptr && first->id == order.id;
+  };
   for (std::size_t i = 0; i < runners_.size(); ++i) {
-    const MotionOrder* order = runners_[i].due(cycle);
+    const MotionOrder* order = runners_[i].due(beat);
     if (order == nullptr) continue;
-    objections[i] = objection_of(i, cycle);
-    if (objections[i] != Outcome::none) continue;
-    Ready& ready = ready_[order->group];
-    if (ready.id != order->id) ready = {.id = order->id};
-    ++ready.orders;
+    objections[i] = objection_of(i, beat);
+    if (objections[i] == Outcome::none && leads(*order)) ++ready[order->group];
+  }
+  std::array<Outcome, max_axes> verdicts{};
+  for (std::size_t i = 0; i < runners_.size(); ++i) {
+    const MotionOrder* order = runners_[i].due(beat);
+    if (order == nullptr) continue;
+    const bool complete = leads(*order) && ready[order->group] == order->axes;
+    const Outcome rest = complete ? Outcome::none : Outcome::group_incomplete;
+    verdicts[i] = objections[i] != Outcome::none ? objections[i] : rest;
   }
   for (std::size_t i = 0; i < runners_.size(); ++i) {
-    const MotionOrder* order = runners_[i].due(cycle);
-    if (order == nullptr) continue;
-    const Ready& ready = ready_[order->group];
-    if (objections[i] != Outcome::none) {
-      runners_[i].refuse(objections[i]);
-    } else if (ready.id != order->id || ready.orders != order->axes) {
-      runners_[i].refuse(Outcome::group_incomplete);
+    if (runners_[i].due(beat) == nullptr) continue;
+    if (verdicts[i] == Outcome::none) {
+      runners_[i].begin(beat);
     } else {
-      runners_[i].begin(cycle);
+      runners_[i].refuse(verdicts[i]);
     }
   }
 }
 
-Outcome AxisMotions::objection_of(std::size_t axis, Cycle cycle) noexcept {
-  const MotionOrder& order = *runners_[axis].due(cycle);
-  if (cycle - heard_[order.group] > order.timeout) return Outcome::sender_was_silent;
-  return runners_[axis].objection(cycle);
+Outcome AxisMotions::objection_of(std::size_t axis, BeatNumber beat) noexcept {
+  const MotionOrder& order = *runners_[axis].due(beat);
+  if (silence_of(order.sender, beat) > order.timeout) return Outcome::sender_was_silent;
+  return runners_[axis].objection(beat);
+}
+
+BeatNumber AxisMotions::silence_of(std::uint8_t sender, BeatNumber beat) const noexcept {
+  return beat - std::min(heard_[sender], beat);
 }
 
 }  // namespace takt::motion

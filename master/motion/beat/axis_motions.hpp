@@ -14,39 +14,51 @@ namespace takt::motion {
 /// The motions of all axes of a bus, and their groups. After construction it allocates nothing.
 class AxisMotions {
  public:
-  /// `axes` is at most max_axes, `period` is that of the cycle in s.
+  /// `axes` is at most max_axes, `period` is that of the beat in s.
   AxisMotions(std::size_t axes, double period);
 
-  /// Takes an order before its first cycle or in it. It counts as a message of the sender. Returns
-  /// false if there is no such axis or group.
-  bool take(const MotionOrder& order, Cycle cycle) noexcept;
-  /// The sender of the motions of this group is alive in this cycle.
-  void sender_heard(std::uint8_t group, Cycle cycle) noexcept { heard_[group] = cycle; }
-  /// Stops each axis of the group along its own limits in the next run().
-  void stop_group(std::uint8_t group, StopCause cause) noexcept;
-  /// Does the same for all groups.
+  std::size_t size() const noexcept { return runners_.size(); }
+
+  /// Takes an order before its first beat or in it. It counts as a message of its sender. Returns a
+  /// refusal, or Outcome::none if the order waits for its first beat.
+  Outcome take(const MotionOrder& order, BeatNumber beat) noexcept;
+  /// The sender is alive in this beat.
+  void sender_heard(std::uint8_t sender, BeatNumber beat) noexcept;
+  /// Stops the axis and its group, each axis along its own limits, in the next run(). An order of
+  /// the axis that waits ends as well.
+  void stop_axis(std::uint8_t axis, StopCause cause) noexcept;
+  /// Does the same for all axes.
   void stop_all(StopCause cause) noexcept;
 
-  /// Runs one cycle. `inputs` has one element for each axis, and so has the result, which is valid
-  /// until the next call. Cycles must follow each other without a gap, from 1 on.
-  std::span<const AxisReport> run(Cycle cycle, std::span<const AxisInput> inputs) noexcept;
+  /// Runs one beat. `inputs` has one element for each axis, and so has the result, which is valid
+  /// until the next call. Beats must follow each other without a gap, from 1 on.
+  std::span<const AxisReport> run(BeatNumber beat, std::span<const AxisInput> inputs) noexcept;
+  /// The reports of the last run.
+  std::span<const AxisReport> reports() const noexcept { return reports_; }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(runners_, heard_);
+  }
 
  private:
-  void observe(Cycle cycle, std::span<const AxisInput> inputs) noexcept;
-  void stop_groups(Cycle cycle) noexcept;
-  void begin_orders(Cycle cycle) noexcept;
-  Outcome objection_of(std::size_t axis, Cycle cycle) noexcept;
+  /// A stop of those axes of a group whose newest motion has this id.
+  struct GroupStop {
+    Stop stop;
+    std::uint32_t id = 0;  ///< 0: of all axes of the group
+  };
+
+  void add_stop(std::size_t axis, StopCause cause) noexcept;
+  void observe(BeatNumber beat, std::span<const AxisInput> inputs) noexcept;
+  void stop_groups(BeatNumber beat) noexcept;
+  void begin_orders(BeatNumber beat) noexcept;
+  Outcome objection_of(std::size_t axis, BeatNumber beat) noexcept;
+  BeatNumber silence_of(std::uint8_t sender, BeatNumber beat) const noexcept;
 
   std::vector<AxisRunner> runners_;
   std::vector<AxisReport> reports_;
-  std::array<Stop, max_axes> stops_{};   ///< of each group in the next cycle
-  std::array<Cycle, max_axes> heard_{};  ///< of each group
-  /// Orders of each group that may begin in this cycle.
-  struct Ready {
-    std::uint32_t id = 0;
-    std::uint8_t orders = 0;
-  };
-  std::array<Ready, max_axes> ready_{};
+  std::array<GroupStop, max_axes> stops_{};   ///< of each group in the next beat
+  std::array<BeatNumber, max_axes> heard_{};  ///< of each sender
 };
 
 }  // namespace takt::motion

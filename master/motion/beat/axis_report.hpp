@@ -1,5 +1,9 @@
 #pragma once
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 
 #include "master/motion/beat/motion_order.hpp"
 
@@ -7,7 +11,7 @@ namespace takt::motion {
 
 /// What a drive tells in a cycle.
 enum class AxisCondition : std::uint8_t {
-  enabled,   ///< it follows set-points (CiA 402: Operation enabled)
+  enabled,   ///< it follows set-points of position (CiA 402: Operation enabled)
   disabled,  ///< it does not, without a fault
   fault,
   lost,  ///< its node is not heard
@@ -16,6 +20,9 @@ enum class AxisCondition : std::uint8_t {
 struct AxisInput {
   AxisCondition condition = AxisCondition::disabled;
   State actual;
+  /// The position that the drive is commanded, if others have commanded it. Empty: it is the
+  /// commanded position of the last report.
+  std::optional<double> set_point;
 };
 
 enum class AxisState : std::uint8_t { unpowered, standing, moving, stopping };
@@ -29,14 +36,20 @@ enum class StopCause : std::uint8_t {
   node_lost,        ///< of an axis
   following_error,  ///< of an axis, above its limit
   end_of_range,     ///< a later stop would leave the range of positions
+  limit,            ///< a set-point of an axis was outside the limits of the network file
   ordered_stop,     ///< of the master
   application,      ///< it asked for the stop
 };
 
-/// The last stop of a group since the motion of the axis began: why, and which axis was the cause.
+/// The first stop of a group since the motion of the axis began: why, and which axis was the cause.
 struct Stop {
   StopCause cause = StopCause::none;
   std::uint8_t axis = 0;  ///< 0 where no axis is the cause
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(cause, axis);
+  }
 };
 
 enum class Outcome : std::uint8_t {
@@ -45,12 +58,14 @@ enum class Outcome : std::uint8_t {
   stopped,   ///< by a stop, see Stop
   replaced,  ///< by a later order
   // The others are refusals: the order did not begin.
-  too_late,           ///< its first cycle had passed
+  unsound,            ///< see is_sound()
+  second_in_beat,     ///< the axis has got another order in the same beat
+  too_late,           ///< its first beat had passed
   other_start,        ///< it does not begin where the axis is commanded to be
   no_rest,            ///< the end of its profile contradicts `ending`
   not_powered,        ///< the drive does not follow set-points
   is_stopping,        ///< the axis must come to rest first
-  sender_was_silent,  ///< longer than the timeout, before its first cycle
+  sender_was_silent,  ///< longer than the timeout, before its first beat
   group_incomplete,   ///< an order of the group is missing, or was refused
 };
 
@@ -60,16 +75,35 @@ struct EndedOrder {
   Outcome outcome = Outcome::none;
 };
 
-/// What an axis does in a cycle.
+/// The orders of one axis that ended in one beat: at most one that waited and was replaced by a
+/// newer one, the newer one, and the motion that ran.
+class EndedOrders {
+ public:
+  static constexpr std::size_t capacity = 3;
+
+  void add(EndedOrder order) noexcept {
+    if (size_ < capacity) orders_[size_++] = order;
+  }
+  void clear() noexcept { size_ = 0; }
+  std::span<const EndedOrder> orders() const noexcept { return std::span{orders_}.first(size_); }
+
+ private:
+  std::array<EndedOrder, capacity> orders_{};
+  std::size_t size_ = 0;
+};
+
+/// What an axis does in a beat.
 struct AxisReport {
   AxisState state = AxisState::unpowered;
   State commanded;
   State actual;
   double following_error = 0.0;  ///< last commanded position minus actual position
-  std::uint32_t running = 0;     ///< id of the motion of this cycle, 0 for none
-  Cycle cycles_left = 0;         ///< until the end of the profile that runs
-  EndedOrder ended;              ///< of the order that ended last
+  std::uint32_t running = 0;     ///< id of the motion of this beat, 0 for none
+  BeatNumber beats_left = 0;     ///< until the end of the profile that runs
+  /// The sender of the newest motion is alive, or the axis moves: the drive has to stay enabled.
+  bool kept_alive = false;
   Stop stop;
+  EndedOrders ended;  ///< in this beat
 };
 
 }  // namespace takt::motion

@@ -45,34 +45,40 @@ bool ends_as_it_says(const MotionOrder& order) noexcept {
 
 }  // namespace
 
-void AxisRunner::wait(const MotionOrder& order) noexcept {
+Outcome AxisRunner::wait(const MotionOrder& order) noexcept {
+  if (!is_sound(order)) return Outcome::unsound;
+  if (has_taken_) return Outcome::second_in_beat;
+  has_taken_ = true;
   if (waiting_) refuse(Outcome::replaced);
   waiting_ = order;
+  return Outcome::none;
 }
 
-const MotionOrder* AxisRunner::due(Cycle cycle) const noexcept {
-  return waiting_ && waiting_->begin <= cycle ? &*waiting_ : nullptr;
+const MotionOrder* AxisRunner::due(BeatNumber beat) const noexcept {
+  return waiting_ && waiting_->begin <= beat ? &*waiting_ : nullptr;
 }
 
-Outcome AxisRunner::objection(Cycle cycle) noexcept {
-  if (waiting_->begin < cycle) return Outcome::too_late;
+Outcome AxisRunner::objection(BeatNumber beat) noexcept {
+  if (waiting_->begin < beat) return Outcome::too_late;
   if (report_.state == AxisState::unpowered) return Outcome::not_powered;
   if (report_.state == AxisState::stopping) return Outcome::is_stopping;
   if (!ends_as_it_says(*waiting_)) return Outcome::no_rest;
-  return is_same(waiting_->from, commanded_at(cycle), waiting_->stop) ? Outcome::none
-                                                                      : Outcome::other_start;
+  return is_same(waiting_->from, commanded_at(beat), waiting_->stop) ? Outcome::none
+                                                                     : Outcome::other_start;
 }
 
-void AxisRunner::begin(Cycle cycle) noexcept {
+void AxisRunner::begin(BeatNumber beat) noexcept {
   if (report_.state == AxisState::moving) end(Outcome::replaced);
   const MotionOrder& order = *waiting_;
   player_ = ProfilePlayer{order.profile, order.from, order.ending};
-  began_ = cycle;
+  began_ = beat;
   stop_limits_ = order.stop;
   timeout_ = order.timeout;
   latest_stop_ = order.latest_stop;
   max_following_error_ = order.max_following_error;
   group_ = order.group;
+  sender_ = order.sender;
+  newest_ = order.id;
   report_.running = order.id;
   report_.state = AxisState::moving;
   report_.stop = {};
@@ -80,16 +86,18 @@ void AxisRunner::begin(Cycle cycle) noexcept {
 }
 
 void AxisRunner::refuse(Outcome why) noexcept {
-  report_.ended = {.id = waiting_->id, .outcome = why};
+  end(waiting_->id, why);
   waiting_.reset();
 }
 
-StopCause AxisRunner::observe(Cycle cycle, const AxisInput& input, Cycle silence) noexcept {
+StopCause AxisRunner::observe(BeatNumber beat, const AxisInput& input,
+                              BeatNumber silence) noexcept {
   report_.actual = input.actual;
   report_.following_error = report_.commanded.position - input.actual.position;
   if (report_.state == AxisState::unpowered) {
+    report_.kept_alive = false;
     if (input.condition != AxisCondition::enabled) return StopCause::none;
-    report_.commanded = {.position = input.actual.position};
+    report_.commanded = {.position = input.set_point.value_or(input.actual.position)};
     report_.following_error = 0.0;
     report_.state = AxisState::standing;
     return StopCause::none;
@@ -97,37 +105,44 @@ StopCause AxisRunner::observe(Cycle cycle, const AxisInput& input, Cycle silence
   if (input.condition != AxisCondition::enabled) {
     if (report_.state == AxisState::moving) end(Outcome::stopped);
     report_.state = AxisState::unpowered;
+    report_.kept_alive = false;
     return cause_of(input.condition);
+  }
+  report_.kept_alive =
+      newest_ != 0 && (report_.state != AxisState::standing || silence <= timeout_);
+  if (report_.state == AxisState::standing && input.set_point) {
+    report_.commanded = {.position = *input.set_point};
   }
   if (report_.state != AxisState::moving) return StopCause::none;
   if (std::abs(report_.following_error) > max_following_error_) return StopCause::following_error;
   if (silence > timeout_) return StopCause::sender_silent;
-  if (cycle - began_ > latest_stop_) return StopCause::end_of_range;
+  if (beat - began_ > latest_stop_) return StopCause::end_of_range;
   return StopCause::none;
 }
 
-void AxisRunner::stop(Cycle cycle, const Stop& stop) noexcept {
+void AxisRunner::stop(BeatNumber beat, const Stop& stop) noexcept {
   if (waiting_) refuse(Outcome::stopped);
-  report_.stop = stop;
+  if (report_.stop.cause == StopCause::none) report_.stop = stop;
   if (report_.state != AxisState::moving) return;
   end(Outcome::stopped);
   report_.state = AxisState::stopping;
   player_ = {stop_profile(report_.commanded, stop_limits_), report_.commanded, Ending::rest};
-  began_ = cycle - 1;
+  began_ = beat - 1;
 }
 
-const AxisReport& AxisRunner::run(Cycle cycle) noexcept {
-  report_.cycles_left = 0;
+const AxisReport& AxisRunner::run(BeatNumber beat) noexcept {
+  has_taken_ = false;
+  report_.beats_left = 0;
   if (report_.state == AxisState::unpowered) {
     report_.commanded = {.position = report_.actual.position};
     report_.following_error = 0.0;
     return report_;
   }
-  report_.commanded = commanded_at(cycle);
+  report_.commanded = commanded_at(beat);
   if (report_.state == AxisState::standing) return report_;
   if (!player_.is_over()) {
-    const double left = player_.duration() - static_cast<double>(cycle - began_) * period_;
-    report_.cycles_left = static_cast<Cycle>(std::ceil(std::max(left, 0.0) / period_));
+    const double left = player_.duration() - static_cast<double>(beat - began_) * period_;
+    report_.beats_left = static_cast<BeatNumber>(std::ceil(std::max(left, 0.0) / period_));
   } else if (player_.ending() == Ending::rest) {
     if (report_.state == AxisState::moving) end(Outcome::done);
     report_.state = AxisState::standing;
@@ -135,13 +150,13 @@ const AxisReport& AxisRunner::run(Cycle cycle) noexcept {
   return report_;
 }
 
-State AxisRunner::commanded_at(Cycle cycle) noexcept {
+State AxisRunner::commanded_at(BeatNumber beat) noexcept {
   if (report_.state == AxisState::standing) return report_.commanded;
-  return player_.at(static_cast<double>(cycle - began_) * period_);
+  return player_.at(static_cast<double>(beat - began_) * period_);
 }
 
 void AxisRunner::end(Outcome outcome) noexcept {
-  report_.ended = {.id = report_.running, .outcome = outcome};
+  end(report_.running, outcome);
   report_.running = 0;
 }
 

@@ -8,18 +8,18 @@
 
 namespace takt::motion {
 
-/// Runs the motions of one axis, cycle by cycle. Its states:
+/// Runs the motions of one axis, beat by beat. Its states:
 ///
-/// | from               | to        | when                                                    |
-/// |--------------------|-----------|---------------------------------------------------------|
-/// | unpowered          | standing  | the drive is enabled: it stands at its actual position  |
-/// | standing, moving   | moving    | an order begins in its cycle                            |
-/// | moving             | standing  | the motion has ended at rest                            |
-/// | moving             | stopping  | stop()                                                  |
-/// | stopping           | standing  | the axis is at rest                                     |
-/// | each other         | unpowered | the drive is no longer enabled                          |
+/// | from               | to        | when                                                     |
+/// |--------------------|-----------|----------------------------------------------------------|
+/// | unpowered          | standing  | the drive is enabled: it stands at its commanded position |
+/// | standing, moving   | moving    | an order begins in its beat                              |
+/// | moving             | standing  | the motion has ended at rest                             |
+/// | moving             | stopping  | stop()                                                   |
+/// | stopping           | standing  | the axis is at rest                                      |
+/// | each other         | unpowered | the drive is no longer enabled                           |
 ///
-/// A cycle calls observe(), then stop() if the group stops, then begin() or refuse() if an order is
+/// A beat calls observe(), then stop() if the group stops, then begin() or refuse() if an order is
 /// due, then run(). No call allocates; the bound of instructions is that of stop().
 class AxisRunner {
  public:
@@ -27,42 +27,67 @@ class AxisRunner {
   /// of velocity and acceleration, and of the position or of 1 where the position is smaller.
   static constexpr double start_tolerance = 1e-9;
 
-  explicit AxisRunner(double period) noexcept : period_{period} {}
+  /// `period` is in s. An axis is in a group of its own until a motion begins.
+  AxisRunner(double period, std::uint8_t axis) noexcept : period_{period}, group_{axis} {}
 
-  /// The order waits for its first cycle. It replaces another one that waits.
-  void wait(const MotionOrder& order) noexcept;
-  /// Returns the order that waits if its first cycle is this one or has passed.
-  const MotionOrder* due(Cycle cycle) const noexcept;
+  /// The order waits for its first beat. It replaces another one that waits. Returns a refusal if
+  /// it is unsound, or the second one since the last run().
+  Outcome wait(const MotionOrder& order) noexcept;
+  /// Returns the order that waits.
+  const MotionOrder* waiting() const noexcept { return waiting_ ? &*waiting_ : nullptr; }
+  /// Returns the order that waits if its first beat is this one or has passed.
+  const MotionOrder* due(BeatNumber beat) const noexcept;
   /// Returns Outcome::none if the order that is due may begin.
-  Outcome objection(Cycle cycle) noexcept;
-  void begin(Cycle cycle) noexcept;
+  Outcome objection(BeatNumber beat) noexcept;
+  void begin(BeatNumber beat) noexcept;
   void refuse(Outcome why) noexcept;
 
   /// Takes what the drive tells. Returns the cause if the axis makes its group stop. `silence` is
-  /// the number of cycles since the sender was heard.
-  StopCause observe(Cycle cycle, const AxisInput& input, Cycle silence) noexcept;
-  /// Starts the shortest stop from the commanded state of the cycle before. It also ends an order
+  /// the number of beats since the sender was heard.
+  StopCause observe(BeatNumber beat, const AxisInput& input, BeatNumber silence) noexcept;
+  /// Starts the shortest stop from the commanded state of the beat before. It also ends an order
   /// that waits. An axis that doesn't move keeps its state.
-  void stop(Cycle cycle, const Stop& stop) noexcept;
-  /// Gives the commanded state of the cycle.
-  const AxisReport& run(Cycle cycle) noexcept;
+  void stop(BeatNumber beat, const Stop& stop) noexcept;
+  /// Gives the commanded state of the beat.
+  const AxisReport& run(BeatNumber beat) noexcept;
+  /// Forgets which orders have ended. Called before the orders of the next beat are taken.
+  void forget_ended() noexcept { report_.ended.clear(); }
 
   std::uint8_t group() const noexcept { return group_; }
+  std::uint8_t sender() const noexcept { return sender_; }
+  /// Id of the newest motion that began; 0 for none.
+  std::uint32_t newest() const noexcept { return newest_; }
+
+  /// An axis ends no order in the beat of a checkpoint that a replay could miss: run() has passed.
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(report_.state, report_.commanded, report_.running, report_.kept_alive, report_.stop,
+          player_, began_, stop_limits_, timeout_, latest_stop_, max_following_error_, waiting_,
+          newest_, has_taken_);
+    state.position(group_, max_axes);
+    state.position(sender_, max_axes);
+  }
 
  private:
-  State commanded_at(Cycle cycle) noexcept;
+  State commanded_at(BeatNumber beat) noexcept;
   void end(Outcome outcome) noexcept;
+  void end(std::uint32_t id, Outcome outcome) noexcept {
+    report_.ended.add({.id = id, .outcome = outcome});
+  }
 
   double period_;
   AxisReport report_;
   ProfilePlayer player_;
-  Cycle began_ = 0;
+  BeatNumber began_ = 0;
   Limits stop_limits_;
-  Cycle timeout_ = 0;
-  Cycle latest_stop_ = 0;
+  BeatNumber timeout_ = 0;
+  BeatNumber latest_stop_ = 0;
   double max_following_error_ = 0.0;
   std::optional<MotionOrder> waiting_;
-  std::uint8_t group_ = 0;
+  std::uint32_t newest_ = 0;
+  bool has_taken_ = false;  ///< an order since the last run()
+  std::uint8_t group_;
+  std::uint8_t sender_ = 0;
 };
 
 }  // namespace takt::motion

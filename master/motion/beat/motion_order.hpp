@@ -8,10 +8,12 @@
 
 namespace takt::motion {
 
-/// Number of a cycle of the bus thread. It never wraps.
-using Cycle = std::uint64_t;
+/// Number of a beat, which is a cycle whose SYNC was sent. The numbers follow each other without a
+/// gap and never wrap.
+using BeatNumber = std::uint64_t;
 
-/// Axes and groups are numbered from 0; there is never more than one axis for each node.
+/// Axes, groups and senders are numbered from 0. A bus has at most 127 nodes, and axes above this
+/// number can't be moved.
 inline constexpr std::size_t max_axes = 127;
 
 /// What an axis does when its motion has come to its end.
@@ -20,24 +22,36 @@ enum class Ending : std::uint8_t {
   cruise,  ///< it keeps the velocity of the end until it is stopped (jog)
 };
 
-/// A planned motion of one axis, which the bus thread runs from one cycle on. All orders of a group
+/// A planned motion of one axis, which the bus thread runs from one beat on. All orders of a group
 /// that have the same id begin together, or none does. Plain data.
 struct MotionOrder {
-  std::uint32_t id = 0;
-  std::uint8_t axis = 0;   ///< less than max_axes
-  std::uint8_t group = 0;  ///< less than max_axes; axes of one group stop together
-  std::uint8_t axes = 1;   ///< number of orders with this id
+  std::uint32_t id = 0;   ///< not 0
+  std::uint8_t axis = 0;  ///< less than max_axes
+  std::uint8_t group =
+      0;                  ///< the number of one axis of the group, for which there is an order, too
+  std::uint8_t axes = 1;  ///< number of orders with this id
+  std::uint8_t sender = 0;  ///< less than max_axes
   Ending ending = Ending::rest;
-  Cycle begin = 0;    ///< the axis is at `from` in this cycle
-  State from;         ///< must be what the axis is commanded in the cycle `begin`
-  Profile profile;    ///< of the motion that starts at `from`
-  Limits stop;        ///< of a stop, see defect_of()
-  Cycle timeout = 0;  ///< cycles for which the motion outlives the silence of its sender
-  /// The axis is stopped at the latest from the state that it has so many cycles after `begin`, see
-  /// cycles_with_stop().
-  Cycle latest_stop = std::numeric_limits<Cycle>::max();
+  BeatNumber begin = 0;    ///< the axis is at `from` in this beat
+  State from;              ///< must be what the axis is commanded in the beat `begin`
+  Profile profile;         ///< of the motion that starts at `from`
+  Limits stop;             ///< of a stop
+  BeatNumber timeout = 0;  ///< beats for which the motion outlives the silence of its sender
+  /// The axis is stopped at the latest from the state that it has so many beats after `begin`, see
+  /// beats_with_stop().
+  BeatNumber latest_stop = std::numeric_limits<BeatNumber>::max();
   /// Distance between commanded and actual position above which the group stops.
   double max_following_error = std::numeric_limits<double>::infinity();
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(id, axis, group, axes, sender, ending, begin, from, profile, stop, timeout, latest_stop,
+          max_following_error);
+  }
 };
+
+/// Returns true if all numbers of the order are finite where they must be, and the limits of its
+/// stop permit a stop.
+bool is_sound(const MotionOrder& order) noexcept;
 
 }  // namespace takt::motion

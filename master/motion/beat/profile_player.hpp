@@ -6,7 +6,7 @@
 namespace takt::motion {
 
 /// Gives the states of a motion at times that only rise. It passes each segment once, so that a
-/// cycle costs as much for a long motion as for a short one.
+/// beat costs as much for a long motion as for a short one.
 class ProfilePlayer {
  public:
   ProfilePlayer() noexcept = default;
@@ -28,9 +28,15 @@ class ProfilePlayer {
     return advanced(start_, time - passed_, jerk);
   }
 
-  bool is_over() const noexcept { return segment_ == profile_.segments().size(); }
+  bool is_over() const noexcept { return segment_ >= profile_.segments().size(); }
   Ending ending() const noexcept { return ending_; }
   double duration() const noexcept { return duration_; }  ///< s
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(profile_, start_, passed_, duration_, ending_);
+    state.position(segment_, Profile::capacity + 1);
+  }
 
  private:
   /// Rounding leaves a small acceleration at the end. It must be set to 0, or the axis drifts.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <optional>
 #include <random>
 #include <vector>
@@ -28,19 +29,21 @@ Profile plan(const State& from, const State& to, Goal goal = Goal::position) {
   return planned[0].profile;
 }
 
-/// Axes whose drives follow at once, and a judge of each cycle.
+/// Axes whose drives follow at once, and a judge of each beat.
 class Plant {
  public:
-  explicit Plant(std::size_t axes) : motions{axes, period}, inputs(axes), last(axes) {
+  explicit Plant(std::size_t axes) : motions{axes, period}, inputs(axes), last(axes), ended(axes) {
     for (AxisInput& input : inputs) input.condition = AxisCondition::enabled;
   }
 
   void step() {
-    const auto reports = motions.run(++cycle, inputs);
+    const auto reports = motions.run(++beat, inputs);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-      if (last[i].state != AxisState::unpowered && reports[i].state != AxisState::unpowered)
-        judge(last[i].commanded, reports[i].commanded);
+      const bool powered =
+          last[i].state != AxisState::unpowered && reports[i].state != AxisState::unpowered;
+      if (powered && !inputs[i].set_point) judge(last[i].commanded, reports[i].commanded);
       last[i] = reports[i];
+      for (const EndedOrder& order : reports[i].ended.orders()) ended[i] = order;
       if (follows) inputs[i].actual = reports[i].commanded;
     }
   }
@@ -49,28 +52,30 @@ class Plant {
     for (int i = 0; i < count; ++i) step();
   }
 
-  MotionOrder order(std::uint8_t axis, const State& to, Cycle ahead = 10) const {
+  MotionOrder order(std::uint8_t axis, const State& to, BeatNumber ahead = 10) const {
     const State& from = last[axis].commanded;
     return {.id = ids,
             .axis = axis,
-            .begin = cycle + ahead,
+            .group = axis,
+            .begin = beat + ahead,
             .from = from,
             .profile = plan(from, to),
             .stop = limits,
             .timeout = 500};
   }
 
-  bool take(const MotionOrder& order) { return motions.take(order, cycle); }
+  bool take(const MotionOrder& order) { return motions.take(order, beat) == Outcome::none; }
 
   AxisMotions motions;
   std::vector<AxisInput> inputs;
   std::vector<AxisReport> last;
-  Cycle cycle = 0;
+  std::vector<EndedOrder> ended;  ///< of each axis, the order that ended last
+  BeatNumber beat = 0;
   std::uint32_t ids = 1;
   bool follows = true;
 
  private:
-  /// No jump: what changes in one cycle keeps the limit of the jerk, and all limits hold.
+  /// No jump: what changes in one beat keeps the limit of the jerk, and all limits hold.
   static void judge(const State& before, const State& now) {
     constexpr double tolerance = 1e-9;
     ASSERT_LE(now.velocity, limits.max_velocity + tolerance);
@@ -86,7 +91,7 @@ class Plant {
   }
 };
 
-TEST(AxisMotions, AnOrderBeginsInItsCycleAndEndsAtItsTarget) {
+TEST(AxisMotions, AnOrderBeginsInItsBeatAndEndsAtItsTarget) {
   Plant plant{1};
   plant.step();
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 0.02})));
@@ -96,20 +101,22 @@ TEST(AxisMotions, AnOrderBeginsInItsCycleAndEndsAtItsTarget) {
   EXPECT_EQ(plant.last[0].state, AxisState::moving);
   EXPECT_EQ(plant.last[0].commanded.position, 0.0);
   EXPECT_EQ(plant.last[0].running, 1U);
-  const Cycle left = plant.last[0].cycles_left;
+  const BeatNumber left = plant.last[0].beats_left;
   plant.steps(static_cast<int>(left));
   EXPECT_EQ(plant.last[0].state, AxisState::standing);
-  EXPECT_EQ(plant.last[0].ended.outcome, Outcome::done);
+  EXPECT_EQ(plant.ended[0].outcome, Outcome::done);
   EXPECT_NEAR(plant.last[0].commanded.position, 0.02, 1e-12);
 }
 
 TEST(AxisMotions, AnAxisThatIsNotEnabledFollowsItsActualPosition) {
   Plant plant{1};
   plant.follows = false;
-  plant.inputs[0] = {.condition = AxisCondition::disabled, .actual = {.position = 3.0}};
+  plant.inputs[0] = {
+      .condition = AxisCondition::disabled, .actual = {.position = 3.0}, .set_point = {}};
   plant.step();
   EXPECT_EQ(plant.last[0].commanded.position, 3.0);
-  plant.inputs[0] = {.condition = AxisCondition::enabled, .actual = {.position = 3.5}};
+  plant.inputs[0] = {
+      .condition = AxisCondition::enabled, .actual = {.position = 3.5}, .set_point = {}};
   plant.step();
   EXPECT_EQ(plant.last[0].state, AxisState::standing);
   EXPECT_EQ(plant.last[0].commanded.position, 3.5);
@@ -126,14 +133,14 @@ TEST(AxisMotions, RefusesWhatWouldJumpAndGoesOn) {
   plant.steps(100);
   plant.ids = 2;
   MotionOrder late = plant.order(0, {.position = 2.0});
-  late.begin = plant.cycle;
+  late.begin = plant.beat;
   ASSERT_TRUE(plant.take(late));
   plant.step();
-  EXPECT_EQ(plant.last[0].ended.outcome, Outcome::too_late);
+  EXPECT_EQ(plant.ended[0].outcome, Outcome::too_late);
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 2.0}, 5)));
   plant.steps(5);
-  EXPECT_EQ(plant.last[0].ended.id, 2U);
-  EXPECT_EQ(plant.last[0].ended.outcome, Outcome::other_start);
+  EXPECT_EQ(plant.ended[0].id, 2U);
+  EXPECT_EQ(plant.ended[0].outcome, Outcome::other_start);
   EXPECT_EQ(plant.last[0].state, AxisState::moving);
   EXPECT_EQ(plant.last[0].running, 1U);
 }
@@ -144,16 +151,16 @@ TEST(AxisMotions, RefusesOrdersOfADriveThatIsNotEnabledOrStopsAndOfUnknownAxes) 
   plant.step();
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 1.0}, 1)));
   plant.step();
-  EXPECT_EQ(plant.last[0].ended.outcome, Outcome::not_powered);
+  EXPECT_EQ(plant.ended[0].outcome, Outcome::not_powered);
   plant.inputs[0].condition = AxisCondition::enabled;
   plant.step();
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 1.0}, 1)));
   plant.steps(200);
-  plant.motions.stop_group(0, StopCause::application);
+  plant.motions.stop_axis(0, StopCause::application);
   plant.step();
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 1.0}, 1)));
   plant.step();
-  EXPECT_EQ(plant.last[0].ended.outcome, Outcome::is_stopping);
+  EXPECT_EQ(plant.ended[0].outcome, Outcome::is_stopping);
   EXPECT_EQ(plant.last[0].stop.cause, StopCause::application);
   MotionOrder order = plant.order(0, {.position = 1.0});
   order.axis = 1;
@@ -170,7 +177,7 @@ TEST(AxisMotions, RefusesAMotionThatWouldEndWithAJump) {
   order.profile = plan({}, {.velocity = 0.5}, Goal::velocity);
   ASSERT_TRUE(plant.take(order));
   plant.step();
-  EXPECT_EQ(plant.last[0].ended.outcome, Outcome::no_rest);
+  EXPECT_EQ(plant.ended[0].outcome, Outcome::no_rest);
   EXPECT_EQ(plant.last[0].state, AxisState::standing);
 }
 
@@ -179,12 +186,62 @@ TEST(AxisMotions, ALaterOrderThatWaitsReplacesTheEarlierOne) {
   plant.step();
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 1.0})));
   plant.ids = 2;
+  EXPECT_EQ(plant.motions.take(plant.order(0, {.position = 2.0}), plant.beat),
+            Outcome::second_in_beat);
+  plant.step();
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 2.0})));
   plant.step();
-  EXPECT_EQ(plant.last[0].ended.id, 1U);
-  EXPECT_EQ(plant.last[0].ended.outcome, Outcome::replaced);
+  EXPECT_EQ(plant.ended[0].id, 1U);
+  EXPECT_EQ(plant.ended[0].outcome, Outcome::replaced);
   plant.steps(10);
   EXPECT_EQ(plant.last[0].running, 2U);
+}
+
+TEST(AxisMotions, RefusesOrdersWithNumbersThatWouldHideAFault) {
+  Plant plant{1};
+  plant.step();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto refused = [&](auto change) {
+    MotionOrder order = plant.order(0, {.position = 1.0});
+    change(order);
+    return plant.motions.take(order, plant.beat) == Outcome::unsound;
+  };
+  EXPECT_TRUE(refused([&](MotionOrder& order) { order.max_following_error = nan; }));
+  EXPECT_TRUE(refused([&](MotionOrder& order) { order.from.velocity = nan; }));
+  EXPECT_TRUE(refused([&](MotionOrder& order) { order.stop.jerk = nan; }));
+  EXPECT_TRUE(refused([&](MotionOrder& order) { order.stop.min_acceleration = 0.0; }));
+  EXPECT_TRUE(refused([&](MotionOrder& order) { order.profile.add(0.1, nan); }));
+  EXPECT_TRUE(refused([&](MotionOrder& order) { order.id = 0; }));
+  EXPECT_TRUE(refused([&](MotionOrder& order) { order.sender = max_axes; }));
+  EXPECT_FALSE(refused([](MotionOrder&) {}));
+}
+
+TEST(AxisMotions, ADirectSetPointMovesTheStartOfTheNextMotion) {
+  Plant plant{1};
+  plant.step();
+  plant.inputs[0].set_point = 0.25;
+  plant.step();
+  EXPECT_EQ(plant.last[0].commanded.position, 0.25);
+  plant.inputs[0].set_point.reset();
+  ASSERT_TRUE(plant.take(plant.order(0, {.position = 0.5}, 1)));
+  plant.step();
+  EXPECT_EQ(plant.last[0].state, AxisState::moving);
+  EXPECT_EQ(plant.last[0].commanded.position, 0.25);
+}
+
+TEST(AxisMotions, AnAxisIsKeptAliveWhileItMovesOrItsSenderIsAlive) {
+  Plant plant{1};
+  plant.step();
+  EXPECT_FALSE(plant.last[0].kept_alive);
+  ASSERT_TRUE(plant.take(plant.order(0, {.position = 0.001}, 1)));
+  plant.steps(500);
+  EXPECT_EQ(plant.last[0].state, AxisState::standing);
+  EXPECT_TRUE(plant.last[0].kept_alive);
+  plant.step();
+  EXPECT_FALSE(plant.last[0].kept_alive);
+  plant.motions.sender_heard(0, plant.beat);
+  plant.step();
+  EXPECT_TRUE(plant.last[0].kept_alive);
 }
 
 TEST(AxisMotions, AMotionOutlivesItsSenderByTheTimeout) {
@@ -192,13 +249,13 @@ TEST(AxisMotions, AMotionOutlivesItsSenderByTheTimeout) {
   plant.step();
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 5.0}, 1)));
   plant.steps(400);
-  plant.motions.sender_heard(0, plant.cycle);
+  plant.motions.sender_heard(0, plant.beat);
   plant.steps(500);
   EXPECT_EQ(plant.last[0].state, AxisState::moving);
   plant.step();
   EXPECT_EQ(plant.last[0].state, AxisState::stopping);
   EXPECT_EQ(plant.last[0].stop.cause, StopCause::sender_silent);
-  EXPECT_EQ(plant.last[0].ended.outcome, Outcome::stopped);
+  EXPECT_EQ(plant.ended[0].outcome, Outcome::stopped);
   plant.steps(1000);
   EXPECT_EQ(plant.last[0].state, AxisState::standing);
   EXPECT_EQ(plant.last[0].commanded.velocity, 0.0);
@@ -209,7 +266,7 @@ TEST(AxisMotions, AnOrderOfASilentSenderDoesNotBegin) {
   plant.step();
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 5.0}, 501)));
   plant.steps(501);
-  EXPECT_EQ(plant.last[0].ended.outcome, Outcome::sender_was_silent);
+  EXPECT_EQ(plant.ended[0].outcome, Outcome::sender_was_silent);
 }
 
 /// Starts a motion of three axes, of which the last is in a group of its own.
@@ -217,7 +274,7 @@ void start_groups(Plant& plant) {
   plant.step();
   for (std::uint8_t axis = 0; axis < 3; ++axis) {
     MotionOrder order = plant.order(axis, {.position = 1.0 + axis}, 1);
-    order.group = axis == 2 ? 7 : 3;
+    order.group = axis == 2 ? 2 : 0;
     order.axes = axis == 2 ? 1 : 2;
     order.timeout = 100000;
     order.max_following_error = 0.1;
@@ -226,7 +283,7 @@ void start_groups(Plant& plant) {
   plant.steps(300);
 }
 
-TEST(AxisMotions, AGroupStopsInTheCycleInWhichOneOfItsAxesFails) {
+TEST(AxisMotions, AGroupStopsInTheBeatInWhichOneOfItsAxesFails) {
   struct Case {
     AxisCondition condition;
     StopCause cause;
@@ -243,7 +300,7 @@ TEST(AxisMotions, AGroupStopsInTheCycleInWhichOneOfItsAxesFails) {
     EXPECT_EQ(plant.last[0].stop.axis, 1);
     EXPECT_EQ(plant.last[1].state, AxisState::unpowered);
     EXPECT_EQ(plant.last[1].stop.cause, failure.cause);
-    EXPECT_EQ(plant.last[1].ended.outcome, Outcome::stopped);
+    EXPECT_EQ(plant.ended[1].outcome, Outcome::stopped);
     EXPECT_EQ(plant.last[2].state, AxisState::moving);
   }
 }
@@ -269,17 +326,46 @@ TEST(AxisMotions, TheOrdersOfAGroupBeginTogetherOrNotAtAll) {
   first.axes = 2;
   ASSERT_TRUE(plant.take(first));
   plant.step();
-  EXPECT_EQ(plant.last[0].ended.outcome, Outcome::group_incomplete);
-  first.begin = plant.cycle + 1;
-  MotionOrder second = first;
+  EXPECT_EQ(plant.ended[0].outcome, Outcome::group_incomplete);
+  first.begin = plant.beat + 1;
+  MotionOrder second = first;  // group 0
   second.axis = 1;
   second.from.position = 1.0;
   ASSERT_TRUE(plant.take(first));
   ASSERT_TRUE(plant.take(second));
   plant.step();
-  EXPECT_EQ(plant.last[0].ended.outcome, Outcome::group_incomplete);
-  EXPECT_EQ(plant.last[1].ended.outcome, Outcome::other_start);
+  EXPECT_EQ(plant.ended[0].outcome, Outcome::group_incomplete);
+  EXPECT_EQ(plant.ended[1].outcome, Outcome::other_start);
   EXPECT_EQ(plant.last[0].state, AxisState::standing);
+}
+
+TEST(AxisMotions, OneMotionThatReplacesPartOfAGroupLeavesTheRestAlone) {
+  Plant plant{3};
+  start_groups(plant);
+  plant.ids = 2;
+  MotionOrder order = plant.order(0, {.position = 0.0}, 1);
+  order.from = plan({}, {.position = 1.0}).at({}, 0.3);
+  order.profile = plan(order.from, {});
+  order.timeout = 100000;
+  ASSERT_TRUE(plant.take(order));
+  plant.step();
+  ASSERT_EQ(plant.last[0].running, 2U);
+  ASSERT_EQ(plant.last[1].running, 1U);
+  plant.inputs[1].condition = AxisCondition::fault;
+  plant.step();
+  EXPECT_EQ(plant.last[1].stop.cause, StopCause::fault);
+  EXPECT_EQ(plant.last[0].state, AxisState::moving);
+}
+
+TEST(AxisMotions, TheReportKeepsTheFirstCauseOfAStop) {
+  Plant plant{3};
+  start_groups(plant);
+  plant.inputs[0].actual.position -= 0.2;
+  plant.step();
+  plant.inputs[1].condition = AxisCondition::fault;
+  plant.step();
+  EXPECT_EQ(plant.last[0].stop.cause, StopCause::following_error);
+  EXPECT_EQ(plant.last[0].stop.axis, 0);
 }
 
 TEST(AxisMotions, AJogKeepsItsVelocityAndStopsInsideTheRange) {
@@ -290,7 +376,7 @@ TEST(AxisMotions, AJogKeepsItsVelocityAndStopsInsideTheRange) {
   jog.profile = plan({}, {.velocity = 0.8}, Goal::velocity);
   jog.ending = Ending::cruise;
   jog.timeout = 100000;
-  const auto latest = cycles_with_stop(jog, range, period, 100000);
+  const auto latest = beats_with_stop(jog, range, period, 100000);
   ASSERT_TRUE(latest.has_value());
   jog.latest_stop = *latest;
   ASSERT_TRUE(plant.take(jog));
@@ -308,7 +394,7 @@ TEST(AxisMotions, NoStopStaysInsideARangeThatTheAxisIsAboutToLeave) {
   order.from.velocity = 1.0;
   order.stop = limits;
   order.ending = Ending::cruise;
-  EXPECT_EQ(cycles_with_stop(order, {.max = 0.01}, period, 10), std::nullopt);
+  EXPECT_EQ(beats_with_stop(order, {.max = 0.01}, period, 10), std::nullopt);
 }
 
 TEST(AxisMotions, RandomOrdersAndStopsNeverJumpAndKeepTheLimits) {
@@ -321,10 +407,10 @@ TEST(AxisMotions, RandomOrdersAndStopsNeverJumpAndKeepTheLimits) {
   struct Planned {
     State from;
     Profile profile;
-    Cycle begin = 0;
+    BeatNumber begin = 0;
 
-    State at(Cycle cycle) const {
-      return profile.at(from, static_cast<double>(cycle - begin) * period);
+    State at(BeatNumber beat) const {
+      return profile.at(from, static_cast<double>(beat - begin) * period);
     }
   };
   std::array<Planned, 4> planned;
@@ -333,17 +419,17 @@ TEST(AxisMotions, RandomOrdersAndStopsNeverJumpAndKeepTheLimits) {
     const auto axis = static_cast<std::uint8_t>(random() % 4);
     MotionOrder order = plant.order(axis, {.position = between(-1.0, 1.0)}, 1);
     const bool moves = plant.last[axis].state == AxisState::moving;
-    // The planner knows the motion that runs: it plans from the state of the next cycle.
+    // The planner knows the motion that runs: it plans from the state of the next beat.
     if (moves && random() % 4 != 0) order.from = planned[axis].at(order.begin);
     order.profile = plan(order.from, {.position = between(-1.0, 1.0)});
     order.id = static_cast<std::uint32_t>(round + 1);
     order.group = axis;
     ASSERT_TRUE(plant.take(order));
     plant.step();
-    ++outcomes[static_cast<std::size_t>(plant.last[axis].ended.outcome)];
+    ++outcomes[static_cast<std::size_t>(plant.ended[axis].outcome)];
     if (plant.last[axis].running == order.id)
       planned[axis] = {order.from, order.profile, order.begin};
-    if (random() % 8 == 0) plant.motions.stop_group(axis, StopCause::application);
+    if (random() % 8 == 0) plant.motions.stop_axis(axis, StopCause::application);
     plant.steps(static_cast<int>(random() % 60));
     if (testing::Test::HasFatalFailure()) return;
   }

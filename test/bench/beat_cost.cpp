@@ -1,0 +1,74 @@
+// Nanoseconds of processor time that the motions of 120 axes take in one beat: while all move, and
+// in the beat in which all stop.
+#include <array>
+#include <benchmark/benchmark.h>
+#include <vector>
+
+#include "master/motion/beat/axis_motions.hpp"
+#include "master/motion/trajectory.hpp"
+
+namespace takt::motion {
+namespace {
+
+constexpr std::size_t axes = 120;
+constexpr double period = 0.001;
+constexpr Limits limits{.max_velocity = 1.0,
+                        .min_velocity = -1.0,
+                        .max_acceleration = 5.0,
+                        .min_acceleration = -5.0,
+                        .jerk = 50.0};
+
+/// All axes of one group in the middle of their motions.
+struct MovingAxes {
+  MovingAxes() : motions{axes, period}, inputs(axes) {
+    for (AxisInput& input : inputs) input.condition = AxisCondition::enabled;
+    run();
+    std::vector<AxisTask> tasks(axes);
+    for (AxisTask& task : tasks) task = {.from = {}, .to = {.position = 1e6}, .limits = limits};
+    std::vector<PlannedAxis> planned(axes);
+    if (!plan_trajectory(tasks, {}, planned)) return;
+    for (std::size_t i = 0; i < axes; ++i) {
+      motions.take({.id = 1,
+                    .axis = static_cast<std::uint8_t>(i),
+                    .axes = axes,
+                    .begin = beat + 1,
+                    .profile = planned[i].profile,
+                    .stop = limits,
+                    .timeout = 1'000'000'000},
+                   beat);
+    }
+    for (int i = 0; i < 100; ++i) run();
+  }
+
+  std::span<const AxisReport> run() { return motions.run(++beat, inputs); }
+
+  AxisMotions motions;
+  std::vector<AxisInput> inputs;
+  BeatNumber beat = 0;
+};
+
+void moving(benchmark::State& state) {
+  MovingAxes moving;
+  for (auto _ : state) {
+    const auto reports = moving.run();
+    for (std::size_t i = 0; i < axes; ++i) moving.inputs[i].actual = reports[i].commanded;
+  }
+}
+BENCHMARK(moving)->Unit(benchmark::kMicrosecond);
+
+void all_stop(benchmark::State& state) {
+  const MovingAxes moving;
+  for (auto _ : state) {
+    state.PauseTiming();
+    MovingAxes copy = moving;
+    state.ResumeTiming();
+    copy.motions.stop_axis(0, StopCause::application);
+    benchmark::DoNotOptimize(copy.run().data());
+  }
+}
+BENCHMARK(all_stop)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace takt::motion
+
+BENCHMARK_MAIN();
