@@ -79,7 +79,7 @@ class AxisCompiler {
     return Time{static_cast<Time::rep>(std::min(value, longest) * 1e9)};
   }
 
-  /// Returns the quick stop option, 0x605A. Its default is 2.
+  /// Returns the quick stop option code (0x605A), or 2 if no value of it is known.
   std::int16_t option() const {
     return static_cast<std::int16_t>(values_.get(at(0x605A)).value_or(2));
   }
@@ -136,12 +136,13 @@ class AxisCompiler {
     return *above / *below;
   }
 
-  /// Returns the velocity below which an axis counts as standing still, in units of 0x606C. With a
-  /// velocity limit this is the velocity threshold of the device (0x606F), but at most a hundredth
-  /// of the limit, or a thousandth of the limit if there is no threshold. Without a limit it is the
-  /// threshold. Without both it is a hundredth of a revolution per second, else the position window
-  /// of the device (0x6067) in 50 ms, else a velocity that is small in the unit of the network
-  /// file.
+  /// Returns the velocity below which an axis counts as standing still, in units of 0x606C. If the
+  /// axis has a velocity limit, the result is the velocity threshold of the device (0x606F), but at
+  /// most a hundredth of the limit; without a threshold it is a thousandth of the limit. If the
+  /// axis has no limit, the result is the threshold. If both are missing, the result is a hundredth
+  /// of a revolution of the motor per second. If the gear is unknown too, it is the velocity that
+  /// crosses the position window of the device (0x6067) in 50 ms, or else a velocity that is small
+  /// in the position unit of the network file.
   std::optional<double> standstill_velocity(std::optional<double> limit) const {
     const auto threshold = values_.positive(at(0x606F));
     if (limit && threshold) return std::min(*threshold, *limit / 100);
@@ -174,7 +175,7 @@ class AxisCompiler {
     axis.position_window = std::max<std::int64_t>(2, std::llround(std::min(travel, most)));
   }
 
-  // The reciprocal of Standstill::standstill_time, which is 50 ms.
+  // This is the reciprocal of Standstill::standstill_time (50 ms), in 1/s.
   static constexpr double looks_in_a_second = 20;
 
   const BootedValues& values_;
@@ -183,7 +184,7 @@ class AxisCompiler {
   std::uint8_t number_;
 };
 
-/// Returns the unit of `units:` for an object of an axis.
+/// Returns the unit that `units:` gives to an object of an axis.
 RawUnit unit_of(const NodeSource& source, std::uint8_t number, unsigned index) {
   Signal signal{.node = source.id, .object = axis_object(number, index)};
   apply_units(source, signal);

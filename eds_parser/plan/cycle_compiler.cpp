@@ -10,9 +10,9 @@ namespace {
 
 constexpr unsigned longest_data = 8;
 constexpr std::uint32_t service_pair_bits = 2 * worst_frame_bits(longest_data);
-// In each 10 ms, unless the network file sets `service_frames`.
+// The largest number of SDO requests for each 10 ms, unless the network file sets `service_frames`.
 constexpr Time::rep usual_service_frames = 16;
-// In longer cycles the master processes services every 10 ms.
+// If the cycle has this length or is longer, the master processes services every 10 ms.
 constexpr Time long_cycle = std::chrono::milliseconds{50};
 constexpr int event_share = 4;  ///< Event-driven outputs get at most a quarter of the period.
 constexpr Time longest_window = std::chrono::milliseconds{50};
@@ -65,8 +65,8 @@ class CycleCompiler {
 
   /// Sets the receive window to the middle of the time between the earliest arrival of all inputs
   /// and the outputs. A device may then be late by half of this time, and an application still has
-  /// the other half. The window is at most 80 % of the period, and not longer than services can
-  /// wait.
+  /// the other half. The window is at most 80 % of the period, and at most 50 ms so that services
+  /// do not wait longer, unless the inputs take longer to arrive.
   void set_receive_window(const TimeBudget& wire) {
     if (spec_.receive_window_us.given) {
       cycle_.receive_window = std::chrono::microseconds{*spec_.receive_window_us};
@@ -83,7 +83,8 @@ class CycleCompiler {
                         std::max<Time>(wire.earliest, longest_window)});
   }
 
-  /// Sets how many SDO requests with their answers fit into the time that nothing else needs.
+  /// Sets how many SDO requests with their answers fit into the time that SYNC and the PDOs leave
+  /// free.
   void set_service_frames(const TimeBudget& wire) {
     const Time left =
         cycle_.period - wire.inputs_wire - wire.outputs_wire - cycle_.quiet_before_sync;
@@ -174,7 +175,8 @@ TimeBudget time_budget(const BusPlan& plan) noexcept {
   for (const PdoRow& row : plan.pdos.rpdos) {
     (row.synchronous() ? budget.outputs_wire : by_event) += row_time(row, plan.bitrate);
   }
-  // Not all event-driven frames change in one cycle. Those that do not fit are sent in the next.
+  // Event-driven RPDOs rarely all change in the same cycle. The master sends those that do not fit
+  // in the next cycle.
   budget.outputs_wire += std::min<Time>(by_event, plan.cycle.period / event_share);
   budget.earliest = budget.inputs_wire + frame_time(plan.bitrate);
   budget.latest = plan.cycle.output_deadline;

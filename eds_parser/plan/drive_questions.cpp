@@ -14,8 +14,8 @@
 namespace takt {
 namespace {
 
-/// A set-point that acts only in some modes of operation, and the cyclic one of these modes
-/// (CiA 402-2, 0x6060).
+/// A set-point that has an effect only in some modes of operation. `mode` is the cyclic synchronous
+/// one of these modes (CiA 402-2, 0x6060).
 struct Target {
   std::uint16_t index;
   int mode;
@@ -25,7 +25,7 @@ constexpr std::array<Target, 3> targets{{{0x607A, 8, "cyclic synchronous positio
                                          {0x60FF, 9, "cyclic synchronous velocity"},
                                          {0x6071, 10, "cyclic synchronous torque"}}};
 
-/// Returns nullptr for other objects.
+/// Returns nullptr if the object is none of `targets`.
 const Target* target_of(ObjectKey object) {
   const auto found = std::ranges::find(targets, first_axis(object.index), &Target::index);
   return found == targets.end() ? nullptr : &*found;
@@ -49,7 +49,7 @@ bool is_received(const NodePdos& node, ObjectKey object) {
   });
 }
 
-/// Returns true if the boot or a DCF sets the object to a mode. The value 0 is no mode.
+/// Returns true if the boot or a DCF sets the mode of operation. The value 0 is no mode.
 bool is_set(const NodePdos& node, ObjectKey mode) {
   const NodeSpec& spec = *node.node.spec;
   if (*spec.boot && spec.written(mode) != nullptr) return written_object(node.node, mode) != 0;
@@ -65,7 +65,8 @@ std::string lack_of(const NodeSpec& node, ObjectKey mode) {
                     : "nothing sets " + text + " (`boot: false` writes no `sdo`)";
 }
 
-/// Returns what sets the mode. If only `sdo` does, applications see the mode by 0x6061 alone.
+/// Returns a text that advises the user how to set the mode. If `sdo` sets it, applications can see
+/// the mode only in 0x6061, so the text may also ask for this object in a TPDO.
 std::string advice_for(const NodePdos& node, const Target& target, ObjectKey mode) {
   const std::string map = "Map " + hex(mode.index, 4) + " into an RPDO";
   if (!*node.node.spec->boot) return map;
@@ -116,8 +117,8 @@ void ask_for_loss(std::span<const NodePdos> nodes, NetworkReport& report) {
 
 constexpr std::int64_t quick_stop_command = 3;  // value of 0x6007, CiA 402-2
 
-/// Returns the object 0x6007 of each axis of the node for which it is not configured as 3. NMT stop
-/// ends the exchange of PDOs. With the value 3 the drive then makes a quick stop.
+/// Returns the object 0x6007 of each axis of the node that is not configured for a quick stop. NMT
+/// stop ends the exchange of PDOs, and a drive makes a quick stop then only if its 0x6007 is 3.
 std::vector<ObjectKey> axes_without_quick_stop(const NodeSource& node) {
   std::vector<ObjectKey> objects;
   for (unsigned axis = 0; axis < most_axes; ++axis) {
@@ -134,7 +135,7 @@ bool is_stopped_with(const NodeSpec& node, const NodeSpec& lost) {
          *node.group == *lost.group;
 }
 
-/// Returns the text with which a network file sets these objects to 3.
+/// Returns the `sdo:` entries with which a network file sets these objects to 3, for a message.
 std::string written_as_quick_stop(const std::set<std::uint16_t>& objects) {
   std::string entries;
   for (const std::uint16_t index : objects) {

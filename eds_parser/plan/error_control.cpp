@@ -94,8 +94,8 @@ void ErrorControl::report_unused_retry_factor() const {
                guards_ ? "each guarded node has its own `retry_factor`" : "no node is guarded");
 }
 
-/// Reports settings that ask for guarding of a node that is not guarded. Settings of 0 ask for no
-/// guarding and are not reported.
+/// Notes the guarding settings that have no effect because the node is not guarded. A setting of 0
+/// asks for no guarding and is not reported.
 void ErrorControl::leave_alone(const NodeSpec& spec, const std::string& why,
                                const std::string& remedy) const {
   const auto announce = [&](const auto& key, const std::string& word) {

@@ -14,18 +14,19 @@ class ErrorControl {
   /// neither has one and the device can produce a heartbeat, the result is 100 ms, or as much as
   /// keeps all heartbeats below 2 % of the bus. The value is rounded as the device rounds it.
   std::uint16_t producer_ms(const NodeSource& node) const;
-  /// Returns the longest silence of the master that a device accepts, in ms of 0x1016. 0 means that
-  /// the master produces no heartbeat.
+  /// Returns the longest silence of the master that a device accepts, in milliseconds, as an entry
+  /// of 0x1016 states it. 0 means that the master produces no heartbeat.
   std::uint16_t master_consumer_ms(const NodeSource& node) const;
-  /// Returns the number of heartbeat periods of silence after which a node counts as lost; at least
-  /// 1.5.
+  /// Returns the number of heartbeat periods without a heartbeat after which a node counts as lost.
+  /// The result is at least 1.5.
   double multiplier(const NodeSpec& node) const;
-  /// Returns zero if no heartbeat is expected.
+  /// Returns the time without a heartbeat after which a node counts as lost. Returns zero if the
+  /// master expects no heartbeat from the node.
   Time heartbeat_timeout(const NodeSource& node) const;
   /// Returns the guarding of a node if the device file or the network file has a guard time and
   /// there is no heartbeat.
   GuardPlan guard(const NodeSource& node);
-  /// Reports `retry_factor` of `options` if guard() gave it to no node.
+  /// Notes that `retry_factor` of `options` has no effect if guard() has used it for no node.
   void report_unused_retry_factor() const;
 
  private:
@@ -36,7 +37,7 @@ class ErrorControl {
   const NetworkSpec& spec_;
   NetworkReport& report_;
   bool guards_ = false;
-  bool uses_retry_factor_ = false;  ///< the retry_factor of `options`
+  bool uses_retry_factor_ = false;  ///< A node is guarded with the retry_factor of `options`.
 };
 
 /// Checks that a node with `reset: keep_alive` shows its state by heartbeat or guarding.

@@ -13,15 +13,16 @@ bool may_be_same(const LssPlan& a, const LssPlan& b) {
   return true;
 }
 
-/// Returns a number of the identity from the network file, else from the device file.
+/// Returns a number of the identity object (0x1018) from the network file, else from the device
+/// file.
 std::uint32_t identity(const Sourced<std::uint32_t>& wanted, const ObjectDictionary& dictionary,
                        std::uint8_t sub) {
   if (wanted.given) return *wanted;
   return static_cast<std::uint32_t>(integer_of(dictionary, {0x1018, sub}).value_or(0));
 }
 
-/// A number of 0 is unknown. The exception is a vendor ID of 0 together with a product code: that
-/// device has no vendor ID.
+/// Returns the LSS address of a node. A number of 0 counts as unknown. The exception is a vendor ID
+/// of 0 next to a known product code: such a device has no vendor ID.
 LssPlan lss_plan(const NodeSpec& node, const ObjectDictionary& dictionary) {
   LssPlan lss{.address = {identity(node.vendor_id, dictionary, 1),
                           identity(node.product_code, dictionary, 2), *node.revision_number,

@@ -30,7 +30,7 @@ constexpr std::uint32_t default_reboot_delay_ms = 1000;
 constexpr std::uint32_t default_reboot_delay_max_ms = 30'000;
 constexpr std::uint8_t stand_in_id = 127;
 constexpr std::uint8_t stray_index = 255;  // index of a node that has no place in the plan
-constexpr int stop_cycles = 10;            // An ordered stop without axes takes five cycles.
+constexpr int stop_cycles = 10;  // cycles of an ordered stop without axes, which needs five
 
 Time milliseconds(std::uint32_t value) { return std::chrono::milliseconds{value}; }
 
@@ -38,7 +38,8 @@ Time sdo_timeout(const NodeSpec& node) {
   return milliseconds(node.sdo_timeout_ms.value_or(default_sdo_timeout_ms));
 }
 
-/// Returns the form by which names are compared. LCM channels contain the names in capitals.
+/// Returns a name in the form in which names are compared: in lower case, with `_` for `-`. LCM
+/// channels contain the names in capitals.
 std::string channel_form(std::string name) {
   std::ranges::transform(name, name.begin(), [](unsigned char c) {
     return c == '-' ? '_' : static_cast<char>(std::tolower(c));
@@ -297,7 +298,7 @@ class NetworkCompiler {
     set_device_watch(*source.node.dictionary, node);
   }
 
-  /// Reports the other errors of a node without a valid node-ID in the same run.
+  /// Compiles a node without a valid node-ID, only so that one run also reports its other errors.
   void judge_stray(NodePdos& source) {
     source.pdos = compile_pdos(source.node, report_);
     judge_by_device_data(source, spec_.master, report_);

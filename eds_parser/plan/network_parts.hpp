@@ -44,8 +44,8 @@ void judge_pdo_times(const NodePdos& node, std::uint32_t bitrate, NetworkReport&
 /// the device file.
 bool is_cia402(const NodeSource& node);
 
-/// Warns of questions that the network file leaves open for CiA 402 drives: which object sets the
-/// mode of operation of an axis, and what the other drives do when one drive is lost.
+/// Warns if the network file does not say which object sets the mode of operation of an axis, or
+/// what the other CiA 402 drives do when one drive is lost.
 void ask_about_drives(std::span<const NodePdos> nodes, NetworkReport& report);
 
 /// Returns how a node gets its node-ID by LSS, or std::nullopt if the network file does not ask for

@@ -39,7 +39,8 @@ class TimeJudge {
  private:
   std::string label(const EffectivePdo& pdo) const { return pdo.label(*node_.node.spec); }
 
-  /// Returns the place of the value in the network file, else that of the PDO.
+  /// Returns the place of the value in the network file, or the place of the PDO if the file does
+  /// not state the value.
   SourcePos pos(const EffectivePdo& pdo, Sourced<std::uint16_t> PdoSpec::* member) const {
     const PdoSpec* spec = node_.node.spec->pdo(pdo.is_tpdo, pdo.number);
     return spec != nullptr && (spec->*member).given ? (spec->*member).pos : pdo.pos;

@@ -25,15 +25,16 @@ bool is_configured(const ObjectDictionary& dictionary, const SubObject& sub) {
   return dictionary.is_dcf && sub.parameter_value;
 }
 
-/// Returns the number in the file, whichever node it is valid for. Returns std::nullopt if there is
-/// no such entry or it is no number.
+/// Returns the number that the file states, even if it is the number of another node. Returns
+/// std::nullopt if there is no such entry or its value is no number.
 std::optional<std::int64_t> number_of_file(const ObjectDictionary& dictionary, ObjectKey key) {
   const SubObject* sub = dictionary.find(key);
   if (sub == nullptr) return std::nullopt;
   return integer_of(is_configured(dictionary, *sub) ? sub->parameter_value : sub->default_value);
 }
 
-/// Returns std::nullopt if the COB-ID is off.
+/// Converts the value of a COB-ID entry. Returns std::nullopt if the entry is switched off (bit
+/// 31).
 std::optional<CobId> cob_id_of(std::int64_t value) {
   const auto raw = static_cast<std::uint32_t>(value);
   if (value <= 0 || (raw & cob_id_off) != 0) return std::nullopt;
@@ -67,8 +68,8 @@ class SdoServers {
                            .pos = own != nullptr ? own->pos : node_.spec->pos};
   }
 
-  /// Returns the server that the device has at delivery according to its device data, unless a DCF
-  /// states its configuration.
+  /// Returns the server that is on when the device is delivered, according to its device data.
+  /// Returns std::nullopt if a DCF states the configuration of this server.
   std::optional<DeviceSdoServer> of_factory(std::uint16_t index) const {
     const SubObject* sub = node_.dictionary->find(ObjectKey{index, 1});
     const bool left_off = sub != nullptr && is_configured(*node_.dictionary, *sub);
@@ -107,7 +108,7 @@ class SdoServers {
   const NodeSource& node_;
 };
 
-/// The further SDO servers of a device file, of which the master's channel may name one.
+/// The further SDO servers of a device file, and whether one of them has the wanted channel.
 class ServersOfFile {
  public:
   ServersOfFile(const ObjectDictionary& dictionary, const SdoChannel& wanted) {
@@ -122,7 +123,9 @@ class ServersOfFile {
   }
 
   bool has_wanted() const noexcept { return has_; }
-  std::uint16_t first() const noexcept { return first_; }  ///< 0 means that there is none
+  std::uint16_t first() const noexcept {
+    return first_;
+  }  ///< index of the first server; 0 means that there is none
   const std::string& list() const noexcept { return list_; }
 
  private:

@@ -14,7 +14,8 @@ struct DeviceSdoServer {
   std::uint16_t index = 0;
   SdoChannel channel;
   SourcePos pos;  ///< place in the network file
-  /// Statement of the device data if only these say that the server is on, else empty.
+  /// The statement of the device data if nothing else says that the server is on, else an empty
+  /// text.
   std::string doubt{};
 };
 
@@ -22,8 +23,8 @@ struct DeviceSdoServer {
 /// else the device data.
 std::vector<DeviceSdoServer> active_sdo_servers(const NodeSource& node);
 
-/// Returns a COB-ID entry of the device file for this node. Returns 0 if there is no such entry. A
-/// plain number in an EDS also gives 0, because it is that of the node from which the EDS was
+/// Returns the COB-ID that the device file states for this node, or 0 if there is none. A plain
+/// number in an EDS also gives 0, because it is the COB-ID of the node from which the EDS was
 /// taken.
 std::int64_t cob_id_of_file(const ObjectDictionary& dictionary, ObjectKey key);
 

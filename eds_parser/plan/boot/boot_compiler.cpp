@@ -70,7 +70,8 @@ class BootCompiler : BootPart {
     probe();
   }
 
-  /// CiA 302-2, keep-alive bit of 0x1F81: an OPERATIONAL node is not reset.
+  /// Appends the step that finds out whether the node is OPERATIONAL; such a node is not reset.
+  /// This is the keep-alive bit of 0x1F81 in CiA 302-2. Returns the index of the step.
   std::size_t await_alive() {
     const bool guarded = context.node.heartbeat_timeout == Time{};
     const Time longest = guarded ? context.node.guard.life_time() : context.node.heartbeat_timeout;
@@ -124,7 +125,7 @@ class BootCompiler : BootPart {
     firmware();
   }
 
-  /// Reads the firmware if rules of the device data depend on it.
+  /// Reads the firmware version if rules of the device data depend on it.
   void firmware() {
     if (node.data == nullptr) return;
     const auto plan = firmware_plan(*node.data, node.firmware);
@@ -133,15 +134,16 @@ class BootCompiler : BootPart {
                 "firmware; until then takt assumes " + to_string(plan->assumed));
   }
 
-  /// Arms the supervision of the master by the device. The last ordered stop may have disarmed it.
-  /// Therefore every boot checks it again, regardless of the configuration date, and writes what
-  /// differs.
+  /// Arms the device to supervise the master and SYNC. The last ordered stop may have disarmed it.
+  /// Therefore every boot compares these objects, regardless of the configuration date, and writes
+  /// those that differ.
   void arm() {
     append_error_control(*this);
     append_sync(*this);
   }
 
-  /// Returns false if `sub` is 0, and also, with an error, if the device lacks the object.
+  /// Returns true if `sub` is not 0 and the device has the object. If only the object is missing,
+  /// reports an error.
   bool wants(const Sourced<std::uint8_t>& sub, std::string_view key, std::uint16_t index) {
     const ObjectKey object{index, *sub};
     if (*sub == 0 || steps.has(object)) return *sub != 0;
@@ -187,8 +189,8 @@ class BootCompiler : BootPart {
     }
   }
 
-  /// Reads the quick stop option code of each axis. The ordered stop judges a drive that coasts in
-  /// another way, and only the device knows the value that is in force.
+  /// Reads the quick stop option code of each axis, because only the device knows the present
+  /// value. The ordered stop judges the standstill of a drive that coasts by another rule.
   void quick_stop_options() {
     if (!context.node.cia402) return;
     for (unsigned axis = 0; axis < most_axes; ++axis) {

@@ -9,8 +9,8 @@
 namespace takt {
 namespace {
 
-/// Returns false for limits that are both 0 or inverted. An editor fills them in; they are not
-/// meant.
+/// Returns false if the limits are equal or inverted. Such limits are default entries of an EDS
+/// editor and do not describe the device.
 bool mean_something(const ObjectLimits& limits) {
   return !limits.low || !limits.high || *limits.low < *limits.high;
 }

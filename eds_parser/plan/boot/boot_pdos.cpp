@@ -9,9 +9,9 @@ class PdoBoot : BootPart {
  public:
   PdoBoot(const BootPart& part, const EffectivePdo& pdo) : BootPart{part}, pdo_{pdo} {}
 
-  /// Compares and configures first the mapping, then the communication parameters. A write of the
-  /// mapping switches the PDO off. The COB-ID then differs, and the second half switches the PDO on
-  /// again.
+  /// Compares and configures first the mapping, then the communication parameters. To write the
+  /// mapping, the boot switches the PDO off. The comparison of the COB-ID then fails, so the steps
+  /// for the communication parameters switch the PDO on again.
   void exchange() {
     const std::size_t first = steps.size();
     append_exchange();
@@ -100,8 +100,8 @@ class PdoBoot : BootPart {
     parameters(BootAction::compare);
   }
 
-  /// Marks the comparisons of a PDO. If they fail on a node that stays in operation, the PDO can't
-  /// be used.
+  /// Gives the comparisons of a PDO the error letter L. The boot fails with this letter if a
+  /// comparison fails on a node that stays in operation, because such a node can't be configured.
   void mark_running(std::size_t first) {
     for (std::size_t i = first; i < steps.size(); ++i) {
       BootStep& step = steps.steps()[i];

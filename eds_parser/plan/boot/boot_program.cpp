@@ -10,7 +10,6 @@ constexpr ObjectKey flash{0x1F57, 1};
 constexpr Time flash_time = std::chrono::seconds{60};  // longest time of erasing and programming
 // Longest time until the boot loader has started the program.
 constexpr Time start_time = std::chrono::seconds{10};
-// Longest time between two answers of the download.
 
 enum class Command : std::uint8_t { stop = 0, start = 1, clear = 3 };
 
@@ -63,7 +62,7 @@ class ProgramSteps : BootPart {
                 flash_time);
   }
 
-  /// Waits until the boot loader answers; it may need time to start.
+  /// Waits until the boot loader answers, because it may need time to start.
   void await_answer() {
     set_restart(steps.bytes(BootAction::probe, {0x1000, 0}, {}, "the boot loader answers"),
                 start_time);

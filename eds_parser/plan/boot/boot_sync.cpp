@@ -42,7 +42,7 @@ class SyncSteps : BootPart {
         .mask = 0x7FFF'FFFF;
   }
 
-  /// 0x1019 may change only while 0x1006 is 0. CiA 301, 7.5.2.22.
+  /// Writes 0x1019, which may change only while 0x1006 is 0. CiA 301, 7.5.2.22.
   void sync_counter() {
     const ObjectKey key{0x1019, 0};
     const std::uint8_t overflow = *context.master.sync_overflow;

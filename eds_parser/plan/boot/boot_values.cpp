@@ -18,8 +18,8 @@ namespace {
 constexpr std::uint32_t refuse_write_on_download = 1;
 constexpr std::size_t longest_compared = 256;
 
-/// Returns true for objects that other parts of the boot set, and for objects that only a person
-/// should write.
+/// Returns true for objects that other parts of the boot write, and for objects that takt should
+/// write only if a person asks for it.
 bool is_set_elsewhere(std::uint16_t index) {
   constexpr std::array<std::uint16_t, 11> set{0x1000, 0x1003, 0x1005, 0x1006, 0x1010, 0x1011,
                                               0x1014, 0x1017, 0x1018, 0x1019, 0x1020};
@@ -134,7 +134,7 @@ class ValueSteps : BootPart {
   /// the DCF, else -3 (milliseconds).
   std::int64_t exponent_of(ObjectKey key) const {
     const std::int64_t* power = spec.written_integer(key);
-    // The file may hold 253 for -3 as UNSIGNED8.
+    // A file may state -3 as the UNSIGNED8 value 253.
     if (power != nullptr) return static_cast<std::int8_t>(*power);
     const SubObject* sub = dictionary.find(key);
     return sub != nullptr && in_dcf(*sub) ? integer_of(sub->parameter_value).value_or(-3) : -3;
@@ -198,7 +198,8 @@ class ValueSteps : BootPart {
     write(sdo.object, std::move(*value), "sdo: " + label(dictionary, sdo.object));
   }
 
-  /// Warns if the SYNC period differs. 0 disables the supervision of SYNC, so it is not compared.
+  /// Warns if an `sdo:` entry sets 0x1006 to another value than the SYNC period. The value 0
+  /// switches the supervision of SYNC off and is not compared.
   void compare_sync_period(const SdoSpec& sdo) {
     const std::int64_t* us = sdo.integer();
     if (!context.plan.cycle.sync || us == nullptr || *us == 0 || *us == sync_period_us()) return;
@@ -208,7 +209,7 @@ class ValueSteps : BootPart {
         " us: the device may report loss of SYNC (without this entry takt sets the right value)");
   }
 
-  /// Writes an object that is not in the EDS. A concise DCF may contain such objects.
+  /// Writes an object that the EDS does not list. A concise DCF may contain such objects.
   void unknown_object(const SdoSpec& sdo, const std::vector<std::byte>& value) {
     report.warning(sdo.pos, "no-such-object", "node `", spec.name, "`: ", sdo.object,
                    " of the concise DCF is not in ", dictionary.file,
@@ -281,7 +282,8 @@ class ValueSteps : BootPart {
     return joined(low, "..", -low - 1, ", or ", bits_text(-low), "..", bits_text(high), " as bits");
   }
 
-  /// Also accepts a bit pattern of the width of the type (0xFFFFFFFF for -1).
+  /// Returns true if the object can hold the value. A bit pattern of the width of the type
+  /// (0xFFFFFFFF for -1) is accepted as well.
   bool fits(const SdoSpec& sdo, const SubObject& sub, std::int64_t value) {
     const unsigned bits = bit_width(sub.type);
     const bool sign = is_signed(sub.type);

@@ -6,9 +6,9 @@
 
 namespace takt {
 
-/// Lets a boot skip the configuration of a device that already has it: 0x1020 is compared with
-/// 0x1F26 and 0x1F27. The date comes from the network file, else from the DCF. `auto` derives it
-/// from the content that is written. CiA 302-2.
+/// Lets a boot skip the configuration of a device that is already configured: the boot compares
+/// 0x1020 of the device with 0x1F26 and 0x1F27. The date comes from the network file, else from the
+/// DCF. `auto` derives it from the content that is written. CiA 302-2.
 class ConfigurationDate {
  public:
   explicit ConfigurationDate(const BootPart& part);

@@ -31,7 +31,8 @@ void widen_limits(DeviceObject& object, const std::optional<Value>& own) {
   if (object.high_limit) object.high_limit = std::max(*object.high_limit, *value);
 }
 
-/// Read-only objects get their value from the DCF. A PDO of unknown COB-ID is off.
+/// Returns the object with its value at power-on. A read-only object gets its value from the DCF. A
+/// PDO without a known COB-ID is switched off.
 DeviceObject object_of(std::uint16_t index, const SubObject& sub) {
   DeviceObject object{.key = {index, sub.sub},
                       .type = sub.type,
@@ -73,7 +74,7 @@ DeviceTable compile_device(const NodeSource& node) {
   for (const Object& object : dictionary.objects) {
     for (const SubObject& sub : object.subs) table.objects.push_back(object_of(object.index, sub));
   }
-  // The simulated device has the firmware and the serial number that the network file expects.
+  // The simulated device gets the firmware and the serial number that the network file expects.
   if (node.firmware) {
     table.firmware = to_string(*node.firmware);
     const auto& parts = node.firmware->parts;

@@ -111,7 +111,7 @@ class Judge {
                   source(rule.fact));
   }
 
-  /// Warns if a TPDO is sent only as an answer and no RPDO asks for it.
+  /// Warns if the device sends a TPDO only as an answer to an RPDO, but no RPDO requests it.
   void answer(const EffectivePdo& pdo, const PdoRule& rule) {
     if (!pdo.is_tpdo || pdo.event_timer != 0 || !contains(rule.answers, pdo.transmission)) return;
     const auto asks = [&](const EffectivePdo& other) {

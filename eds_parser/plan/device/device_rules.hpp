@@ -20,8 +20,8 @@ void judge_node_by_device_data(const NodeSource& node, NetworkReport& report);
 
 struct NumberRange;
 
-/// Returns the content of the device data entry of a node as lines for people. The result is empty
-/// if the node has no entry.
+/// Returns the content of the device data entry of a node as lines of text for the user. The result
+/// is empty if the node has no entry.
 std::vector<std::string> device_notes(const NodePdos& node);
 
 /// Returns the ranges as text: "1..240, 254, 255".

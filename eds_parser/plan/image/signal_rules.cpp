@@ -18,8 +18,8 @@ constexpr std::chrono::milliseconds default_time_to_live{50};
 enum class Role : std::uint8_t { other, controlword, mode, position_target, rate_target };
 
 Role role_of(ObjectKey object) {
-  // Target velocity (vl), target torque, the offsets of position, velocity and torque, target
-  // velocity.
+  // These are the target velocity (vl), the target torque, the offsets of position, velocity and
+  // torque, and the target velocity.
   constexpr std::array<std::uint16_t, 6> rates{0x6042, 0x6071, 0x60B0, 0x60B1, 0x60B2, 0x60FF};
   const std::uint16_t index = first_axis(object.index);
   if (index == 0x6040) return Role::controlword;
@@ -28,7 +28,8 @@ Role role_of(ObjectKey object) {
   return std::ranges::find(rates, index) != rates.end() ? Role::rate_target : Role::other;
 }
 
-/// Returns a configured value in the form of the process image: reals as their bit pattern.
+/// Returns a configured value as the process image stores it. A real number is stored as its bit
+/// pattern.
 std::int64_t raw_value(const SdoSpec& sdo, DataType type) {
   const std::int64_t* integer = sdo.integer();
   const auto* real = std::get_if<double>(&sdo.value);
@@ -47,8 +48,8 @@ std::optional<std::int64_t> written_value(const std::vector<SdoSpec>& list, cons
 
 /// Returns the value of an output before its first command: the entry of `safe_values`. Without
 /// one, the controlword and the rates of a drive are 0, and other outputs get the value that `sdo:`
-/// or the DCF writes. A target position of a drive comes only from `safe_values`; otherwise it is
-/// the position where the axis is.
+/// or the DCF writes. For a target position of a drive there is no value except that of
+/// `safe_values`; without it the axis stays at its actual position.
 std::optional<std::int64_t> safe_value(const NodeSource& node, bool cia402, const Signal& signal) {
   if (auto value = written_value(node.spec->safe_values, signal)) return value;
   const Role role = role_of(signal.object);

@@ -9,9 +9,9 @@ namespace takt {
 /// Sets scale, offset and unit of a signal from `units:` of its node.
 void apply_units(const NodeSource& node, Signal& signal);
 
-/// Sets the fallback of an output, for the time when its command is too old, and its safe value.
-/// `cia402` means that the node is a drive; the default of a drive is a quick stop after 50 ms.
-/// Other nodes hold their outputs, and their commands expire after 50 ms, so that another sender
+/// Sets the safe value of an output and its fallback, which applies when its command is too old.
+/// `cia402` means that the node is a drive. By default a drive makes a quick stop after 50 ms.
+/// Other nodes hold their outputs; their commands also expire after 50 ms, so that another sender
 /// can take over.
 void apply_fallback(const NodeSource& node, bool cia402, Time period, Signal& signal);
 

@@ -34,7 +34,7 @@ void AxisLimits::read_at_boot(LimitLine& entry, SignalIndex signal, DeviceBound 
                                  .line = place});
 }
 
-/// 607D has the unit of 607A.
+/// Limits positions by 607D, which has the unit of 607A.
 bool AxisLimits::device_position() {
   const ObjectKey low = object(0x607D, 1);
   if (!reports(low) || !reports(object(0x607D, 2))) return false;
@@ -49,8 +49,8 @@ bool AxisLimits::device_position() {
   return true;
 }
 
-/// 607F has the unit of 60FF. Positions are compared with it only if `units:` defines how
-/// velocities and positions relate.
+/// Limits velocities by 607F, which has the unit of 60FF. The limit also applies to the steps of
+/// positions if `units:` defines how velocities and positions relate.
 bool AxisLimits::device_velocity() {
   const ObjectKey most = object(0x607F);
   const auto& unit = node_.spec->units.velocity;
@@ -70,7 +70,8 @@ bool AxisLimits::device_velocity() {
   return true;
 }
 
-/// 60C5 has the unit of 6083, so `units:` must define how it relates to the commanded values.
+/// Limits accelerations by 60C5. It has the unit of 6083, so `units:` must define how this unit
+/// relates to the commanded values.
 bool AxisLimits::device_acceleration() {
   const ObjectKey most = object(0x60C5);
   const auto& unit = node_.spec->units.acceleration;

@@ -7,7 +7,8 @@
 #include "eds_parser/table/axis_modes.hpp"
 #include "eds_parser/table/pdo_table.hpp"
 
-// What the bus thread needs of an axis to check its set-points, besides the limits themselves.
+// These functions enter what the bus thread needs, besides the limits themselves, to check the
+// set-points of an axis.
 
 namespace takt {
 namespace {
@@ -27,8 +28,8 @@ double AxisLimits::turn(ObjectReader read) const {
 
 /// Returns the length of the range after which a position starts again: `modulo` of the network
 /// file, else 607B as `sdo:` writes it. If `modulo` is a rounded form of the drive's own length,
-/// the exact length is used. With a length that is too short, each turn-over would look like a
-/// movement over the whole range.
+/// the exact length is used. With a length that is too short, each wrap would look like a movement
+/// over the whole range.
 double AxisLimits::modulus(const Sourced<double>& modulo, SignalIndex signal) const {
   if (!modulo.given) return turn(written_object);
   const double length = table_.raw_size(signal, *modulo);
@@ -36,8 +37,8 @@ double AxisLimits::modulus(const Sourced<double>& modulo, SignalIndex signal) co
   return std::abs(of_drive - length) <= 1.0 + length * rounded_digits ? of_drive : length;
 }
 
-/// Warns if the drive turns over at another position than its limits assume. Its position would
-/// then jump back by a whole turn in one cycle.
+/// Warns if the position of the drive wraps at another value than `modulo`. The drive would then
+/// move back by a whole turn at once.
 void AxisLimits::ask_for_turn(const Sourced<double>& modulo) {
   if (!modulo.given || positions_.empty()) return;
   const double length = modulus(modulo, positions_[0]);
@@ -64,8 +65,8 @@ OutputLimit* AxisLimits::row_of(std::optional<SignalIndex> signal) {
   return found == rows.end() ? nullptr : &*found;
 }
 
-/// Connects the rows of targets and offsets, and sets the modes that decide whether an axis follows
-/// them.
+/// Connects the row of each target with the row of its offset. Also enters the objects of the mode
+/// of operation, which decides whether the axis follows a set-point.
 void AxisLimits::describe_rows() {
   const auto describe = [&](AxisQuantity quantity, std::initializer_list<ObjectKey> targets,
                             std::uint16_t offset) {
@@ -105,7 +106,8 @@ bool AxisLimits::can_be_added(SignalIndex target, SignalIndex offset) const {
   return false;
 }
 
-/// Sets the data that a position set-point is compared with.
+/// Enters the modulus of the positions and the signals that the checks of a position set-point
+/// read.
 void AxisLimits::describe_position_rows(const AxisLimitsSpec& limits) {
   for (const SignalIndex signal : positions_) {
     OutputLimit* const row = row_of(signal);
@@ -118,7 +120,8 @@ void AxisLimits::describe_position_rows(const AxisLimitsSpec& limits) {
   }
 }
 
-/// Warns that the first limited set-point waits until the device has sent its actual position.
+/// Warns if set-points may be held back for long: a limited set-point waits until the actual
+/// position has arrived once, and an event-driven TPDO may never send it at standstill.
 void AxisLimits::warn_of_late_start(const AxisLimitsSpec& limits) {
   const std::optional<SignalIndex> feedback = input(0x6064);
   if (positions_.empty() || !feedback) return;

@@ -95,7 +95,8 @@ LimitLine* AxisLimits::line_of_file(LimitKind kind, const Sourced<double>& limit
   return &entry;
 }
 
-/// Returns the unit of `units:`, else the one that follows from the unit of positions.
+/// Returns the unit that `units:` gives to this kind of limit, else the unit that follows from the
+/// unit of positions.
 std::string AxisLimits::unit_of(LimitKind kind) const {
   const UnitsSpec& units = node_.spec->units;
   const std::string base = positions_.empty() ? "" : table_.signal(positions_[0]).unit;
@@ -164,8 +165,8 @@ void AxisLimits::position(const Sourced<RangeSpec>& range) {
   add_offset(entry);
 }
 
-/// The master checks the sum of the target and of the position offset, so that the limit also holds
-/// for the position offset.
+/// Adds the position offset to the signals of a limit. The master checks the sum of target and
+/// offset, so the limit also holds for the offset.
 void AxisLimits::add_offset(LimitLine& entry) const {
   const auto offset = output(0x60B0);
   if (offset && !entry.signals.empty()) entry.signals.push_back(*offset);

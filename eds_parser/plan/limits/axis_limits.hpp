@@ -41,7 +41,8 @@ class AxisLimits {
   bool device_acceleration();
   /// Returns true if the object is a readable integer of 32 bits.
   bool reports(ObjectKey object) const;
-  /// Appends the line to which the following limits of the plan belong.
+  /// Appends the line for a limit that is read from the drive. Limits that are added to the plan
+  /// afterwards refer to this line.
   LimitLine& device_line(LimitKind kind, ObjectKey object, double scale);
   void read_at_boot(LimitLine& entry, SignalIndex signal, DeviceBound bound, double factor);
   double cycle_seconds() const;
@@ -62,13 +63,15 @@ class AxisLimits {
   void ask_for_turn(const Sourced<double>& modulo);
   void warn_of_late_start(const AxisLimitsSpec& limits);
 
-  /// Returns false and reports an error if the signal has no unit and would count in raw counts.
+  /// Returns false and reports an error if the signal has no unit, so that the limit would apply to
+  /// raw counts.
   bool has_unit(SignalIndex signal, LimitKind kind, SourcePos pos);
   std::string unit_of(LimitKind kind) const;
   /// Returns true if the unit of `kind` is the unit of positions per second, or per second squared.
   /// Also returns true if the axis has no position output.
   bool follows_position(LimitKind kind) const;
-  /// Returns the same. Warns if the limit can't be compared with positions.
+  /// Returns the result of follows_position(). If it is false, warns that the limit can't be
+  /// compared with positions.
   bool is_comparable(LimitKind kind, SourcePos pos);
   LimitLine& line(LimitKind kind, LimitSource source);
   /// Appends the line of a limit of the network file and returns it. Returns nullptr if the file

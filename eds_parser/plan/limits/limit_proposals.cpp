@@ -113,7 +113,7 @@ std::optional<std::pair<double, double>> file_range(const SubObject& sub, unsign
   if (!low || !high || *low >= *high) return std::nullopt;
   const double values = std::exp2(bits);
   const double permitted = static_cast<double>(*high) - static_cast<double>(*low) + 1.0;
-  if (permitted >= values - 1.0) return std::nullopt;  // some files leave out one end
+  if (permitted >= values - 1.0) return std::nullopt;  // Some files leave out one of the two ends.
   return std::pair{static_cast<double>(*low), static_cast<double>(*high)};
 }
 

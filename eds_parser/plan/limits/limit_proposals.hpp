@@ -7,7 +7,7 @@ namespace takt {
 
 /// Proposes an entry of `limits:` for an axis that has no limit of a kind. The proposal follows
 /// from the limits of the drive itself, as the device file, the DCF and `sdo:` state them. If they
-/// state none, the proposal is in words.
+/// state none, the proposal is a sentence without numbers.
 void propose_limit(LimitLine& line, const NodeSource& node, const BusPlan& plan,
                    const LimitTable& table);
 

@@ -17,7 +17,7 @@ constexpr std::array<Sourced<double> AxisLimitsSpec::*, 6> numbers{
     &AxisLimitsSpec::velocity, &AxisLimitsSpec::acceleration, &AxisLimitsSpec::jerk,
     &AxisLimitsSpec::step,     &AxisLimitsSpec::torque,       &AxisLimitsSpec::modulo};
 
-/// Replaces limits by those that `own` gives.
+/// Replaces each limit that `own` also states by the value in `own`.
 void override_limits(AxisLimitsSpec& limits, const AxisLimitsSpec& own) {
   if (own.position.given) limits.position = own.position;
   for (const auto member : numbers) {
@@ -80,7 +80,8 @@ class LimitsCompiler {
     propose_ranges(index);
   }
 
-  /// Adds a line for each other output of the node that is a number and has no limit.
+  /// Adds a line with a proposal for each output of the node that needs a limit and has none; see
+  /// needs_range().
   void propose_ranges(std::size_t node_index) {
     const auto& signals = plan_.layout.signals;
     for (std::size_t i = plan_.layout.inputs; i < signals.size(); ++i) {
@@ -107,7 +108,8 @@ class LimitsCompiler {
     return !of_axis && !digital && std::ranges::none_of(plan_.limits.lines, limits_it);
   }
 
-  /// Returns false if an RPDO has errors. They are already reported, and no limit is to blame.
+  /// Returns false if an RPDO has errors. These errors are already reported, so a limit without an
+  /// output is not reported as a second error.
   static bool every_output_is_mapped(const NodePdos& node) {
     const auto is_mapped = [&](const PdoSpec& written) {
       if (!*written.enabled) return true;

@@ -62,7 +62,7 @@ struct EffectivePdo {
   bool fixed_mapping = false;  ///< The mapping of the device can be compared but not written.
   CobId cob_id;
   CobIdOrigin origin = CobIdOrigin::device_file;
-  bool has_cob_id = false;  ///< If false, assign_cob_ids() still has to assign one.
+  bool has_cob_id = false;  ///< If false, assign_cob_ids() has not assigned one yet.
   std::uint8_t transmission = 255;
   std::uint16_t inhibit_time = 0;  ///< value of sub-index 3, in units of inhibit_unit_us
   std::uint32_t inhibit_unit_us = 100;
@@ -99,8 +99,8 @@ struct EffectivePdo {
   bool maps(ObjectKey object) const noexcept {
     return std::ranges::find(mapping, object, &EffectiveEntry::object) != mapping.end();
   }
-  /// Returns the entries that the mapping record must hold. An MPDO has none: its mark takes the
-  /// place of their number.
+  /// Returns the entries that the mapping record must hold. An MPDO has none: sub-index 0 of its
+  /// mapping record holds the code of the MPDO kind in place of a number of entries.
   std::span<const EffectiveEntry> entries() const noexcept {
     return mpdo == Mpdo::none ? std::span<const EffectiveEntry>{mapping}
                               : std::span<const EffectiveEntry>{};

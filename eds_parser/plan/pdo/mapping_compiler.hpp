@@ -23,8 +23,8 @@ std::vector<EffectiveEntry> mapping_of(const NodeSource& node, const PdoDescript
 std::string object_name(const ObjectDictionary& dictionary, ObjectKey key);
 /// Returns the key and the name of an object: `6064:00 Position actual value`.
 std::string label(const ObjectDictionary& dictionary, ObjectKey key);
-/// Returns the end of a sentence about a missing object if its index would be right with 0x; else
-/// an empty text.
+/// Returns a hint for a message about a missing object: the number that its index would be in
+/// hexadecimal, if the device has that object. Else the text is empty.
 std::string without_0x(const ObjectDictionary& dictionary, std::uint16_t index);
 
 /// Compiles the objects of a multiplexed PDO, as the network file lists them. For a SAM MPDO, and

@@ -46,7 +46,7 @@ class PdoCompiler {
     return pdo;
   }
 
-  /// Reports all PDOs that are on and carry nothing in one message.
+  /// Reports in one message all PDOs that are switched on and have an empty mapping.
   void report_unmapped() {
     if (unmapped_.empty()) return;
     constexpr std::size_t most_named = 8;
@@ -192,7 +192,8 @@ class PdoCompiler {
     pdo.cob_id = *file.id;
   }
 
-  /// event_timer belongs to the sender and event_deadline to the receiver, as in dcfgen.
+  /// Takes over the times of the network file. As in dcfgen, event_timer is a time of the sender
+  /// and event_deadline a time of the receiver.
   void overlay_times(const PdoSpec& spec, EffectivePdo& pdo) {
     pdo.transmission = spec.transmission.value_or(pdo.transmission);
     if (pdo.is_tpdo) {
