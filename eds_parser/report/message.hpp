@@ -58,7 +58,7 @@ void append_item(std::string& list, const Parts&... parts) {
   append(list, list.empty() ? "" : ", ", parts...);
 }
 
-/// Returns the parts of a message in a row, see append().
+/// Returns the parts of a message, one after the other, as one text; see append().
 template <class... Parts>
 std::string concat(const Parts&... parts) {
   std::string message;

@@ -9,7 +9,8 @@
 
 namespace takt {
 
-/// Returns one part of a message as text: a text itself, a number in decimal.
+/// Returns one part of a message as text. A text stays as it is, and a number is written in
+/// decimal.
 inline std::string_view message_part(std::string_view text) noexcept { return text; }
 inline std::string message_part(std::integral auto number) { return std::to_string(number); }
 template <class T>

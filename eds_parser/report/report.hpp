@@ -12,8 +12,8 @@ namespace takt {
 /// report of a broken file of many megabytes stays bounded. The last finding of a rule says that
 /// further ones were left out.
 ///
-/// `rule` must be a string literal. The message is given in parts, see concat(); a finding beyond
-/// the limit does not cost the time to write them.
+/// `rule` must be a string literal. The message is given in parts, see concat(). For a finding
+/// beyond the limit the parts are not converted to text, which saves time.
 class Report {
  public:
   static constexpr std::size_t limit_per_rule = 1000;

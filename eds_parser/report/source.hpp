@@ -14,7 +14,7 @@ struct SourcePos {
 };
 
 enum class Severity : std::uint8_t {
-  note,     ///< a matter of style
+  note,     ///< a matter of style, or information that requires no change
   warning,  ///< a deviation that can be read in only one way
   error,    ///< The device would refuse the value, or takt would not do what the author meant.
 };

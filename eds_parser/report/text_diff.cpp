@@ -47,7 +47,7 @@ std::vector<Anchor> anchors_of(Lines before, Lines after) {
   struct Seen {
     std::size_t in_before = 0;
     std::size_t in_after = 0;
-    std::size_t position = 0;  // in `after`
+    std::size_t position = 0;  // index of the line in `after`
   };
   std::map<std::string_view, Seen> seen;
   for (const std::string_view line : before) ++seen[line].in_before;
@@ -76,8 +76,8 @@ class Differ {
     for (const std::string_view line : lines) out_.push_back({kind, line});
   }
 
-  /// Handles a range: the common beginning and end are the same, and middle() compares the lines
-  /// between.
+  /// Compares a range of lines. The lines that both texts have in common at the beginning and at
+  /// the end are equal; middle() compares the lines between them.
   void range(Lines before, Lines after) {
     std::size_t head = 0;
     const std::size_t least = std::min(before.size(), after.size());
@@ -109,7 +109,8 @@ class Differ {
     range(before.subspan(done.before), after.subspan(done.after));
   }
 
-  /// Finds, by a table, the longest common subsequence of lines that all occur more than once.
+  /// Compares lines without an anchor by their longest common subsequence, which a table finds. If
+  /// the table would become too large, all lines count as changed.
   void repeated(Lines before, Lines after) {
     const std::size_t width = after.size() + 1;
     if (before.empty() || after.empty() || (before.size() + 1) * width > most_cells) {
@@ -162,7 +163,7 @@ std::string hunks_of(std::span<const DiffLine> lines, bool (*heading)(std::strin
                      std::size_t context, Write write) {
   std::string out;
   std::string_view title;
-  std::size_t before = 0;  // number of lines of either text so far
+  std::size_t before = 0;  // number of lines of each text before this line
   std::size_t after = 0;
   const auto pass = [&](const DiffLine& line) {
     if (line.kind != Kind::added) ++before;
