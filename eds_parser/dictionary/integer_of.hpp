@@ -6,19 +6,19 @@
 
 namespace takt {
 
-/// Returns std::nullopt if there is no value or the value is no integer.
+/// Returns a value as an integer, or std::nullopt if there is no value or it is no integer.
 inline std::optional<std::int64_t> integer_of(const std::optional<Value>& value) noexcept {
   return value ? as_integer(*value) : std::nullopt;
 }
 
-/// Returns the value that the file gives to an object; see SubObject::value().
+/// Returns the integer that the file gives to an object; see SubObject::value().
 inline std::optional<std::int64_t> integer_of(const ObjectDictionary& dictionary,
                                               ObjectKey key) noexcept {
   const SubObject* sub = dictionary.find(key);
   return sub == nullptr ? std::nullopt : integer_of(sub->value());
 }
 
-/// Returns the same as an unsigned number.
+/// Returns the integer that the file gives to an object, converted to an unsigned number.
 inline std::optional<std::uint64_t> unsigned_of(const ObjectDictionary& dictionary,
                                                 ObjectKey key) noexcept {
   return integer_of(dictionary, key);

@@ -91,7 +91,8 @@ struct DeviceInfo {
   std::vector<std::uint16_t> baud_rates_kbit;  ///< in ascending order
   bool simple_boot_up_master = false;
   bool simple_boot_up_slave = false;
-  /// In bits; 0 means a fixed mapping, which the mapping records may contradict.
+  /// Granularity of the PDO mapping in bits. 0 means that the mapping is fixed, although the
+  /// mapping records may contradict this.
   std::uint8_t granularity = 8;
   std::uint8_t dynamic_channels = 0;
   bool group_messaging = false;

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint16_t pdos_per_direction = 512;
 constexpr std::uint8_t most_entries = 64;  // CiA 301, 7.5.2.36; higher numbers mark MPDOs
 
-/// Returns the value of an object, or std::nullopt if it has none that a `T` can hold.
+/// Returns the value of an object, or std::nullopt if there is no value or a `T` can't hold it.
 template <class T>
 std::optional<T> value_of(const ObjectDictionary& dictionary, ObjectKey key) noexcept {
   const auto value = unsigned_of(dictionary, key);
@@ -20,7 +20,7 @@ std::optional<T> value_of(const ObjectDictionary& dictionary, ObjectKey key) noe
   return static_cast<T>(*value);
 }
 
-/// Returns the COB-ID without an unknown node-ID. The constant term contains its flags.
+/// Returns the constant part of a COB-ID with its flags, without the node-ID that a formula adds.
 std::optional<std::uint64_t> constant_term(const SubObject& sub) noexcept {
   const auto number = parse_number(sub.text());
   if (!number || number->negative) return std::nullopt;

@@ -12,7 +12,7 @@ using enum DataType;
 
 struct StandardObject {
   std::uint16_t index;
-  DataType type;  ///< of sub-index 0
+  DataType type;  ///< data type of sub-index 0
 };
 
 constexpr StandardObject single_values[] = {
@@ -23,7 +23,7 @@ constexpr StandardObject single_values[] = {
     {0x1013, unsigned32},     {0x1014, unsigned32},     {0x1015, unsigned16},
     {0x1017, unsigned16},     {0x1019, unsigned8}};
 
-/// Sub 0 to sub 6 of the communication record of a PDO.
+/// The data types of sub-index 0 to 6 in the communication record of a PDO.
 constexpr DataType of_pdo[] = {unsigned8, unsigned32, unsigned8, unsigned16,
                                unsigned8, unsigned16, unsigned8};
 
