@@ -17,7 +17,7 @@ constexpr std::uint32_t off_flag = 0x8000'0000;
 constexpr std::uint32_t no_remote_flag = 0x4000'0000;
 constexpr std::uint32_t extended_flag = 0x2000'0000;
 
-/// A COB-ID entry of the file: its constant, and whether the node-ID is added.
+/// A COB-ID entry of the file. `relative` is true if the device adds its node-ID to `constant`.
 struct CobIdEntry {
   ObjectKey key;
   SourcePos pos;
@@ -76,8 +76,8 @@ std::string id_text(const CobIdEntry& entry) {
   return sum_text(entry, entry.id(), entry.extended() ? 8 : 3);
 }
 
-/// Returns true if a client uses the default channel of another device, which has a restricted
-/// COB-ID.
+/// Returns true if an SDO client uses the default channel of another device. A client may do this,
+/// although the COB-IDs of default channels are restricted.
 bool is_default_channel(const CobIdEntry& entry, std::uint32_t id) noexcept {
   const std::uint32_t base = entry.key.sub == 1 ? 0x600 : 0x580;
   return entry.is_sdo_client() && id > base && id <= base + 127;
@@ -119,8 +119,9 @@ bool harmless(const CobIdEntry& entry, std::uint32_t id) noexcept {
   return entry.is_sdo_server() && range != nullptr && range->use == "reserved";
 }
 
-/// Checks an entry for restricted identifiers. If the node-ID is added but unknown, every possible
-/// node-ID is checked. The finding is an error only if it already concerns the first node-ID.
+/// Checks an entry for restricted identifiers. If the entry adds an unknown node-ID, all node-IDs
+/// are checked. The finding is then an error only if node-ID 1 is affected; otherwise it is a
+/// warning.
 void check_restricted(const CobIdEntry& entry, std::optional<NodeId> node, Report& report) {
   if (entry.extended()) return;
   if (node || !entry.relative) {
@@ -143,8 +144,9 @@ void check_restricted(const CobIdEntry& entry, std::optional<NodeId> node, Repor
              ' ', objection(entry, entry.id() + first, first), " for nodes of ", first, "..", last);
 }
 
-/// The nodes `first` to `last` with this entry use the default channel of the node whose node-ID is
-/// higher by `away`.
+/// A range of node-IDs for which an entry takes the default SDO channel of another node. The
+/// devices with the node-IDs `first` to `last` take the channel of the node whose node-ID is higher
+/// by `away`.
 struct Meeting {
   unsigned first = 0;
   unsigned last = 0;
@@ -289,7 +291,8 @@ void check_cob_ids(const ObjectDictionary& dictionary, Report& report) {
     check_absolute(*entry, dictionary.is_dcf, report);
     active.push_back(*entry);
   }
-  // SYNC, TIME and EMCY: bits 31 and 30 have other meanings in the first two.
+  // These are the COB-IDs of SYNC, TIME and EMCY. In those of SYNC and TIME, bits 31 and 30 do not
+  // mean "off" and "no remote requests".
   for (const auto index : std::to_array<std::uint16_t>({0x1005, 0x1012, 0x1014})) {
     auto entry = entry_of(dictionary, {index, 0});
     if (!entry || entry->id() == 0) continue;

@@ -13,8 +13,8 @@ struct Needed {
   std::string_view name;
 };
 
-/// The kinds of channels by their bit in the device type. The device must have one of the objects
-/// `any_of`.
+/// A kind of channels of a CiA 401 device, with its bit in the device type. A device with this bit
+/// must have at least one of the objects `any_of`.
 struct ChannelKind {
   unsigned bit;
   std::array<std::uint16_t, 5> any_of;
@@ -72,8 +72,8 @@ constexpr Needed of_each_encoder[] = {{0x6000, "operating parameters"},
 constexpr std::uint32_t multi_turn = 2;
 constexpr std::uint32_t multi_sensor = 10;
 
-/// Checks one logical device by the number of its profile. If a device has several modules, the
-/// objects of a module are higher by `base`.
+/// Checks one logical device against its profile. If a device has several modules, the indices of
+/// this module are higher by `base` than in the profile.
 class ProfileCheck {
  public:
   ProfileCheck(const ObjectDictionary& dictionary, std::uint16_t base, ObjectKey device_type,
@@ -140,7 +140,8 @@ class ProfileCheck {
     }
   }
 
-  /// Reports an object that several modes demand only once.
+  /// Reports each missing object of a mode. An object that several modes demand is reported only
+  /// once.
   void need_for(const Mode& mode, SourcePos pos) {
     for (const auto& object : mode.objects) {
       if (has(object.index) || std::ranges::find(reported_, object.index) != reported_.end())

@@ -13,8 +13,8 @@ struct Mandatory {
 constexpr Mandatory mandatory[] = {
     {0x1000, "device type"}, {0x1001, "error register"}, {0x1018, "identity object"}};
 
-/// Returns the place of the section after which an object would be, or of the first section if none
-/// comes before it.
+/// Returns the place of the section after which a missing object belongs in the file, or the place
+/// of the first section if no section comes before it.
 SourcePos place_of(const ObjectDictionary& dictionary, std::uint16_t index) {
   if (dictionary.objects.empty()) return {};
   const auto behind = std::ranges::lower_bound(dictionary.objects, index, {}, &Object::index);

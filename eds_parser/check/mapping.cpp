@@ -93,8 +93,8 @@ void check_count(const ObjectDictionary& dictionary, const PdoDescription& pdo, 
   }
 }
 
-/// Reports the first entry with a value after an entry without one: the first bit of the later
-/// entry is unknown.
+/// Reports the first entry that has a value although an entry before it has none, because its
+/// position in the PDO is then unknown.
 void check_gap(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report) {
   if (!pdo.mapping_count) return;
   for (unsigned number = 1; const auto& mapped : pdo.mapping) {

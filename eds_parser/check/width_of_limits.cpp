@@ -6,8 +6,8 @@
 namespace takt {
 namespace {
 
-/// Returns what an object of the communication profile can't do without its bits 16 to 31. The
-/// result is empty if it can do everything, or if this is unknown. CiA 301, 7.5.2.
+/// Returns the function that an object of the communication profile loses without its bits 16 to
+/// 31. The result is empty if it loses nothing, or if this is unknown. CiA 301, 7.5.2.
 std::string_view function_of_high_bits(ObjectKey key) noexcept {
   const bool is_entry = key.sub != 0;
   switch (key.index) {
@@ -55,8 +55,9 @@ std::string range_text(ObjectKey key, const SubObject& sub) {
                 integer_of(sub.high_limit).value_or(0), ")");
 }
 
-/// Finds a mistake of the tool that wrote the file: 32-bit objects with the limits of 16 bits.
-/// Objects of the communication profile get a finding each, the others one note together.
+/// Finds 32-bit objects with the limits of 16 bits, which are a mistake of the tool that wrote the
+/// file. Each object of the communication profile that loses a function gets its own warning. All
+/// other objects are listed in one note.
 class WidthOfLimits {
  public:
   explicit WidthOfLimits(Report& report) : report_{report} {}
