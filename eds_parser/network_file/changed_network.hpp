@@ -6,8 +6,8 @@
 
 namespace takt {
 
-/// Loads a network file like load_network(), but with the values of `changes` in place of its
-/// values. A node of `changes` that the file does not have is an error.
+/// Loads a network file as load_network() does, but replaces values of the file by those of
+/// `changes`. A node of `changes` that the file does not have is an error.
 LoadedNetwork load_changed_network(const std::filesystem::path& path, const WhatIf& changes);
 
 }  // namespace takt

@@ -19,7 +19,8 @@ bool is_folder(const fs::path& path) {
   return fs::is_directory(path, error);
 }
 
-/// The folders that come with takt. The program `bin/takt` finds `share/takt/devices` beside `bin`.
+/// Returns the folders of the device data that come with takt. The program `bin/takt` finds
+/// `share/takt/devices` beside the folder `bin`.
 std::vector<fs::path> shipped() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -35,7 +36,7 @@ std::vector<fs::path> files_of(const fs::path& folder, Findings& findings) {
   std::error_code error;
   fs::directory_iterator at{folder, error};
   for (; !error && at != fs::directory_iterator{}; at.increment(error)) {
-    std::error_code ignored;  // a file that has vanished is skipped
+    std::error_code ignored;  // A file that has vanished meanwhile is skipped.
     if (at->path().extension() != ".yaml" || !at->is_regular_file(ignored)) continue;
     files.push_back(at->path());
     if (files.size() > max_files) break;

@@ -29,7 +29,8 @@ std::string words_text(std::span<const std::string_view> words) {
   return text;
 }
 
-/// Returns the text of the words, if any, and of `other`, which are alternatives.
+/// Returns the words and `other` as alternatives ("`a`, `b` or 1..10"), or only `other` if there
+/// are no words.
 std::string either(std::span<const std::string_view> words, const std::string& other) {
   return words.empty() ? other : words_text(words) + " or " + other;
 }

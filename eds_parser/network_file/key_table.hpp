@@ -52,7 +52,7 @@ struct KeyValue {
   KeyRows (*parts)() = nullptr;
 };
 
-/// The part of a row that people read.
+/// The part of a row that the printed reference shows.
 struct KeyText {
   std::string_view name;  ///< for foreign keys, all their names with blanks between them
   KeyValue value{};
@@ -125,14 +125,15 @@ bool read_value(const KeyInput& in, T& out) {
   return store(read_integer(in.node, in.key.name, in.key.value.range, in.report()), out);
 }
 
-/// Reads one of the words of a row, which are in the order of the enumerators.
+/// Reads one of the words of a row. The words must be in the order of the enumerators of `T`.
 template <class T>
   requires std::is_enum_v<T>
 bool read_value(const KeyInput& in, T& out) {
   return store(read_choice(in.node, in.key.name, in.key.value.words, in.report()), out);
 }
 
-/// Returns true for one of the words of a row that also accepts numbers. Reports other words.
+/// Returns true if the value is one of the words of a row that also accepts numbers. Any other word
+/// is an error and sets `wrong`.
 bool is_word(const KeyInput& in, bool& wrong);
 
 /// Reads a number; a word of the row gives an empty value.
@@ -176,7 +177,8 @@ struct Written<Sourced<T>> : Written<T> {};
 template <class T>
 struct Written<std::optional<T>> : Written<T> {};
 
-/// Returns `value`, completed by what follows from the type `T` of the variable.
+/// Returns `value` with the type and the range that follow from the type `T` of the variable,
+/// unless the row states them.
 template <class T>
 constexpr KeyValue completed(KeyValue value) {
   if (value.type != KeyType::value && value.type != KeyType::integer) return value;
@@ -206,8 +208,8 @@ constexpr auto& member_of(auto& object) noexcept {
   }
 }
 
-/// Makes a row whose value goes to a member, `Rest` naming members of that member, or to a function
-/// `void (const KeyInput&, T&)`.
+/// Makes a row whose value goes to the member `First`, or with `Rest` to a member of that member.
+/// `First` may also be a function `void (const KeyInput&, T&)` that reads the value.
 template <auto First, auto... Rest>
 constexpr auto key(std::string_view name, KeyValue value, std::string_view otherwise,
                    std::string_view meaning, KeyOrigin origin = KeyOrigin::takt) {
@@ -235,7 +237,8 @@ constexpr Key<T> required(Key<T> row) {
   row.otherwise = "required";
   return row;
 }
-/// Makes a row of keys of other programs. `why` is the reason why they have no effect.
+/// Makes a row for keys of other programs, which takt accepts. `why` states why they have no
+/// effect.
 template <class T>
 constexpr Key<T> foreign(std::string_view names, std::string_view why) {
   return {{names, {.type = KeyType::foreign}, {}, why, KeyOrigin::bus_yml}};
@@ -306,8 +309,8 @@ constexpr auto map_key(std::string_view name, std::string_view otherwise, std::s
   return row;
 }
 
-/// Appends the entries of a list of maps of `Keys` that have no errors. `Check` reports what is
-/// wrong in an entry that has none of its own, beside the entries before it.
+/// Reads a list of maps of `Keys` and appends the entries without errors to `out`. `Check` compares
+/// an entry that has no error of its own with the entries before it, and reports errors.
 template <const auto& Keys, auto Check = nullptr, class T>
 void read_list(const KeyInput& in, std::vector<T>& out) {
   if (!in.is_list()) return;

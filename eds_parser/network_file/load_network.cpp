@@ -31,7 +31,8 @@ namespace fs = std::filesystem;
 constexpr std::size_t max_program = std::size_t{16} << 20U;
 constexpr std::size_t max_configuration = std::size_t{1} << 20U;
 
-/// Returns why a path cannot be read as a network file, and what to name instead.
+/// Returns a text that says why a path can't be read as a network file, and which path to name
+/// instead.
 std::string why_unreadable(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -46,8 +47,8 @@ std::string counted(std::ptrdiff_t count, const std::string& what) {
   return joined(count, " ", what, count == 1 ? "" : "s");
 }
 
-/// From this number of listed objects without a section the file is probably cut off, and not just
-/// carelessly edited.
+/// If at least this number of listed objects have no section, the file is probably cut off and not
+/// only edited carelessly.
 constexpr std::ptrdiff_t torn_from = 8;
 
 class Loader {
@@ -95,8 +96,8 @@ class Loader {
     out_.findings.push_back({path_.string(), pos, severity, rule, joined(parts...)});
   }
 
-  /// Lowers the default of `service_frames` until everything fits the bus. The default stays if no
-  /// number is low enough.
+  /// Lowers the default of `service_frames` until all frames fit on the bus. Keeps the default if
+  /// no number is low enough.
   void lower_service_frames() {
     if (has_error(out_.findings)) return;
     std::uint16_t& frames = out_.plan.cycle.service_frames;
@@ -134,8 +135,8 @@ class Loader {
     return paths;
   }
 
-  /// Removes `x/..` from a path if the result is the same file. It may not be, because a folder may
-  /// be a link.
+  /// Removes `x/..` from a path if the result names the same file. If `x` is a link, it may name
+  /// another file.
   static fs::path tidy(const fs::path& path) {
     std::error_code error;
     fs::path plain = path.lexically_normal();
@@ -167,8 +168,8 @@ class Loader {
     node.sdo.insert(node.sdo.begin(), values.begin(), values.end());
   }
 
-  /// Values of PDO parameters become numbers, because they are merged into the configuration of the
-  /// PDOs.
+  /// Converts an entry of a concise DCF. The values of PDO parameters become numbers, because they
+  /// are merged into the configuration of the PDOs.
   static SdoSpec sdo_of(const ConciseEntry& entry, const NodeSpec& node) {
     SdoSpec sdo{.object = entry.object,
                 .value = entry.value,
@@ -233,7 +234,8 @@ class Loader {
     if (!file.readable) {
       const std::size_t before = out_.findings.size();
       std::ranges::copy_if(file.findings, std::back_inserter(out_.findings), [](const Finding& f) {
-        // The other findings follow from the errors. Any binary file has hundreds of them.
+        // All other findings only follow from the errors. A binary file, for example, has hundreds
+        // of them.
         return f.severity == Severity::error;
       });
       const bool reported = out_.findings.size() != before;

@@ -21,7 +21,8 @@ struct LoadedNetwork {
   Findings findings;       ///< of the network file and of the device files it names
 };
 
-/// States whether the device data apply to the nodes. `ignored` only serves to show the difference.
+/// States whether the device data apply to the nodes. `ignored` is only meant for a comparison that
+/// shows their effect.
 enum class DeviceDataUse : std::uint8_t { applied, ignored };
 
 /// Reads, checks and compiles a network file. The result lists all errors at once.

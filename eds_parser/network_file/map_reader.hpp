@@ -48,7 +48,8 @@ class MapReader {
 
   const YamlNode* take(std::string_view key);
   SourcePos key_pos(std::string_view key) const noexcept;
-  /// Returns false if the constructor reported the type. Nothing can be missing in such a value.
+  /// Returns false if the value has a wrong type, which the constructor has already reported.
+  /// Missing keys of such a value are not reported.
   bool is_readable() const noexcept {
     return node_.kind == YamlNode::Kind::map || node_.kind == YamlNode::Kind::null;
   }

@@ -4,7 +4,7 @@
 #include "eds_parser/lcm/lcm_url.hpp"
 #include "eds_parser/network_file/sections.hpp"
 
-// All sections of a network file but `master` and the nodes.
+// This file reads all sections of a network file except `master` and the nodes.
 
 namespace takt {
 namespace {
@@ -19,7 +19,8 @@ void read_name(const KeyInput& in, NetworkSpec& spec) {
            "and `-`");
 }
 
-/// Linux allows 15 bytes for the name of an interface and 107 bytes for the path of a socket.
+/// Reads `interface`. Linux allows 15 bytes for the name of an interface and 107 bytes for the path
+/// of a socket.
 void read_interface(const KeyInput& in, NetworkSpec& spec) {
   constexpr std::string_view unix_bus = "unix:";
   set(in, spec.bus.interface);
@@ -93,7 +94,7 @@ constexpr Key<RecordingOptions> black_box_keys[] = {
                                  "The number of recordings of this bus that are kept."),
 };
 
-// YAML 1.1 readers take a bare `off` as false; here it is a word.
+// A reader of YAML 1.1 takes `off` without quotes as false. In this list it is a word.
 constexpr std::string_view mode_words[] = {"enforce", "try", "off"};
 constexpr Key<RealtimeOptions> realtime_option_keys[] = {
     key<&RealtimeOptions::mode>("mode", word_of(mode_words), "`try`",
@@ -128,7 +129,8 @@ constexpr Key<NetworkSpec> options_keys[] = {
                                     bus_yml),
 };
 
-/// Makes the row of a section whose values go to a member of the network, or to the network itself.
+/// Makes the row of a section. Its values go to `Member` of the network, or to the network itself
+/// if there is no `Member`.
 template <const auto& Keys, auto... Member>
 constexpr Key<NetworkSpec> section(std::string_view name, std::string_view meaning,
                                    KeyOrigin origin = KeyOrigin::takt) {
@@ -144,7 +146,8 @@ constexpr Key<NetworkSpec> section(std::string_view name, std::string_view meani
   return row;
 }
 
-/// The order of the rows is that of reading. Rows without a function are read last.
+/// The sections are read in the order of these rows. Rows without a function (`defaults`, `nodes`)
+/// are read last.
 constexpr Key<NetworkSpec> sections[] = {
     section<bus_keys>("bus", "The bus."),
     section<lcm_keys, &NetworkSpec::lcm>("lcm", "The messages on LCM."),

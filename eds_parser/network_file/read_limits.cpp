@@ -5,7 +5,7 @@ namespace {
 
 constexpr IntegerRange axis_numbers{1, 8, "(axes of a device)"};  // CiA 402: objects at + 0x800
 
-/// Reads a magnitude, which must be above zero.
+/// Reads a limit without a sign, which must be greater than zero.
 template <auto Member>
 void magnitude(const KeyInput& in, typename KeyTarget<decltype(Member)>::Type& limits) {
   set(in, limits.*Member);

@@ -91,7 +91,7 @@ class NetworkReader {
       report_.error(nodes.pos, "wrong-type",
                     "`nodes` has to be a map of `NAME: {node_id: ..., dcf: ...}`, but this is ",
                     name(nodes.kind));
-      found_node_ = true;  // this is already reported
+      found_node_ = true;  // Avoids a second finding that the file has no node.
       return;
     }
     for (const YamlPair& pair : nodes.pairs) {

@@ -8,7 +8,7 @@
 namespace takt {
 namespace {
 
-// Words in the order of the enumerators.
+// Each list has its words in the order of the enumerators of its type.
 constexpr std::string_view reset_words[] = {"communication", "node", "none", "keep_alive"};
 constexpr std::string_view loss_words[] = {"report", "stop_node", "stop_group", "quick_stop"};
 constexpr std::string_view fallback_words[] = {"quick_stop", "hold", "zero", "safe", "disable"};
@@ -16,7 +16,8 @@ constexpr std::string_view block_words[] = {"auto", "never"};
 constexpr std::string_view profile_words[] = {"none", "cia401", "cia402", "cia406"};
 constexpr std::string_view date_words[] = {"auto"};
 
-/// An empty name counts as not given, as in the generators of other masters.
+/// Reads the name of a file. An empty name counts as not given, as in the generators of other
+/// masters.
 void read_file_name(const KeyInput& in, Sourced<std::string>& out) {
   const bool empty = in.node.kind == YamlNode::Kind::scalar && in.node.text.empty();
   if (!empty) set(in, out);

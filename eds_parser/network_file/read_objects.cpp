@@ -33,8 +33,8 @@ bool read_plain(const YamlNode& node, SdoSpec& sdo, NetworkReport& report) {
   return number.has_value();
 }
 
-/// A quoted value is a text for a string object, whatever it looks like. Other objects take the
-/// number in the quotes.
+/// Reads the value of an object. A value in quotes is a text if the object is a string, even if it
+/// looks like a number. For other objects the number in the quotes counts.
 void read_object_value(const KeyInput& in, SdoSpec& sdo) {
   sdo.value_pos = in.node.pos;
   if (!in.node.quoted) {
@@ -57,8 +57,9 @@ constexpr Key<SdoSpec> object_keys[] = {
     key<&SdoSpec::again>("again", "false", "The object is in the list twice on purpose."),
 };
 
-/// Reports a repeated object. In a list that is written in order both entries take effect;
-/// elsewhere one of them has no effect.
+/// Reports an object that appears twice. In `sdo`, whose entries are written in order, both entries
+/// take effect, so this is a warning. In other lists one entry would have no effect, so it is an
+/// error.
 void check_repeated(const KeyInput& in, std::vector<SdoSpec>& objects, const SdoSpec& sdo) {
   const auto first = std::ranges::find(objects, sdo.object, &SdoSpec::object);
   if (first == objects.end() || sdo.again) return;

@@ -61,7 +61,7 @@ void read_mapping(const KeyInput& in, PdoSpec& pdo) {
     if (in.report().errors() == errors) {
       pdo.mapping.value.push_back(entry);
     } else {
-      pdo.enabled.value = false;  // avoids findings on an incomplete PDO
+      pdo.enabled.value = false;  // This avoids findings that only follow from an incomplete PDO.
     }
   }
 }

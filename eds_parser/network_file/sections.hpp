@@ -12,8 +12,8 @@ inline constexpr KeyOrigin bus_yml = KeyOrigin::bus_yml;
 /// Returns the rows of the file as a whole: its sections.
 std::span<const Key<NetworkSpec>> network_keys() noexcept;
 
-/// Message for unknown keys beside `driver`. ros2_canopen passes the whole map to the class named
-/// there.
+/// The end of the message about an unknown key in a map that has `driver`. ros2_canopen passes the
+/// whole map to the class that `driver` names, so this class may read the key.
 inline constexpr std::string_view driver_key =
     ": takt has no key of this name and ignores it; the class of `driver` may read it";
 inline constexpr std::string_view other_reader = "only other programs read it";
@@ -60,12 +60,12 @@ void read_limits(const KeyInput& in, NodeSpec& node);
 KeyRows limits_rows();
 
 /// Reads `heartbeat_consumer`. Other programs take each number except 0 as true, and some files
-/// have a time in ms here.
+/// state a time in ms here, so any number is accepted.
 void read_consumer(const KeyInput& in, Sourced<bool>& consumer);
 /// Reads `heartbeat_producer`. A word for "no" gives 0 with a warning.
 void read_producer(const KeyInput& in, Sourced<std::uint16_t>& producer);
-/// Reads a bit rate in kbit/s. `baudrate` does not name its unit, so a value that can only be in
-/// bit/s counts as that.
+/// Reads a bit rate in kbit/s. The name `baudrate` does not state a unit, so a value that can only
+/// be meant in bit/s is converted.
 void read_bit_rate(const KeyInput& in, Sourced<std::uint32_t>& rate);
 /// Reads `heartbeat_multiplier`.
 void read_multiplier(const KeyInput& in, Sourced<double>& multiplier);

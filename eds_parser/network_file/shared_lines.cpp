@@ -16,7 +16,7 @@ constexpr std::size_t most_named = 8;  // greatest number of nodes named in one 
 /// A message from which the name and the number of its node have been removed.
 struct Outline {
   std::string text;
-  std::string node;  ///< the first one that the message names
+  std::string node;  ///< the first node that the message names
 };
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
@@ -49,7 +49,7 @@ Outline outline(std::string_view message, const std::set<std::string_view>& name
 }
 
 struct Shared {
-  std::size_t first = 0;  ///< index of the finding that stays
+  std::size_t first = 0;  ///< index of the finding that is kept
   std::vector<std::string> others;
 };
 
@@ -71,8 +71,8 @@ void join_shared_lines(Findings& findings, std::string_view file,
   const std::set<std::string_view> names{nodes.begin(), nodes.end()};
   using Key = std::tuple<SourcePos, Severity, std::string_view, std::string, std::size_t>;
   std::map<Key, Shared> all;
-  // One node may have several findings that read the same here. The nth finding of each node
-  // belongs to the nth findings of the others.
+  // One node may have several findings with the same outline. The nth such finding of a node is
+  // then joined with the nth such findings of the other nodes.
   std::map<std::tuple<SourcePos, std::string, std::string>, std::size_t> count;
   std::vector<bool> joined(findings.size());
   for (std::size_t i = 0; i < findings.size(); ++i) {
