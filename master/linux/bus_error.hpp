@@ -3,7 +3,7 @@
 
 namespace takt {
 
-/// Tells why a bus could not be opened: what failed and what to try.
+/// The reason why a bus could not be opened. The text says what failed and what the user can try.
 struct BusError {
   std::string message;
   int error = 0;  ///< errno

@@ -4,7 +4,7 @@
 
 namespace takt {
 
-/// The meaning of `--bus` and `interface:`.
+/// The bus that the argument `--bus` or the key `interface:` names.
 struct BusName {
   enum class Kind : unsigned char { simulated, can_interface, unix_path };
   Kind kind = Kind::simulated;

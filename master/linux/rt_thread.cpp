@@ -83,8 +83,8 @@ void pin(int cpu, RtReport& report) {
       " (this machine does not have it, or it is not in the cpuset of this process)");
 }
 
-/// Under a finite limit, MCL_FUTURE could turn a later allocation into a failure. The function
-/// therefore locks memory only if nothing limits it.
+/// Locks the memory of the process only if no limit applies to locked memory. Under a limit,
+/// MCL_FUTURE could make a later allocation fail.
 void lock_memory(RtReport& report) {
   const rlim_t limit = raise_limit(RLIMIT_MEMLOCK);
   if (limit == RLIM_INFINITY || has_capability(CAP_IPC_LOCK)) {

@@ -46,8 +46,9 @@ bool prefer_this_thread() noexcept;
 void prefault_heap(std::size_t bytes);
 
 /// Starts a thread with real-time properties, and returns when `report` tells what the machine has
-/// granted. If the thread may not run then, its body is left out. `name` appears in `ps -L` and has
-/// at most 15 characters. Returns the errno if the machine refuses another thread.
+/// granted. If the report does not permit the thread to run, the thread ends without calling
+/// `body`. `name` appears in `ps -L` and has at most 15 characters. Returns the errno if the
+/// machine refuses another thread.
 std::expected<std::thread, int> start_rt_thread(const RealtimeOptions& options, const char* name,
                                                 RtReport& report, std::function<void()> body);
 

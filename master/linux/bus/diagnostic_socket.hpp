@@ -17,12 +17,12 @@ struct HeardTraffic {
   std::uint64_t frames = 0;
   std::uint64_t bits = 0;  ///< with the stuff bits of average data; load = bits / (t * bit rate)
   std::uint64_t lost = 0;  ///< frames that this socket was too slow to receive
-  std::uint64_t error_frames = 0;  ///< of all classes, including single bus errors
+  std::uint64_t error_frames = 0;  ///< error frames of all classes, including single bus errors
 };
 
 /// A second socket for the front side. It receives every frame of the bus without a filter,
-/// including those of the bus thread, and feeds the intruder watch and recordings. One thread uses
-/// it, not the bus thread.
+/// including those of the bus thread, and feeds the intruder watch and recordings. The socket may
+/// be used by one thread, which must not be the bus thread.
 class DiagnosticSocket {
  public:
   using OnFrame = std::function<void(const StampedFrame&)>;

@@ -86,8 +86,9 @@ void IntruderWatch::watch_sdo(const StampedFrame& stamped) {
            stamped.frame, stamped.when);
 }
 
-/// If the diagnostic socket itself loses frames, `seen` stays behind for good. A lag that lasted a
-/// whole second therefore counts as loss. Frames on their way cause a lag only for a moment.
+/// Compares the counts. If the diagnostic socket itself loses frames, `seen` never reaches the
+/// count of the sent frames again. Frames that are still on their way make `seen` lag for a moment
+/// only. A lag that has lasted a whole second therefore counts as loss, and `seen` is corrected.
 void IntruderWatch::on_drained(const SentFrames& sent, Time now) {
   const bool adjust = now - adjusted_ >= adjust_every;
   for (Own& own : own_) {

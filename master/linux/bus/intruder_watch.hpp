@@ -21,12 +21,12 @@ enum class Origin : std::uint8_t {
 /// master, two senders of one COB-ID. Takes frames, times and counts, gives events, and makes no
 /// system calls. Front thread.
 ///
-/// * COB-IDs of the master (SYNC, NMT, RPDOs, its heartbeat): a frame comes from the wire, or there
-///   are more frames than the bus thread has sent.
+/// * COB-IDs of the master (SYNC, NMT, RPDOs, its heartbeat): another device has sent such a frame,
+///   or this machine has sent more of these frames than the bus thread.
 /// * Cyclic TPDOs: within 32 SYNCs, more than one and a half times as many frames arrive as the
 ///   transmission type allows.
-/// * SDO servers: three answers arrive that nobody has requested (two nodes with one node-ID both
-///   answer).
+/// * SDO servers: three answers arrive that nobody has requested, because two nodes with the same
+///   node-ID both answer.
 class IntruderWatch {
  public:
   explicit IntruderWatch(const BusPlan& plan);

@@ -70,7 +70,7 @@ std::vector<can_filter> filters_for(std::span<const CobId> ids, std::size_t limi
 std::vector<can_filter> filters_for(const BusPlan& plan) {
   std::vector<CobId> ids{lss_answers};
   if (plan.cycle.sync) ids.push_back(plan.cycle.sync_cob_id);
-  // Requests to the SDO server of the master.
+  // Other nodes send requests to the SDO server of the master with this identifier.
   ids.push_back(default_sdo_channel(plan.master_id).request);
   for (const PdoRow& row : plan.pdos.tpdos) ids.push_back(row.cob_id);
   for (const NodePlan& node : plan.nodes) {
@@ -78,7 +78,8 @@ std::vector<can_filter> filters_for(const BusPlan& plan) {
     ids.push_back(node.emcy_cob_id.value_or(CobId::base(0x080U + node.id.value())));
     ids.push_back(CobId::base(0x700U + node.id.value()));
   }
-  // Heartbeats of nodes that are not in the plan, as long as all filters stay exact.
+  // Heartbeats of nodes that are not in the plan pass as well, unless the filters would then no
+  // longer be exact.
   const std::size_t own = ids.size();
   for (std::uint32_t node = 1; node <= 127; ++node) {
     if (node != plan.master_id.value()) ids.push_back(CobId::base(0x700U + node));

@@ -59,8 +59,8 @@ struct SocketCanPort::State {
   bool take(std::size_t i, Time offset, Time now, StampedFrame& frame) noexcept;
 };
 
-/// Sets the filters and binds the socket. Deleting the interface loses both, and both may be
-/// repeated.
+/// Sets the filters and binds the socket to the interface. If the interface is deleted, both are
+/// lost. The function may be called again for the new interface.
 bool SocketCanPort::State::bind_interface() noexcept {
   ifreq index = request;
   if (ioctl(fd.get(), SIOCGIFINDEX, &index) != 0) return false;
@@ -86,7 +86,7 @@ void SocketCanPort::State::look_for_interface() noexcept {
   ifreq flags = request;
   if (ioctl(fd.get(), SIOCGIFFLAGS, &flags) != 0 || (flags.ifr_flags & IFF_UP) == 0) return;
   if (!bind_interface()) return;
-  int stale = 0;  // error of the interface going down, if no call has fetched it yet
+  int stale = 0;  // the error of the lost interface, if no call has reported it yet
   socklen_t size = sizeof stale;
   getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &stale, &size);
   news.interface_down = false;
@@ -101,8 +101,8 @@ std::size_t SocketCanPort::State::fetch(std::size_t most) noexcept {
   return got < 0 ? 0 : static_cast<std::size_t>(got);
 }
 
-/// Takes message i of the batch. Returns false if the message is for the port alone (an error frame
-/// or the echo of a frame of this port).
+/// Converts message i of the batch. Returns false if the message is only for the port itself (an
+/// error frame, or the echo of a frame that this port has sent).
 bool SocketCanPort::State::take(std::size_t i, Time offset, Time now,
                                 StampedFrame& frame) noexcept {
   if (in.bytes(i) != CAN_MTU) return false;

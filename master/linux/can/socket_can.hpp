@@ -26,9 +26,9 @@ struct SocketCanOptions {
 };
 
 /// A CAN interface of the kernel as a Port. Each sleep, wait, receive and send makes one system
-/// call. There are more calls only in trouble: the port tries the rest of a batch that was cut
-/// short once, it refills a full batch that contained messages for the port alone, and receive()
-/// looks for a missing interface by name, at most every 50 ms.
+/// call. Three exceptions need more calls: if the kernel has taken only a part of a batch, the port
+/// sends the rest once; a full batch with messages that were only for the port itself is refilled;
+/// and receive() looks for a missing interface by its name, at most every 50 ms.
 class SocketCanPort {
  public:
   static std::expected<SocketCanPort, BusError> open(const SocketCanOptions& options);

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t batch_frames = 256;
 constexpr Time look_again = std::chrono::milliseconds{10};
 constexpr Time open_limit = std::chrono::seconds{2};
-// A new host takes over within 20 ms.
+// A guest waits this long for a new host, which takes over within 20 ms.
 constexpr Time guest_patience = std::chrono::milliseconds{60};
 
 }  // namespace
@@ -78,8 +78,8 @@ void UnixBusPort::State::echo(std::size_t count) noexcept {
   out.send(socket.get(), 0, count);
 }
 
-/// Takes message i of the batch. Returns false if it is not a frame or is for the port alone (an
-/// echo).
+/// Converts message i of the batch. Returns false if it is not a frame, or if it is only for the
+/// port itself (an echo).
 bool UnixBusPort::State::take(std::size_t i, StampedFrame& frame) noexcept {
   const UnixBusRecord& record = in.record(i);
   if (in.bytes(i) != sizeof(UnixBusRecord) || !valid(record)) return false;

@@ -30,7 +30,8 @@ namespace {
 constexpr std::size_t max_clients = 64;
 constexpr std::size_t client_batch_frames = 64;
 constexpr int takeover_poll_ms = 20;
-constexpr int most_takeovers = 25;  // so many times, a program may find the path taken at its start
+constexpr int most_takeovers =
+    25;  // how often a program tries again at its start while the path is taken
 /// After an accept() that failed, for example because no descriptor is left, the client waits in
 /// the kernel, and the hub does not look at the listening socket for this time.
 constexpr Time accept_pause = std::chrono::milliseconds{100};
@@ -74,12 +75,13 @@ class UnixBusHub::Impl {
     if (write(stop_.get(), &one, sizeof one) == sizeof one) thread_.join();
   }
 
-  /// Returns false if another process hosts. The error is that of listening.
+  /// Begins to host the bus. Returns false if another process hosts. The error is the errno of
+  /// bind() or listen().
   std::expected<bool, int> try_to_host();
-  /// The same, but waits for a host that has just been killed: the kernel may release its lock
-  /// before it closes its socket.
+  /// Hosts or joins the bus. If a host was just killed, the kernel may have released its lock but
+  /// not closed its socket yet; the function then tries again.
   std::expected<bool, int> host_or_join();
-  /// The error says why the thread could not be created.
+  /// Starts the thread. The error is the errno that says why it could not be created.
   std::expected<void, int> start() {
     auto thread = start_thread([this] { run(); });
     if (!thread) return std::unexpected{thread.error()};
@@ -206,8 +208,8 @@ bool UnixBusHub::Impl::accept_client() {
   return true;
 }
 
-/// A client that ends without having read everything resets its connection. The frames that it sent
-/// can still be read after that error.
+/// Forwards the frames of a client to all others. A client that ends with unread frames resets its
+/// connection; the frames that it has sent can still be read after that error.
 void UnixBusHub::Impl::forward_from(Client& sender) {
   const int got = in_.receive(sender.socket.get(), client_batch_frames);
   if (got < 0) {
@@ -228,7 +230,8 @@ void UnixBusHub::Impl::forward_from(Client& sender) {
   }
 }
 
-/// A receiver that has ended stays until everything that it sent has been read.
+/// Sends the batch to a receiver. A receiver that has ended is kept until all frames that it has
+/// sent are read.
 void UnixBusHub::Impl::deliver(Client& receiver, bool own, std::size_t count) {
   if (count == 0) return;
   for (std::size_t i = 0; i < count; ++i) {
