@@ -15,8 +15,9 @@ class AcceptPause {
   static constexpr Time length = std::chrono::milliseconds{100};
   static constexpr Time sentence_pause = std::chrono::seconds{10};
 
-  /// Accepts a connection. Begins a pause if resources are missing. The error is the reason, for
-  /// people, at most once in `sentence_pause`; it is empty if there is nothing to report.
+  /// Accepts a connection. Begins a pause if resources are missing. The error is a text for the
+  /// user with the reason, at most once in `sentence_pause`. The text is empty if there is nothing
+  /// to report.
   std::expected<FileDescriptor, std::string> accept(int listener, Time now);
   /// Returns true while the listening socket must be left alone.
   bool active(Time now) const noexcept { return now < until_; }

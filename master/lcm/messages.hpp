@@ -76,7 +76,7 @@ consteval std::string_view message_layout() {
   return {};
 }
 
-/// The same bytes in the type that messages use.
+/// Returns the bytes as the element type that the generated messages use.
 inline std::span<const std::uint8_t> octets(Bytes bytes) noexcept {
   return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
 }

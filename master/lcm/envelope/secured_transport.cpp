@@ -87,8 +87,8 @@ void SecuredTransport::take(std::string_view channel, Bytes data, const MessageH
   handler(channel, data);
 }
 
-/// Returns true if the same envelope came a moment ago by another way (udpm and the hub). Such an
-/// envelope needs no report.
+/// Returns true if the same envelope arrived a moment ago by another path (multicast and the hub).
+/// Such a copy is dropped without a report.
 bool SecuredTransport::is_echo(Bytes envelope, Time now) {
   while (!opened_.empty() && now - opened_.front().when > echo_limit) opened_.pop_front();
   if (envelope.size() < mac_bytes) return false;

@@ -19,16 +19,16 @@ namespace takt {
 
 class TcpqBroker;
 
-/// The connection of the daemon to LCM by whatever way the machine allows: LCM's multicast, the
-/// tcpq:// hub that the URL names, or a hub of its own. The link retries a connection that fails
-/// and never waits, because the bus must run on. If another program holds the port of the daemon's
-/// hub, that program may be anybody: the daemon becomes the client of a hub only if a URL says so.
-/// Front thread.
+/// The connection of the daemon to LCM: by LCM's multicast, by the tcpq:// hub that the URL names,
+/// or by a hub of its own if the machine allows nothing else. The link retries a connection that
+/// fails and never blocks, because the front thread must go on. If another program holds the port
+/// of the daemon's hub, nothing is known about that program. The daemon therefore becomes the
+/// client of a foreign hub only if a URL names it. Front thread.
 class LcmLink final : public Transport {
  public:
   using Say = std::function<void(Weight weight, const std::string& sentence)>;
 
-  /// Whose hub the daemon uses, if the URL is one of tcpq.
+  /// The hub that the daemon uses if the URL begins with tcpq://.
   enum class Hub : std::uint8_t {
     own,             ///< only its own hub
     named,           ///< the hub that the command line or the network file names

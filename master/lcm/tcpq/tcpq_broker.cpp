@@ -73,10 +73,10 @@ void TcpqBroker::accept_clients(Time now) {
   }
 }
 
-/// Makes room for a new connection. First, the oldest connection that has asked for nothing gives
-/// way. If there is none, the connection that has sent nothing for the longest time gives way, at
-/// most one per second. LCM's clients reconnect, so that in the end everybody has a turn. A program
-/// that sends commands is never the idle one.
+/// Closes a connection to make room for a new one. The first choice is the oldest connection that
+/// has neither subscribed nor published. Otherwise it is the connection that has sent nothing for
+/// the longest time, at most one per second. LCM's clients reconnect, so each of them is served at
+/// some time. A program that sends commands is never idle long enough to be closed.
 bool TcpqBroker::make_room(Time now) {
   const std::string full = "the hub has " + std::to_string(most_clients) + " connections already";
   auto unasked = std::ranges::find_if(
@@ -97,8 +97,8 @@ bool TcpqBroker::make_room(Time now) {
   return true;
 }
 
-/// Returns the connection whose last message is the oldest. Returns nullptr if all of them are
-/// active, or if another one gave way less than displacing_pause ago.
+/// Returns the connection whose last message is the oldest. Returns nullptr if all connections are
+/// active, or if an idle one was closed less than displacing_pause ago.
 TcpqBroker::Client* TcpqBroker::idle_client(Time now) {
   if (now - displaced_ < displacing_pause) return nullptr;
   const auto idle =

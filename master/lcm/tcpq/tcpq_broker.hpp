@@ -23,12 +23,14 @@ namespace takt {
 class TcpqBroker final : public Transport {
  public:
   static constexpr std::size_t most_clients = 64;
-  /// Total of the patterns of all connections.
+  /// Greatest total length of the patterns of all connections.
   static constexpr std::size_t most_characters = 32768;
   static constexpr std::size_t longest_name = 63;  ///< longest channel name, as in LCM
   static constexpr Time opening_limit = std::chrono::seconds{2};
-  static constexpr Time reading_limit = std::chrono::seconds{10};  ///< without reading anything
-  /// If all places are taken, a connection that has sent nothing for this time gives way.
+  static constexpr Time reading_limit =
+      std::chrono::seconds{10};  ///< A client that reads nothing for this time is closed.
+  /// If all places are taken, a connection that has sent nothing for this time may be closed for a
+  /// new one.
   static constexpr Time idle_limit = std::chrono::seconds{10};
   static constexpr Time displacing_pause = std::chrono::seconds{1};
 
@@ -36,7 +38,7 @@ class TcpqBroker final : public Transport {
     FrontClock clock = monotonic_now;
     /// Receives the reason for closing a connection, at most once in 10 s for the same reason.
     std::function<void(const std::string& sentence)> say = [](const std::string&) {};
-    /// Receives a trouble that the user should remove, at most once in 10 s.
+    /// Receives a sentence about a problem that the user should correct, at most once in 10 s.
     std::function<void(const std::string& sentence)> warn = [](const std::string&) {};
   };
 
@@ -87,8 +89,9 @@ class TcpqBroker final : public Transport {
   Options options_;
   std::vector<std::unique_ptr<Client>> clients_;  // oldest first
   std::size_t turn_ = 0;                          // index of the client served first
-  Time displaced_ = -displacing_pause;            // when a connection that had asked last gave way
-  bool drained_ = true;  // the newest round has read everything from all clients
+  Time displaced_ = -displacing_pause;  // when a connection that had subscribed or published was
+                                        // last closed for a new one
+  bool drained_ = true;                 // the newest round has read everything from all clients
   ChannelPatterns own_;
   RateLimit reported_{std::chrono::seconds{10}};
   AcceptPause accept_pause_;

@@ -23,7 +23,7 @@ class Connection {
   bool closed() const noexcept { return closed_; }
   bool opened() const noexcept { return parser_.opened(); }
   bool wants_to_write() const noexcept { return sent_ < unsent_.size(); }
-  /// Bytes that the kernel has taken since the start.
+  /// Returns the number of bytes that the kernel has accepted for sending since the start.
   std::uint64_t taken() const noexcept { return taken_; }
 
   /// Returns false if there is no room; the message is lost.
@@ -33,10 +33,11 @@ class Connection {
   /// Reads and hands over messages until nothing is left or the budget is used up. Each call makes
   /// progress, however small the budget is.
   void receive(const std::function<void(const Message&)>& handler, const FrontBudget& budget);
-  /// Returns true if the last receive() found the end of what had arrived.
+  /// Returns true if the last receive() has read all bytes that had arrived.
   bool drained() const noexcept { return drained_; }
-  /// Events for poll() in addition to POLLIN. Messages that wait here for the next round end its
-  /// wait by POLLOUT, because nearly every socket is writable.
+  /// Returns the events for poll() in addition to POLLIN. If received messages wait in this object
+  /// for the next round, the result is POLLOUT: nearly every socket is writable, so poll() then
+  /// returns at once.
   short other_reason_to_wake() const noexcept {
     return wants_to_write() || unhandled_ ? POLLOUT : 0;
   }
