@@ -9,8 +9,8 @@ namespace takt::sim {
 BusNode::BusNode(BusNodeOptions node_options)
     : options{node_options}, queue_{options.capacity + 1} {}
 
-/// Counts the bits of the frame here and not when the frame begins, because there the computation
-/// of the end of the frame would wait for the result. Here nothing waits for it.
+/// Queues a frame with its length in bits. The length is counted here and not when the frame
+/// begins: there, the processor would wait for the result to compute the end of the frame.
 bool BusNode::push(const Frame& frame, Time ready, Time expires) noexcept {
   if (queue_.size() >= options.capacity) return false;
   first_expiry_ = std::min(first_expiry_, expires);

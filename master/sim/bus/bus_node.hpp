@@ -62,7 +62,8 @@ class BusNode {
   }
   /// No queued frame expires earlier.
   Time first_expiry() const noexcept { return first_expiry_; }
-  /// Returns true if the order of arrival does not decide which frame is offered.
+  /// Returns true if several frames compete by priority, so that the order of their arrival does
+  /// not decide.
   bool offers_any() const noexcept {
     return options.order == QueueOrder::priority && queue_.size() > 1;
   }

@@ -44,8 +44,8 @@ void RealtimeWorld::run() noexcept {
   failed_.store(!stop_.load(std::memory_order_acquire), std::memory_order_release);
 }
 
-/// Delivers the received frames, each at its own time, and then advances to the present. So the
-/// devices get every frame in time even if the thread wakes up late.
+/// Delivers each received frame at the time at which it was received, and then advances to the
+/// present. Because of this, the devices get every frame in time even if the thread wakes up late.
 bool RealtimeWorld::carry_in(Time wait) noexcept {
   StampedFrame stamped;
   ChannelRead read = channel_.receive_stamped(stamped, wait);

@@ -20,8 +20,8 @@ struct RemotePortOptions {
   Time restart = std::chrono::milliseconds{100};  ///< after bus-off; `never` means no restart
   bool relays = false;                            ///< as in BusNodeOptions
   Time epoch = std::chrono::days{20454};  ///< time of day at the world's time 0: 2026-01-01 UTC
-  Time wake_jitter{};                     ///< sleep_until and wait_frame come back up to this late
-  Time spin_jitter{};                     ///< sleep_precisely_until comes back up to this late
+  Time wake_jitter{};  ///< sleep_until and wait_frame return up to this time late
+  Time spin_jitter{};  ///< sleep_precisely_until returns up to this time late
 };
 
 /// The CAN controller of a node outside the world, such as the master. Its queues behave as those

@@ -101,8 +101,8 @@ bool VirtualBus::step(Time now) noexcept {
   return false;
 }
 
-/// Nothing can begin before the bus is idle, so the search ends with the first node that offers a
-/// frame by then.
+/// Finds the time at which the next frame begins. No frame can begin before the bus is idle, so the
+/// search stops at the first node that offers a frame by that time.
 void VirtualBus::schedule() noexcept {
   next_ = never;
   if (recovering_ != 0) {

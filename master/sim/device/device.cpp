@@ -307,7 +307,8 @@ void Device::finish_call(Time now) noexcept {
   finish_exchange(now);
 }
 
-/// Ends a call that has taken only SYNC and RPDOs: these do not change the deadlines of services.
+/// Ends a call that has processed only SYNC and RPDOs, which do not change the deadlines of
+/// services.
 void Device::finish_exchange(Time now) noexcept {
   emcy_.on_time(now, communicates(), out_);
   if (lss_ && lss_->switching()) out_.clear();

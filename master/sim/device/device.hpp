@@ -79,17 +79,17 @@ class Device final : private Dictionary {
   std::size_t most_ids() const noexcept { return routes_.capacity(); }
   bool take_routes_changed() noexcept { return std::exchange(routes_changed_, false); }
 
-  /// Objects were changed without a write by SDO.
+  /// Must be called when objects were changed without a write by SDO.
   void look_at_records() noexcept {
     for (Tpdo& tpdo : tpdos_) tpdo.look_at_record();
   }
 
   void on_bus_off(Time now) noexcept;
   void on_bus_recovered(Time now) noexcept;
-  /// The device resets itself, as after a watchdog timeout.
+  /// Resets the device as its own watchdog would.
   void reset_node(Time now) noexcept;
   void fail(std::uint16_t emcy_code, Time now) noexcept;
-  /// DeviceFaults::storm_period has been changed.
+  /// Must be called when DeviceFaults::storm_period has changed.
   void start_storm(Time now) noexcept;
 
   /// Node-ID from the network file.

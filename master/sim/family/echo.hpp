@@ -5,7 +5,8 @@
 
 namespace takt::sim {
 
-/// Sub-index of the first process word of an inverter behind control or status word and speed.
+/// Sub-index of the first process word of an inverter after the control or status word and the
+/// speed.
 inline constexpr std::uint8_t first_free_word = 3;
 
 /// Copies received values back to the bus: the sub-indices from `first` on of `from` to those of

@@ -15,7 +15,7 @@ class Io401 final : public Model {
   void reset(Time now) noexcept override;
   void advance(Time now) noexcept override;
   void outputs(Time now) noexcept override;
-  /// The outputs take their error values (0x6206 and 0x6207, 0x6443 and 0x6444).
+  /// Sets the outputs to their error values (0x6206 and 0x6207, 0x6443 and 0x6444).
   void connection_lost(Time now) noexcept override;
   void fail(std::uint16_t code, Time now) noexcept override;
   Time next_change() const noexcept override { return loopback_ ? never : next_change_; }

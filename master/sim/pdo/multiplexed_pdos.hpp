@@ -20,7 +20,7 @@ namespace takt::sim {
 class MultiplexedPdos {
  public:
   MultiplexedPdos(ObjectStore& store, NodeId node);
-  /// LSS has given the device another node-ID.
+  /// Sets the node-ID that LSS has given to the device.
   void set_node(NodeId node) noexcept { node_ = node; }
 
   /// Clears the list of sources. Called on entering OPERATIONAL and after a write to an object of a

@@ -16,10 +16,10 @@ class HeartbeatProducer {
  public:
   HeartbeatProducer(ObjectStore& store, NodeId node)
       : period_{store.find({0x1017, 0})}, node_{node} {}
-  /// LSS has given the device another node-ID.
+  /// Sets the node-ID that LSS has given to the device.
   void set_node(NodeId node) noexcept { node_ = node; }
 
-  /// The boot-up message counts as the first heartbeat.
+  /// Starts the heartbeat. The boot-up message counts as the first one.
   void start(Time now) noexcept;
   void stop() noexcept { next_ = never; }
   void on_time(Time now, std::uint8_t state, bool mute, Transmitter& out) noexcept;

@@ -29,7 +29,7 @@ class EmcyProducer {
   using Detail = std::array<std::uint8_t, 5>;
 
   EmcyProducer(ObjectStore& store, NodeId node);
-  /// LSS has given the device another node-ID.
+  /// Sets the node-ID that LSS has given to the device.
   void set_node(NodeId node) noexcept { node_ = node; }
 
   void reset() noexcept;
