@@ -39,10 +39,10 @@ State after(const Entry& entry, const State& from, double jerk) noexcept {
   return advanced(advanced(from, entry.duration, entry.jerk * jerk), entry.hold, 0.0);
 }
 
-/// Returns the duration at which `motion` reaches `distance`, which it does at `high`, but not at
-/// `low`. The distance is convex or concave in between. From the side that the tangents cross last,
-/// Newton's method approaches the solution without passing it. If a step leaves the bracket because
-/// of rounding, the bracket is halved.
+/// Returns the duration at which `motion` reaches `distance`. The motion reaches it with the
+/// duration `high`, but not with `low`; in between, the distance is a convex or concave function of
+/// the duration. `start` must be the end from which Newton's method approaches the solution without
+/// passing it. If a step leaves the bracket because of rounding, the bracket is halved instead.
 double crossing(const FarthestMotion& motion, double distance, double low, double high,
                 double start) noexcept {
   double time = start;
@@ -54,7 +54,7 @@ double crossing(const FarthestMotion& motion, double distance, double low, doubl
     (error > 0.0 ? high : low) = time;
     double next = time - error / reached.slope;
     if (!(next >= low && next <= high)) next = (low + high) / 2;
-    // Once the steps no longer shrink, they only show the rounding of the distance.
+    // When the steps no longer become smaller, they consist only of the rounding of the distance.
     const double step = std::abs(next - time);
     if (step <= 2 * epsilon * time || (step >= last_step && step < 1e-11 * time)) break;
     last_step = step;
@@ -63,7 +63,8 @@ double crossing(const FarthestMotion& motion, double distance, double low, doubl
   return time;
 }
 
-/// Returns the duration between `low` and `high` at which a concave distance is greatest.
+/// Returns the duration between `low` and `high` with the greatest distance. The distance must be a
+/// concave function of the duration there.
 double summit(const FarthestMotion& motion, double low, double high) noexcept {
   for (int i = 0; i < 60 && high - low > epsilon * high; ++i) {
     const double middle = (low + high) / 2;
@@ -72,8 +73,9 @@ double summit(const FarthestMotion& motion, double low, double high) noexcept {
   return low;
 }
 
-/// Returns the duration from `first` on at which `motion` reaches `distance`, which it does not
-/// reach at `first`. Empty if it does not reach it until `last`, which may be infinite.
+/// Returns the shortest duration between `first` and `last` with which `motion` reaches `distance`.
+/// The motion must not reach it with `first`; `last` may be infinite. Returns std::nullopt if there
+/// is no such duration.
 std::optional<double> time_to_reach(const FarthestMotion& motion, double distance, double first,
                                     double last) noexcept {
   double low = first;
@@ -96,10 +98,11 @@ std::optional<double> time_to_reach(const FarthestMotion& motion, double distanc
   return high + (distance - end.distance) / end.slope;
 }
 
-/// Jerks of the phases of a farthest motion.
+/// The jerks of the seven phases of a farthest motion.
 constexpr std::array phase_jerks{1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0};
 
-/// Appends both motions at once, the one with `weight` and the other, mirrored, with 1 - `weight`.
+/// Appends the weighted mean of two motions that run at the same time: `up` with `weight`, and
+/// `down`, which is a motion of the mirrored axis, with 1 - `weight`.
 void add_mixture(const Phases& up, const Phases& down, double weight, double jerk,
                  Profile& profile) noexcept {
   std::size_t i = 0;
@@ -171,7 +174,8 @@ double AxisMotion::possible(double duration) const noexcept {
     }
     if (reached) return entry_time_ + *reached;
   }
-  return std::numeric_limits<double>::infinity();  // not reached: the last range has no end
+  return std::numeric_limits<double>::infinity();  // This line is never reached, because the last
+                                                   // range has no end.
 }
 
 Profile AxisMotion::profile(double duration) const noexcept {

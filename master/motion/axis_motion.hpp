@@ -8,37 +8,40 @@
 
 namespace takt::motion {
 
-/// What a motion must reach beside velocity and acceleration.
+/// What a motion must reach in addition to the velocity and the acceleration of its target.
 enum class Goal : unsigned char {
   position,  ///< a target position
-  velocity,  ///< nothing: the motion ends wherever it has the target velocity
+  velocity,  ///< no position: the motion ends at the position where it has the target velocity
 };
 
-/// All motions of one axis from one state to another within its limits, of any duration. From a
-/// start outside the limits, the axis first returns inside in the shortest time. A start that
-/// differs from the target by less than at_target is a motion without duration. It never allocates.
+/// All possible motions of one axis from one state to another within its limits. They differ in
+/// their duration. If the start is outside the limits, the axis first returns inside them in the
+/// shortest time. If start and target differ by less than at_target, the axis does not move and the
+/// duration may be 0. No function allocates memory.
 class AxisMotion {
  public:
-  /// Part of the size of a state below which a difference counts as rounding. The sizes are those
-  /// of the limits of velocity and acceleration, and of the positions.
+  /// The largest relative difference of velocity and acceleration that counts as rounding. It is
+  /// relative to the difference between the upper and the lower limit. at_target_position is the
+  /// same for positions and is relative to the larger of both positions.
   static constexpr double at_target = 1e-9;
   static constexpr double at_target_position = 1e-8;
 
-  /// Limits and target must be sound, see defect_of().
+  /// The limits and the target must have no defect, see defect_of().
   AxisMotion(const State& from, const State& to, const Limits& limits, Goal goal) noexcept;
 
-  /// Returns the shortest possible duration that is at least `duration`, in s. Some
-  /// durations in between are impossible: after them, a moving axis has passed its target and has
-  /// not returned to it yet. Always finite.
+  /// Returns the shortest possible duration that is at least `duration`, in s. The result is always
+  /// finite. Some durations are impossible although a shorter one is possible: with more time, a
+  /// moving axis passes its target and needs a certain time to return to it.
   double possible(double duration) const noexcept;
 
-  /// Returns a motion with this duration, which must be a possible one.
+  /// Returns a motion with this duration, which must be a result of possible().
   Profile profile(double duration) const noexcept;
 
  private:
   double distance_up(double time) const noexcept { return up_.reach(time).distance; }
   double distance_down(double time) const noexcept { return -down_.reach(time).distance; }
-  /// Largest error of a distance by rounding, for motions of this duration.
+  /// Returns the largest error that rounding can cause in the distance of a motion of this
+  /// duration.
   double rounding(double time) const noexcept;
 
   void add_phases(const Phases& phases, double direction, PhaseWriter& writer) const noexcept;
@@ -46,11 +49,11 @@ class AxisMotion {
   double jerk_;
   Entry entry_;
   double entry_time_ = 0.0;
-  Transfer transfer_;           ///< after the entry
-  long double entered_ = 0.0L;  ///< acceleration after the entry, exactly
-  double distance_ = 0.0;       ///< of the transfer
+  Transfer transfer_;           ///< transfer from the end of the entry to the target
+  long double entered_ = 0.0L;  ///< acceleration after the entry without rounding
+  double distance_ = 0.0;       ///< distance of the transfer
   Goal goal_;
-  bool at_target_;  ///< nothing is to be moved
+  bool at_target_;  ///< The axis is already at its target.
   TransferTimes times_;
   FarthestMotion up_;
   FarthestMotion down_;

@@ -7,8 +7,8 @@
 namespace takt::motion {
 namespace {
 
-/// The fastest way from one velocity and acceleration to another velocity, at which the
-/// acceleration is 0. It has three phases, with jerk `sign`, 0 and -`sign`.
+/// The fastest change from one velocity and acceleration to another velocity with the acceleration
+/// 0. It has three phases with the jerks `sign`, 0 and -`sign`.
 struct Change {
   double sign = 1.0;
   std::array<double, 3> phases{};
@@ -44,7 +44,8 @@ Change begin_of(const Transfer& t, double velocity) noexcept {
                    t.min_acceleration);
 }
 
-/// Backwards in time: the end of the motion is a change to its cruise.
+/// Returns the part of the motion after the cruise as a change backwards in time: from the end of
+/// the motion to the velocity of the cruise.
 Change end_of(const Transfer& t, double velocity) noexcept {
   return change_to(velocity, t.end_velocity, -t.end_acceleration, -t.min_acceleration,
                    -t.max_acceleration);
@@ -65,7 +66,8 @@ std::optional<Cruise> find_cruise(const Transfer& transfer, double duration, dou
     const double hold = duration - begin.duration() - end.duration();
     return Trial{velocity, hold, begin.distance + end.distance + velocity * hold - distance};
   };
-  // An axis that is at its target keeps its exact position: a search would add rounding.
+  // An axis that stands at its target keeps its exact position. The search below would add
+  // rounding.
   if (lowest <= 0.0 && highest >= 0.0) {
     const Trial still = trial(0.0);
     if (still.error == 0.0 && still.hold >= 0.0) return Cruise{.duration = still.hold};
@@ -73,8 +75,8 @@ std::optional<Cruise> find_cruise(const Transfer& transfer, double duration, dou
   Trial low = trial(lowest);
   Trial high = trial(highest);
   if (low.error > 0.0 || high.error < 0.0) return std::nullopt;
-  // The distance rises with the velocity of the cruise: a straight line through both ends gives the
-  // next trial, and the end that stays counts half (the Illinois method).
+  // The distance rises with the velocity of the cruise. A straight line through both ends of the
+  // bracket gives the next trial; the end that is kept then has half its weight (Illinois method).
   double weight_low = low.error;
   double weight_high = high.error;
   for (int i = 0; i < 60 && low.error < 0.0 && high.error > 0.0; ++i) {

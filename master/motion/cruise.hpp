@@ -6,19 +6,19 @@
 
 namespace takt::motion {
 
-/// A motion of a given duration with one constant velocity in its middle, which the axis reaches
-/// and leaves in the shortest time. An axis that has more time than it needs moves in this way.
+/// A motion with a phase of constant velocity in its middle. The axis changes to this velocity and
+/// from it in the shortest time. An axis that has more time than it needs moves in this way.
 struct Cruise {
   double velocity = 0.0;
-  double duration = 0.0;  ///< of the part with this velocity, in s
+  double duration = 0.0;  ///< duration of the phase with this velocity, in s
 };
 
-/// Returns the cruise that makes `transfer` in `duration` with this distance, if its velocity lies
-/// between `lowest` and `highest`.
+/// Returns the cruise with which the axis makes `transfer` over `distance` in `duration`. Returns
+/// std::nullopt if its velocity would not be between `lowest` and `highest`.
 std::optional<Cruise> find_cruise(const Transfer& transfer, double duration, double distance,
                                   double lowest, double highest) noexcept;
 
-/// Appends the phases of a motion with `cruise`.
+/// Appends the phases of the motion that makes `transfer` with `cruise`.
 void add_cruise(const Transfer& transfer, const Cruise& cruise, PhaseWriter& writer) noexcept;
 
 }  // namespace takt::motion

@@ -6,10 +6,10 @@
 namespace takt::motion {
 namespace {
 
-/// What rounding may add to a state at a limit, relative to the limit.
+/// The largest excess over a limit that counts as rounding, relative to the limit.
 constexpr double limit_rounding = 1e-13;
 
-/// Returns true if the velocity is too high, or it would be before the acceleration is taken back
+/// Returns true if the velocity is above its limit, or exceeds it while the acceleration is reduced
 /// to 0.
 bool is_too_fast(const Transfer& t) noexcept {
   const double rise = std::max(t.start_acceleration, 0.0) * t.start_acceleration / 2;
@@ -21,7 +21,7 @@ bool is_too_steep(const Transfer& t) noexcept {
   return t.start_acceleration > t.max_acceleration * (1.0 + limit_rounding);
 }
 
-/// Entry of a state whose velocity is too high.
+/// Returns the entry of a state for which is_too_fast() is true.
 Entry slow_down(const Transfer& t) noexcept {
   const double v = t.start_velocity;
   const double a = t.start_acceleration;
@@ -38,7 +38,7 @@ Entry slow_down(const Transfer& t) noexcept {
   return {.jerk = -1.0, .duration = start, .hold = std::max(hold, 0.0)};
 }
 
-/// Entry of a state whose acceleration is too high, but not its velocity.
+/// Returns the entry of a state whose acceleration is too high, but whose velocity is not.
 Entry ease_off(const Transfer& t) noexcept {
   const double limit = t.max_acceleration;
   const double time = t.start_acceleration - limit;
@@ -57,7 +57,8 @@ Entry entry_from_above(const Transfer& t) noexcept {
 }  // namespace
 
 Entry entry(const Transfer& transfer) noexcept {
-  // A velocity that is too high but falls fast is too low before the acceleration is 0.
+  // A velocity above its limit that falls fast gets below the lower limit before the acceleration
+  // can reach 0.
   const double a = transfer.start_acceleration;
   const bool falls = transfer.start_velocity + a * std::abs(a) / 2 < transfer.min_velocity;
   const bool above = is_too_steep(transfer) ||

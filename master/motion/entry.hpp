@@ -3,18 +3,18 @@
 
 namespace takt::motion {
 
-/// Brings a velocity and an acceleration inside their limits: by a phase with jerk, and a phase
-/// that holds the acceleration. In the units of Transfer.
+/// The beginning of a motion that brings the velocity and the acceleration inside their limits. It
+/// is a phase with jerk, followed by a phase with constant acceleration, in the units of Transfer.
 struct Entry {
   double jerk = 0.0;      ///< 1, -1, or 0 if the state is inside already
-  double duration = 0.0;  ///< of the phase with jerk
-  double hold = 0.0;      ///< of the phase with the acceleration that it ends with
+  double duration = 0.0;  ///< duration of the phase with jerk
+  double hold = 0.0;      ///< duration of the phase with constant acceleration
 };
 
-/// Returns the shortest entry of the start of `transfer`. A state is inside if its velocity and its
-/// acceleration are inside their limits, and if its velocity stays there while the acceleration is
-/// taken back to 0. If no such state can be reached without leaving the limit on the other side,
-/// the entry ends before that limit.
+/// Returns the shortest entry from the start of `transfer` to a state inside the limits. A state is
+/// inside if its velocity and its acceleration are inside their limits, and if the velocity stays
+/// inside while the acceleration is reduced to 0. If the axis can't reach such a state without a
+/// violation of the opposite limit, the entry ends before that limit.
 Entry entry(const Transfer& transfer) noexcept;
 
 }  // namespace takt::motion

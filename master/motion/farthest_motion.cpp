@@ -9,8 +9,8 @@ namespace {
 
 double square(double value) noexcept { return value * value; }
 
-/// A rise of the velocity by `rise`, which begins with `acceleration` and ends with 0: the
-/// greatest acceleration on the way, and the time for which it is held.
+/// A change of the velocity to a higher one, at whose end the acceleration is 0. `peak` is the
+/// greatest acceleration, `hold` the time for which the axis keeps it.
 struct Rise {
   double peak = 0.0;
   double hold = 0.0;
@@ -22,7 +22,7 @@ Rise rise_to(double rise, double acceleration, double limit) noexcept {
   return {.peak = limit, .hold = (needed - square(limit)) / limit};
 }
 
-/// Distance of a motion that starts with this velocity and acceleration.
+/// Returns the distance of a motion that starts with this velocity and acceleration.
 double distance(const Phases& phases, double velocity, double acceleration) noexcept {
   static constexpr std::array jerks{1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0};
   double position = 0.0;
@@ -43,7 +43,7 @@ FarthestMotion::FarthestMotion(const Transfer& transfer) noexcept
             (square(transfer.start_acceleration) - square(transfer.end_acceleration)) / 2} {
   const Rise up = rise_to(transfer.max_velocity - transfer.start_velocity,
                           transfer.start_acceleration, transfer.max_acceleration);
-  // A fall is a rise with reversed time.
+  // A fall of the velocity is a rise backwards in time.
   const Rise down = rise_to(transfer.max_velocity - transfer.end_velocity,
                             -transfer.end_acceleration, -transfer.min_acceleration);
   cruise_ = {up.peak - transfer.start_acceleration, up.hold, up.peak, 0.0, down.peak, down.hold,
@@ -57,8 +57,8 @@ FarthestMotion::Fall FarthestMotion::fall(double duration) const noexcept {
   const double end = transfer_.end_acceleration;
   const double highest = transfer_.max_acceleration;
   const double lowest = transfer_.min_acceleration;
-  // Without holds, the difference of the accelerations follows from the duration, and their sum
-  // from the velocities.
+  // If no acceleration is held, the difference of both accelerations follows from the duration, and
+  // their sum from the velocities.
   const double twice = duration + start - end;
   double difference = std::max(twice / 2, 0.0);
   const double least = 2 * start - difference;
@@ -66,7 +66,7 @@ FarthestMotion::Fall FarthestMotion::fall(double duration) const noexcept {
   const double sum = std::clamp(difference > 0.0 ? gain_ / difference : least, least, most);
   Fall fall{.from = (sum + difference) / 2, .to = (sum - difference) / 2};
   if (fall.from <= highest && fall.to >= lowest) return fall;
-  // At least one of the two accelerations is at its limit, for the time that is left.
+  // Otherwise at least one of both accelerations is held at its limit for the rest of the duration.
   const auto left = [&](double from, double to) { return std::max(twice - 2 * (from - to), 0.0); };
   fall.from = lowest + std::sqrt(std::max(gain_ - lowest * twice, 0.0));
   if (fall.to < lowest && fall.from <= highest) {
@@ -104,8 +104,8 @@ FarthestMotion::Reach FarthestMotion::reach(double duration) const noexcept {
                      length * (before + length * (parts.from / 2 - length / 6)) +
                      parts.hold_after * (after - parts.to * parts.hold_after / 2) +
                      end * (after + end * (parts.to / 2 + end / 6));
-  // By Pontryagin's principle, all moments of the motion agree on the slope. At the begin of the
-  // fall it is easiest to write.
+  // By Pontryagin's principle, the slope can be computed from the state at any moment of the
+  // motion. The formula is shortest at the begin of the fall.
   return {.distance = way, .slope = before + parts.from * length / 2};
 }
 
@@ -126,8 +126,9 @@ Phases FarthestMotion::phases(double duration) const noexcept {
 }
 
 std::array<double, 4> FarthestMotion::bends() const noexcept {
-  // The slope has the derivative 3 u^2 - K^2 / u^2 (without a factor) where the fall is u and has
-  // no hold, and the sign of 4 u - 3 a where the acceleration a is held before or behind it.
+  // A bend is a duration at which the derivative of the slope changes its sign. For a fall of
+  // length u without holds, the derivative is 3 u^2 - K^2 / u^2 times a positive factor. If the
+  // acceleration a is held before or after the fall, the derivative has the sign of 4 u - 3 a.
   const double size = std::abs(gain_);
   const double limit = gain_ > 0.0 ? transfer_.max_acceleration : -transfer_.min_acceleration;
   const double root = std::sqrt(std::max(square(limit) - size, 0.0));

@@ -2,7 +2,8 @@
 
 namespace takt::motion {
 
-/// Limits of one axis, in units of the caller and seconds. A motion may reach each limit.
+/// Limits of one axis, in the length unit of the caller and in seconds. A motion may reach each
+/// limit but not exceed it.
 struct Limits {
   double max_velocity = 0.0;      ///< greater than 0
   double min_velocity = 0.0;      ///< less than 0

@@ -7,13 +7,14 @@
 namespace takt::motion {
 namespace {
 
-/// Times at which the velocity is 0, while the jerk is constant. Infinite or NaN where there is no
-/// such time.
+/// Returns the times at which the velocity is 0 if the jerk is constant. A time is infinite, NaN or
+/// negative if there is no such moment.
 std::array<double, 2> turning_times(const State& state, double jerk) noexcept {
   const double a = state.acceleration;
   if (jerk == 0.0) return {-state.velocity / a, -1.0};
   const double root = std::sqrt(a * a - 2 * jerk * state.velocity);
-  // The sum of two numbers with the same sign loses no digits; the other time follows from it.
+  // The sum of two numbers with the same sign loses no digits. The second time follows from this
+  // sum.
   const double sum = -(a + std::copysign(root, a));
   return {sum / jerk, 2 * state.velocity / sum};
 }

@@ -5,7 +5,8 @@
 
 namespace takt::motion {
 
-/// Positions that an axis must not leave, both ends included. By default there are none.
+/// The range of positions that an axis must not leave. Both ends belong to it. By default it has no
+/// ends.
 struct PositionRange {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -14,7 +15,8 @@ struct PositionRange {
 /// Returns the least and the greatest position of a motion that starts at `from`.
 PositionRange positions_of(const Profile& profile, const State& from) noexcept;
 
-/// Returns true if a motion that starts at `from` stays inside `range`, but for rounding.
+/// Returns true if a motion that starts at `from` stays inside `range`. An excess that rounding
+/// explains is permitted.
 bool stays_inside(const PositionRange& range, const Profile& profile, const State& from) noexcept;
 
 }  // namespace takt::motion

@@ -5,8 +5,8 @@
 
 namespace takt::motion {
 
-/// Position, velocity and acceleration of one axis at one moment, in units of the caller and
-/// seconds.
+/// The position, velocity and acceleration of one axis at one moment, in the length unit of the
+/// caller and in seconds.
 struct State {
   double position = 0.0;
   double velocity = 0.0;
@@ -18,7 +18,7 @@ struct State {
   }
 };
 
-/// A part of a motion with constant jerk.
+/// A part of a motion during which the jerk is constant.
 struct Segment {
   double duration = 0.0;  ///< s, never negative
   double jerk = 0.0;      ///< units/s^3
@@ -38,11 +38,11 @@ constexpr State advanced(const State& from, double duration, double jerk) noexce
       .acceleration = from.acceleration + t * jerk};
 }
 
-/// A motion of one axis as segments that follow each other. It never allocates.
+/// A motion of one axis as a sequence of segments. No function allocates memory.
 class Profile {
  public:
-  /// Two segments bring a state inside its limits. The longest motion after them is a mixture of
-  /// two motions with seven segments each.
+  /// At most two segments bring a state inside its limits. The motion after them has most segments
+  /// if it is the weighted mean of two motions with seven segments each.
   static constexpr std::size_t capacity = 2 + 14;
 
   /// Appends a segment. A segment without duration is dropped.

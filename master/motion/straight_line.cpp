@@ -13,7 +13,8 @@ double start_acceleration(const AxisTask& task) { return task.from.acceleration;
 double end_velocity(const AxisTask& task) { return task.to.velocity; }
 double end_acceleration(const AxisTask& task) { return task.to.acceleration; }
 
-/// Part of the largest value of a quantity by which an axis may miss the direction.
+/// The largest deviation of a quantity from the direction of the line, relative to the largest
+/// value of this quantity on all axes.
 constexpr double line_tolerance = 1e-12;
 
 double largest(std::span<const AxisTask> tasks, double (*quantity)(const AxisTask&)) noexcept {
@@ -22,7 +23,8 @@ double largest(std::span<const AxisTask> tasks, double (*quantity)(const AxisTas
   return size;
 }
 
-/// Reduces the range of `all` to that of an axis that makes this share of the motion.
+/// Reduces `all`, the range of the leader, so that the axis of `task`, which makes this share of
+/// the leader's motion, stays inside its own range.
 void restrict(PositionRange& all, const AxisTask& leader, const AxisTask& task,
               double share) noexcept {
   if (share == 0.0) return;
@@ -35,7 +37,8 @@ void restrict(PositionRange& all, const AxisTask& leader, const AxisTask& task,
   all.max = std::min(all.max, std::max(a, b));
 }
 
-/// Reduces `all` so that an axis that makes this share of the motion keeps `own`.
+/// Reduces `all`, the limits of the leader, so that an axis which makes this share of the leader's
+/// motion stays inside its limits `own`.
 void restrict(Limits& all, const Limits& own, double share) noexcept {
   if (share == 0.0) return;
   const Limits seen = share > 0.0 ? own : mirrored(own);

@@ -8,32 +8,32 @@
 
 namespace takt::motion {
 
-/// What one axis shall do.
+/// The task of one axis: its start, its target and its limits.
 struct AxisTask {
   State from;
   State to;
   Limits limits;
-  PositionRange range{};  ///< of the whole motion
+  PositionRange range{};  ///< range of all positions during the motion
 };
 
-/// Axes that can move on a straight line of the space of all axes, as one axis with limits that no
-/// axis exceeds.
+/// A motion of several axes on a straight line in the space of all axes. One axis, the leader,
+/// represents them all. Its limits are so low that no axis exceeds its own limits.
 class StraightLine {
  public:
-  /// Returns the line of these tasks. Empty if their displacements, velocities and accelerations do
-  /// not all have one direction.
+  /// Returns the line of these tasks. Returns std::nullopt if nothing moves, or if their
+  /// displacements, velocities and accelerations do not all have the same direction.
   static std::optional<StraightLine> find(std::span<const AxisTask> tasks, Goal goal) noexcept;
 
-  /// Returns the axis that represents all axes. Its limits are reduced so that no axis exceeds its
-  /// own.
+  /// Returns the task of the leader with the reduced limits and the reduced range.
   const AxisTask& leader() const noexcept { return leader_; }
 
-  /// Returns the part of the leader's motion that the axis of `task` makes, negative for the other
-  /// direction.
+  /// Returns the factor between the motion of the leader and that of the axis of `task`. It is
+  /// negative if the axis moves in the opposite direction.
   double share(const AxisTask& task) const noexcept;
 
  private:
-  /// The quantity that gives the direction.
+  /// A function that returns the quantity of a task that gives the direction of the line, such as
+  /// its displacement.
   using Quantity = double (*)(const AxisTask&);
 
   StraightLine(const AxisTask& leader, Quantity direction) noexcept
@@ -41,7 +41,7 @@ class StraightLine {
 
   AxisTask leader_;
   Quantity direction_;
-  double size_;  ///< of the leader
+  double size_;  ///< value of this quantity for the leader
 };
 
 }  // namespace takt::motion

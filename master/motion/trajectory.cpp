@@ -22,18 +22,18 @@ bool all_finite(const AxisTask& task) noexcept {
   return std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
 }
 
-/// A target that rounding has put outside its limits is inside.
+/// Returns true if `value` is between both limits. An excess that rounding explains is permitted.
 bool is_between(double low, double value, double high) noexcept {
   constexpr double tolerance = 1.0 + 1e-12;
   return value >= low * tolerance && value <= high * tolerance;
 }
 
-/// Returns the shortest duration from `duration` on for which the axis has a motion inside its
-/// range of positions. The shortest motion reverses as early as the axis can, so if it leaves the
-/// range, most others leave it too. The function therefore tries only a few longer ones.
+/// Returns a duration of at least `duration` for which the axis has a motion inside its range of
+/// positions. The shortest motion reverses as early as the axis can, so if it leaves the range,
+/// most longer motions leave it too. The function therefore tries only a few longer durations.
 std::expected<double, Defect> possible(const AxisTask& task, Goal goal, double duration) noexcept {
   const AxisMotion motion = motion_of(task, goal);
-  // An axis that is outside may come back.
+  // An axis that starts outside its range may come back.
   const PositionRange range{.min = std::min(task.range.min, task.from.position),
                             .max = std::max(task.range.max, task.from.position)};
   double time = motion.possible(duration);
@@ -44,8 +44,9 @@ std::expected<double, Defect> possible(const AxisTask& task, Goal goal, double d
   return std::unexpected{Defect::position_range};
 }
 
-/// Returns the shortest duration from `duration` on that is possible for all tasks. Each step
-/// passes durations that are impossible for an axis, and an axis has few ranges of them.
+/// Returns the shortest duration of at least `duration` that is possible for all tasks. The loop
+/// ends soon, because each pass skips a range of durations that is impossible for an axis, and an
+/// axis has few such ranges.
 std::expected<double, Refused> common_duration(std::span<const AxisTask> tasks, Goal goal,
                                                double duration) noexcept {
   static constexpr double rounding = 1.0 + 8 * std::numeric_limits<double>::epsilon();
@@ -70,7 +71,7 @@ Profile scaled(const Profile& profile, double share) noexcept {
   return result;
 }
 
-/// Plans the tasks on a straight line. Empty if there is none.
+/// Plans the tasks as a motion on a straight line. Returns std::nullopt if there is no such motion.
 std::optional<double> plan_line(std::span<const AxisTask> tasks, const TrajectoryOptions& options,
                                 std::span<PlannedAxis> planned) noexcept {
   const auto line = StraightLine::find(tasks, options.goal);

@@ -7,39 +7,40 @@
 
 namespace takt::motion {
 
-/// How the motions of several axes belong together.
+/// How the motions of several axes are synchronised.
 enum class Synchronisation : std::uint8_t {
   none,   ///< each axis takes its shortest time
   time,   ///< all axes arrive at the same time
-  phase,  ///< all axes move on one straight line; the same as `time` if there is none
+  phase,  ///< all axes move on one straight line; if this is impossible, the same as `time`
 };
 
-/// What is wrong with the task of an axis.
+/// The reason why an axis can't do its task.
 enum class Defect : std::uint8_t {
   not_finite,              ///< a number is infinite or NaN
   velocity_limits,         ///< min_velocity < 0 < max_velocity does not hold
   acceleration_limits,     ///< min_acceleration < 0 < max_acceleration does not hold
   jerk_limit,              ///< jerk is not positive
-  target_velocity,         ///< outside the limits
-  target_acceleration,     ///< outside the limits
-  velocity_before_target,  ///< the target's acceleration needs a velocity before it that is outside
-  position_range,          ///< every motion that was tried leaves the range
+  target_velocity,         ///< the target velocity is outside the limits
+  target_acceleration,     ///< the target acceleration is outside the limits
+  velocity_before_target,  ///< just before the target, the velocity would have to be outside the
+                           ///< limits
+  position_range,          ///< all motions that were tried leave the range of positions
 };
 
-/// A task that has no motion.
+/// A task for which there is no motion, and the reason.
 struct Refused {
-  std::size_t axis = 0;  ///< number of the task
+  std::size_t axis = 0;  ///< index of the task
   Defect defect{};
 };
 
-/// Returns the defect of a task, if it has one.
+/// Checks the limits and the target of a task. The error is its first defect.
 std::expected<void, Defect> defect_of(const AxisTask& task) noexcept;
 
-/// The motion of one axis as it was planned.
+/// The planned motion of one axis.
 struct PlannedAxis {
   Profile profile;
   double duration = 0.0;  ///< s
-  double shortest = 0.0;  ///< duration that the axis would need without the others, in s
+  double shortest = 0.0;  ///< shortest duration of this axis without regard to the other axes, in s
 };
 
 struct TrajectoryOptions {
@@ -48,9 +49,10 @@ struct TrajectoryOptions {
   double minimum_duration = 0.0;  ///< s
 };
 
-/// Plans the motion of all tasks, the shortest that the options allow. Where it leaves the range of
-/// positions, longer ones are tried. Writes one motion for each task to `planned`, which must be as
-/// long as `tasks`. Returns the duration of the longest one in s. It never allocates.
+/// Plans the shortest motions of all tasks that the options permit. If a motion leaves the range of
+/// positions of its axis, longer motions are tried. Writes one motion for each task to `planned`,
+/// which must have as many elements as `tasks`. Returns the duration of the longest motion in s.
+/// The function allocates no memory.
 std::expected<double, Refused> plan_trajectory(std::span<const AxisTask> tasks,
                                                const TrajectoryOptions& options,
                                                std::span<PlannedAxis> planned) noexcept;

@@ -2,9 +2,9 @@
 
 namespace takt::motion {
 
-/// A change of velocity and acceleration, and the limits on its way. All quantities are divided by
-/// the jerk limit, so that the jerk is 1, 0 or -1, accelerations are in s, velocities in s^2 and
-/// distances in s^3. Both states must be inside the limits, see inside().
+/// A change from one velocity and acceleration to another, and the limits that apply meanwhile. All
+/// quantities are divided by the jerk limit. The jerk is therefore 1, 0 or -1, accelerations are in
+/// s, velocities in s^2 and distances in s^3. Both states must be inside the limits, see entry().
 struct Transfer {
   double start_velocity = 0.0;
   double start_acceleration = 0.0;

@@ -7,12 +7,14 @@
 namespace takt::motion {
 namespace {
 
-/// Durations that are impossible because the velocity can't rise as much as the transfer needs;
-/// both ends are possible. Empty if `last` is less than `first`.
+/// Returns the range of durations that are impossible because the velocity can't rise as much as
+/// the transfer needs. Both ends of the range are possible. The range is empty if `last` is less
+/// than `first`.
 ///
-/// The highest end velocity in a time has jerk 1, then perhaps the greatest acceleration, then jerk
-/// -1. It is a convex function of the time: while the acceleration has a peak p, it is that of the
-/// start plus p^2 - (a0^2 + a1^2) / 2, and then a straight line.
+/// The motion with the highest end velocity has jerk 1, then perhaps the greatest acceleration,
+/// then jerk -1. This velocity is a convex function of the duration. If the acceleration has a peak
+/// p below its limit, the velocity rises by p^2 - (a0^2 + a1^2) / 2, where a0 and a1 are the
+/// accelerations at both ends. For longer durations the function is a straight line.
 TimeRange too_slow(const Transfer& t) noexcept {
   const double sum = t.start_acceleration + t.end_acceleration;
   const double squares =

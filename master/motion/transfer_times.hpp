@@ -7,19 +7,20 @@
 
 namespace takt::motion {
 
-/// Durations in s, both ends included. The last may be infinite.
+/// A range of durations in s. Both ends belong to it. `last` may be infinite.
 struct TimeRange {
   double first = 0.0;
   double last = 0.0;
 };
 
-/// The durations that a transfer can have. They need not be one range: an axis that accelerates can
-/// keep accelerating for a short time, or reverse, which takes a long time, but nothing in between.
+/// The durations that are possible for a transfer. They can be several ranges. For example, an axis
+/// that accelerates may reach the end velocity in a short time if it accelerates further, or in a
+/// long time if it reverses first, but not in a time between these.
 class TransferTimes {
  public:
   explicit TransferTimes(const Transfer& transfer) noexcept;
 
-  /// At least one range, in ascending order. The last one has no end.
+  /// Returns at least one range, in ascending order. The last range has no end.
   std::span<const TimeRange> ranges() const noexcept { return std::span{ranges_}.first(size_); }
 
  private:
