@@ -8,7 +8,7 @@
 
 namespace takt {
 
-/// Where the time to live of a command comes from.
+/// The origin of the time to live of a command.
 enum class LimitOrigin : std::uint8_t {
   configured = 1,  ///< `on_timeout` of the network file
   command = 2,     ///< time_to_live of the message, which was shorter
@@ -28,8 +28,8 @@ constexpr std::array<std::uint8_t, 8> pack_limit(const CommandLimit& limit) noex
   return bytes;
 }
 
-/// Reads what pack_limit() has written. Returns std::nullopt if the event has no limit; the limit
-/// of the network file then applies.
+/// Reads a limit that pack_limit() has written. Returns std::nullopt if the event has no limit. The
+/// limit of the network file then applies.
 constexpr std::optional<CommandLimit> unpack_limit(
     const std::array<std::uint8_t, 8>& bytes) noexcept {
   const auto origin = static_cast<LimitOrigin>(bytes[4]);

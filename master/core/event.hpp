@@ -31,8 +31,9 @@ enum class SdoFault : std::uint8_t {
                      ///< standstill before.
 };
 
-/// The record of a failed boot, with all data that are needed to explain it. boot_report turns the
-/// record into text on the front side. Bytes are in wire order.
+/// The record of a failed boot, with all data that are needed to explain the failure.
+/// boot_report.hpp makes a text of the record in the front thread. Bytes are in the order in which
+/// they are sent on the bus.
 struct BootFailure {
   std::uint16_t step = 0;  ///< index into BootPlan::steps
   BootAction action = BootAction::write;
@@ -59,11 +60,11 @@ struct BootFailure {
   Time elapsed{};          ///< time since the boot began
   Time late{};  ///< longest time until the answer to a request that had timed out; 0 means that no
                 ///< such answer came
-  /// How long no frame of the SDO server had come when the step failed, at most the time since the
-  /// step began.
+  /// Time without a frame of the SDO server when the step failed, at most the time since the step
+  /// began.
   Time quiet{};
   bool empty_answer = false;  ///< the device has sent an SDO frame without any byte
-  /// Object of an answer that did not fit the request.
+  /// The object of an answer that did not belong to the request. Empty if there was none.
   std::optional<ObjectKey> answered{};
   /// The node was sent to PRE-OPERATIONAL twice for the step, and refused the write both times
   /// because of its state.
@@ -159,19 +160,20 @@ enum class EventKind : std::uint8_t {
   stopped,
 };
 
-/// How the master has noticed that two devices use one node-ID.
+/// The sign by which the master has noticed that two devices use one node-ID.
 enum class DuplicateSign : std::uint8_t {
-  heartbeats,  ///< More heartbeats come than one producer sends.
-  answers,     ///< Several answers come to one SDO request.
+  heartbeats,  ///< More heartbeats arrive than one producer sends.
+  answers,     ///< One SDO request gets several answers.
 };
 
-/// Whether a limit that was read from a device can be used.
+/// The result of the check of a limit that was read from a device.
 enum class LimitVerdict : std::uint8_t {
   good,
   implausible,  ///< The limit is ignored.
 };
 
-/// Why the CAN interface accepted no more frames: Event::detail of `send_buffer_full`.
+/// The reason why the CAN interface accepted no more frames. It is Event::detail of
+/// `send_buffer_full`.
 enum class SendTrouble : std::uint32_t {
   queue_too_short,  ///< The bus is healthy, but txqueuelen is below the number of frames that one
                     ///< cycle sends.
@@ -180,7 +182,7 @@ enum class SendTrouble : std::uint32_t {
   bus_off,
 };
 
-/// Why SYNC periods were skipped: Event::detail of `cycles_missed`.
+/// The reason why SYNC periods were skipped. It is Event::detail of `cycles_missed`.
 enum class MissedBecause : std::uint32_t {
   late,          ///< The bus thread did not run in time.
   wire_blocked,  ///< The controller is bus-off, or no node acknowledges the previous SYNC.
@@ -188,11 +190,12 @@ enum class MissedBecause : std::uint32_t {
   not_seen,  ///< The previous SYNC was not seen on the wire, and the controller reports no error.
 };
 
-/// Bit of Event::detail of `limit_exceeded`: the command brought no set-point. It would have put
-/// the set-point in force that was sent before, by enabling the axis or by changing its mode.
+/// Bit of Event::detail of `limit_exceeded`. It means that the command had no set-point of its own:
+/// by enabling the axis or changing its mode, it would have made an earlier set-point effective.
 inline constexpr std::uint32_t held_set_point = 0x80;
 
-/// One event. It is trivially copyable: the bus thread makes it, and the front thread reports it.
+/// One event. The bus thread creates it and the front thread reports it, so it is trivially
+/// copyable.
 struct Event {
   Time when{};
   std::uint64_t cycle = 0;

@@ -4,7 +4,8 @@
 
 namespace takt {
 
-/// The events of one cycle until they move to the ring of the front thread. Bus thread only.
+/// Holds the events of one cycle until they are moved to the ring buffer of the front thread. Bus
+/// thread only.
 using EventQueue = FixedQueue<Event, 256>;
 
 }  // namespace takt

@@ -18,9 +18,9 @@
 namespace takt {
 
 /// Saves or restores the state of a machine as a sequence of words, so that another machine with
-/// the same plan can continue from it. Each machine lists its values in `keep(state)`: only those
-/// that matter while nothing is under way, and none that follow from the plan. The derived class
-/// `Words` provides the words.
+/// the same plan can continue from it. Each machine lists its values in `keep(state)`. It leaves
+/// out values that follow from the plan, and values that are only needed during a transfer or a
+/// request. The derived class `Words` provides the words.
 template <class Words>
 class KeptState {
  public:
@@ -29,23 +29,24 @@ class KeptState {
   void operator()(T&... values) noexcept {
     (one(values), ...);
   }
-  /// A position below `end`. A restored value that is not below `end` becomes 0.
+  /// Saves or restores a position that must be below `end`. A restored value that is not below
+  /// `end` becomes 0.
   template <std::unsigned_integral T>
   void position(T& value, std::size_t end) noexcept {
     one(value);
     if (value >= end) put(value, T{0});
   }
-  /// A time span that is used as a divisor or is added in each cycle; it is restored as a positive
-  /// value.
+  /// Saves or restores a time span that is used as a divisor or is added in each cycle. The
+  /// restored value is always positive.
   void period(Time& value) noexcept {
     one(value);
     put(value, std::clamp(value, Time{1}, longest_period));
   }
 
  private:
-  /// Nanoseconds. Sums of such times do not overflow.
+  /// The largest absolute value of a time in nanoseconds. Sums of such times do not overflow.
   static constexpr std::int64_t longest = std::int64_t{1} << 56;
-  /// 73 min, longer than the longest period that 0x1006 can hold.
+  /// The longest period. It is 73 min, which is longer than any period that 0x1006 can state.
   static constexpr Time longest_period{std::int64_t{1} << 42};
   /// Largest absolute value of a signed count.
   static constexpr std::int64_t largest = 1 << 30;
@@ -84,11 +85,11 @@ class KeptState {
   void one(Time& value) noexcept {
     std::int64_t count = value.count();
     one(count);
-    // Except for `never`, every time can be subtracted from any other, whatever a damaged
-    // checkpoint holds.
+    // Even if the checkpoint is damaged, each time except `never` can be subtracted from any other.
     put(value, count == never.count() ? never : Time{std::clamp(count, -longest, longest)});
   }
-  /// An infinite value means that there is no limit.
+  /// Saves or restores a real number. NaN is restored as 0. Infinity is permitted, because it means
+  /// that there is no limit.
   void one(double& value) noexcept {
     const auto read = std::bit_cast<double>(word(std::bit_cast<std::uint64_t>(value)));
     put(value, std::isnan(read) ? 0.0 : read);

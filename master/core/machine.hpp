@@ -10,18 +10,19 @@
 
 namespace takt {
 
-/// Whether an answer to a frame comes soon. The bus loop reserves time on the wire for it.
+/// States whether a frame is answered soon. The bus loop reserves time on the wire for such an
+/// answer.
 enum class Answer : std::uint8_t {
-  /// An answer comes soon.
+  /// The frame is answered soon.
   comes,
   by_server,  ///< An SDO server answers, possibly late; the machine waits for its answer.
   none,
-  stream,        ///< Many frames come one after another; meanwhile no frame of lower priority gets
-                 ///< through.
-  after_stream,  ///< No answer comes, but the device may still be in the middle of a stream.
+  stream,        ///< The device answers with many frames without a pause, so no frame of lower
+                 ///< priority gets through meanwhile.
+  after_stream,  ///< The frame gets no answer, but the device may still be sending a stream.
 };
 
-/// Frames that machines want to send, in order, with a fixed capacity. Bus thread only.
+/// The frames that machines want to send, in their order. The capacity is fixed. Bus thread only.
 class Outbox {
  public:
   /// Largest number of frames.
@@ -53,11 +54,11 @@ class Outbox {
   std::size_t limit_ = capacity;
 };
 
-/// The deadline of a machine that has something to do now.
+/// The deadline of a machine that must be called at once.
 inline constexpr Time at_once{};
 
-/// A protocol machine: it takes frames and times, and gives frames and the time of its next call.
-/// It does not read a clock and does not allocate.
+/// A protocol machine. It receives frames and the present time, and returns frames and the time of
+/// its next call. It reads no clock and allocates no memory.
 template <class M>
 concept Machine = requires(M machine, const M constant, const Frame& frame, Time now, Outbox& out) {
   { machine.on_frame(frame, now, out) } noexcept;

@@ -8,7 +8,7 @@
 
 namespace takt {
 
-/// Boot state of a node. Every node is always in exactly one of these states.
+/// Boot state of a node. A node is always in exactly one of these states.
 enum class BootState : std::uint8_t {
   idle,  ///< The master does not boot the node (it is only watched, or the master only observes).
   booting,  ///< The boot plan is running.

@@ -6,9 +6,9 @@ namespace takt {
 
 /// Status of one TPDO. It is trivially copyable because it is passed between threads.
 struct PdoStatus {
-  std::uint32_t received = 0;       ///< accepted frames
-  std::uint32_t missing = 0;        ///< how often the TPDO was expected and did not come
-  std::uint32_t late = 0;           ///< synchronous frames that came after their window
+  std::uint32_t received = 0;  ///< accepted frames
+  std::uint32_t missing = 0;   ///< number of cycles in which the TPDO was expected and did not come
+  std::uint32_t late = 0;      ///< synchronous frames that came after their window
   std::uint32_t length_errors = 0;  ///< frames shorter (ignored) or longer than the mapping
   std::uint32_t too_long = 0;  ///< length errors with a longer frame; its first bytes were used
   std::uint32_t age = 0;       ///< SYNCs since the newest frame
@@ -23,7 +23,7 @@ struct RpdoStatus {
 };
 static_assert(std::is_trivially_copyable_v<RpdoStatus>);
 
-/// What one TPDO has done since the previous image.
+/// The frames of one TPDO since the previous image.
 struct PdoMark {
   /// The TPDO has arrived.
   static constexpr std::uint8_t arrived = 1;
@@ -44,7 +44,7 @@ struct PdoMark {
     state(received, cycle, flags);
   }
 
-  /// Changes with each accepted frame.
+  /// Returns a bit that changes with each accepted frame.
   bool toggle() const noexcept { return (received & 1) != 0; }
   bool is(std::uint8_t flag) const noexcept { return (flags & flag) != 0; }
 };

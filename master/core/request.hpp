@@ -44,7 +44,7 @@ struct SdoTransfer {
 
 /// A service that the front thread requests from the bus thread. It is trivially copyable.
 struct Request {
-  std::uint64_t id = 0;  ///< the reply repeats it
+  std::uint64_t id = 0;  ///< chosen by the sender; the reply repeats it
   RequestKind kind = RequestKind::sdo_upload;
   std::uint8_t node = 0;  ///< node-ID; for NMT, 0 means all nodes
   ObjectKey object{};
@@ -58,7 +58,7 @@ struct Request {
 };
 static_assert(std::is_trivially_copyable_v<Request>);
 
-/// What the SDO server of a node did instead of answering a request in time.
+/// The frames that the SDO server of a node has sent although it did not answer a request in time.
 struct SdoSilence {
   Time
       late{};  ///< longest time until the answer to a request that had timed out; 0 means none came

@@ -20,9 +20,9 @@ struct RequestSlot {
   SdoSilence silence{};
 };
 
-/// The requests of applications. There is one lane for the SDO of each node, lane 0 for NMT and one
-/// for LSS; each lane is served first come, first served. Every accepted request is answered once.
-/// Bus thread only.
+/// The requests of applications. Each request belongs to a lane: there is one lane for the SDO
+/// requests of each node, lane 0 for NMT, and one for LSS. In each lane the requests are served in
+/// the order of their arrival. Every accepted request is answered once. Bus thread only.
 class RequestTable {
  public:
   static constexpr std::size_t capacity = 32;
@@ -54,7 +54,7 @@ class RequestTable {
   void withdraw(std::uint64_t id) noexcept;
   /// Takes the oldest reply. Returns false if there is none.
   bool take(Reply& reply) noexcept;
-  /// Returns true if no request is under way, and no reply waits to be taken.
+  /// Returns true if there is no request, and no reply that take() has not returned yet.
   bool idle() const noexcept { return waiting_ == 0 && answered_ == 0; }
 
   template <class Archive>

@@ -14,12 +14,12 @@ enum class StopStage : std::uint8_t {
   done,        ///< The stop is over; SYNC may end.
 };
 
-/// Whether the ordered stop was confirmed. The numbers are those of `stop` in status_t.
+/// The result of an ordered stop. The numbers are those of `stop` in status_t.
 enum class StopResult : std::uint8_t {
   none,         ///< No stop was requested.
   under_way,    ///< The result is not decided yet.
   confirmed,    ///< Every axis was seen at standstill and disabled, or was disabled before.
-  unconfirmed,  ///< Some axis was not.
+  unconfirmed,  ///< At least one axis was neither.
 };
 
 }  // namespace takt

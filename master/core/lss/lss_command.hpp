@@ -25,7 +25,7 @@ enum class LssOp : std::uint8_t {
   /// serial number
   identify = 0x46,
   identify_unconfigured = 0x4C,
-  /// numbers[0..3]: LSS address as far as it is known, [4..7]: mask of the known bits
+  /// numbers[0..3]: known bits of the LSS address, [4..7]: mask of the known bits
   fast_scan = 0x51,
   inquire_vendor = 0x5A,  ///< the answer is in numbers[0]
   inquire_product = 0x5B,
@@ -48,7 +48,7 @@ struct LssCommand {
 };
 static_assert(std::is_trivially_copyable_v<LssCommand>);
 
-/// How an LSS service ended.
+/// The way in which an LSS service has ended.
 enum class LssOutcome : std::uint8_t {
   done,
   silent,   ///< No device has answered.

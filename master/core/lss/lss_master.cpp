@@ -118,7 +118,7 @@ void LssMaster::on_frame(const Frame& frame, Time now, Outbox& /*out*/) noexcept
 }
 
 void LssMaster::on_time(Time now, Outbox& out) noexcept {
-  if (phase_ == Phase::idle) return;  // in nearly every cycle
+  if (phase_ == Phase::idle) return;  // This is the case in nearly every cycle.
   if (awaits_answers() && now >= wait_until_) on_reaction(phase_ == Phase::answered, now);
   if (phase_ != Phase::sending || now < send_at_ || !out.push(frames_[next_])) return;
   ++next_;
@@ -140,7 +140,7 @@ Time LssMaster::wait() const noexcept {
   return std::min(timeout_, std::max(waits::lss_shortest, 3 * slowest_));
 }
 
-/// Evaluates the question: the time for answers is over, or the expected answer has come.
+/// Evaluates a question when the time for answers is over or the expected answer has come.
 void LssMaster::on_reaction(bool answered, Time now) noexcept {
   send_at_ = std::max(send_at_, now);
   if (scans()) return on_scan_reaction(answered);

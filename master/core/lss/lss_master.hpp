@@ -55,7 +55,8 @@ class LssMaster {
     over,
   };
   enum class Wait : std::uint8_t { none, first_answer, all_answers };
-  /// How long a scan waits for answers: as long as the devices need, or for the full time-out.
+  /// The time for which a scan waits for answers: only as long as the devices need (`quick`), or
+  /// for the full time-out (`patient`).
   enum class Pace : std::uint8_t { quick, patient };
 
   void ask() noexcept;
@@ -85,7 +86,7 @@ class LssMaster {
   std::array<Frame, 6> frames_{};  // frames of the current question
   std::uint8_t count_ = 0;
   std::uint8_t next_ = 0;
-  Pace pace_ = Pace::quick;  // of a slow scan
+  Pace pace_ = Pace::quick;  // pace of a slow scan
   Time timeout_{};
   Time send_at_{};
   Time asked_at_{};

@@ -5,7 +5,7 @@
 namespace takt {
 namespace {
 
-/// After this command, the addressed devices are in configuration state.
+/// Returns true if the addressed devices are in configuration state after this command.
 bool leads_to_configuration(const LssCommand& command) noexcept {
   return (command.op == LssOp::switch_global && command.a == 1) ||
          command.op == LssOp::switch_selective;
@@ -13,8 +13,8 @@ bool leads_to_configuration(const LssCommand& command) noexcept {
 
 }  // namespace
 
-/// The command may have brought a device into configuration state. Even a scan that was lost may
-/// have found one.
+/// Returns true if the command may have brought a device into configuration state. Even a scan with
+/// the outcome `lost` may have found one.
 bool LssRunner::may_configure(const LssCommand& command, LssOutcome outcome) const noexcept {
   if (command.op != LssOp::fast_scan) return leads_to_configuration(command);
   return outcome != LssOutcome::nobody || master_.scan_may_have_switched();

@@ -52,7 +52,8 @@ class LssRunner {
 
  private:
   enum class State : std::uint8_t { idle, running, leaving, done, failed };
-  /// Which list may have brought a device into configuration state that is still there.
+  /// The list that may have brought a device into configuration state. The device may still be in
+  /// this state.
   enum class ConfiguredBy : std::uint8_t { nobody, earlier_list, this_list };
 
   void step(Time now) noexcept;

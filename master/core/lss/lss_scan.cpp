@@ -51,11 +51,12 @@ void LssFastScan::on_anybody(bool answered) noexcept {
   doubtful_ = true;
 }
 
-/// Evaluates the confirmation of a part. If no device confirms it, an answer was lost or late and
-/// was taken for a 1 or for the answer to the next question, or the devices have gone on to the
-/// next part without a received answer. If bits of the part were given, there may also be no such
-/// device. A lost answer makes an address too high. The scan finds a higher address next only if a
-/// device has entered configuration state without a received answer.
+/// Evaluates the confirmation of a part. If no device confirms it, there are three explanations: an
+/// earlier answer was lost (and counted as a 1), an answer was so late that it counted for the next
+/// question, or the devices have received the confirmation and only their answer was lost. If bits
+/// of the part were given, there may also be no such device. A lost answer makes the address too
+/// high. If a later try finds a higher address than the unconfirmed one, a device has entered
+/// configuration state although its answer was lost.
 void LssFastScan::on_part(bool answered) noexcept {
   const std::uint8_t part = question_.part;
   may_have_switched_ = may_have_switched_ || part + 1 == parts;
@@ -85,8 +86,8 @@ void LssFastScan::ask_anybody() noexcept {
   asks_ = Asks::anybody;
 }
 
-/// Starts the scan again. Each confirmed part then needs only one question, and leads the devices
-/// back to the part that has failed.
+/// Starts the scan again. Each part that is already confirmed then needs only one question, which
+/// brings the devices back to the part that has failed.
 void LssFastScan::start_over() noexcept {
   if (restarts_ == most_restarts) {
     state_ = LssScanState::lost;

@@ -43,13 +43,13 @@ class LssFastScan {
   /// Returns true if a device may be in configuration state because it has received the last
   /// question, even if its answer was lost.
   bool may_have_switched() const noexcept { return may_have_switched_; }
-  /// Wait for the full time-out, because a question had an impossible reaction, or because this is
-  /// the last question. There, a late answer would confirm a wrong address or leave a device in
-  /// configuration state.
+  /// Returns true if the caller must wait for the full time-out. The reason is an impossible
+  /// reaction to a question, or that this is the last question: a late answer to it would confirm a
+  /// wrong address or leave a device in configuration state.
   bool doubtful() const noexcept { return doubtful_ || at_the_end(); }
 
  private:
-  /// What the present question asks.
+  /// The subject of the present question.
   enum class Asks : std::uint8_t { anybody, bit, part };
 
   bool at_the_end() const noexcept { return question_.bit_check == 0 && question_.part == 3; }
@@ -101,8 +101,8 @@ class LssSlowScan {
   LssAddress address() const noexcept { return {left_[0], left_[1], left_[2], left_[4]}; }
 
  private:
-  /// What the present question asks for: all ranges, the lower half of a range, or the address that
-  /// is left.
+  /// The subject of the present question: all ranges, the lower half of a range, or the only
+  /// remaining address.
   enum class Asks : std::uint8_t { everything, lower_half, address };
 
   void ask() noexcept;

@@ -94,7 +94,7 @@ bool LssService::begin_request() noexcept {
   return true;
 }
 
-/// Begins a search. A node that has shown no sign of life may have no node-ID.
+/// Begins a search for a node that has shown no sign of life, because it may have no node-ID.
 void LssService::begin_search(Time now, std::span<const NodeStatus> nodes) noexcept {
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     Candidate& candidate = candidates_[(turn_ + i) % candidates_.size()];
@@ -111,8 +111,9 @@ void LssService::begin_search(Time now, std::span<const NodeStatus> nodes) noexc
   }
 }
 
-/// Returns true if only other devices have answered twice in a row. A single such scan may have met
-/// the device of a node that is searched for next, or may have lost an answer.
+/// Returns true if two scans in a row have found only other devices. A single such scan proves
+/// nothing: an answer may be lost, or the other device may belong to the node that is searched for
+/// next.
 bool LssService::only_others_answered(Candidate& candidate) const noexcept {
   const LssResult& scan = runner_.results().front();
   const bool answered = scan.frames > LssFastScan::frames_of_silence;

@@ -14,8 +14,8 @@
 
 namespace takt {
 
-/// LSS in a running network. It serves the requests of applications. Between these, it assigns
-/// node-IDs to nodes that the network file allows to receive one, as long as they show no sign of
+/// LSS in a running network. It serves the requests of applications. When there is no request, it
+/// assigns node-IDs to nodes for which the network file permits this and which show no sign of
 /// life. Bus thread only.
 class LssService {
  public:
@@ -29,7 +29,7 @@ class LssService {
   /// Cancels all work; the network answers the requests. No device stays in configuration state.
   void stop(Time now) noexcept;
   bool stopped() const noexcept { return stopping_ && !runner_.running(); }
-  /// Returns true if no search and no request is under way.
+  /// Returns true if no search and no request is running.
   bool idle() const noexcept {
     return !runner_.running() && searched_ == nullptr && request_ == nullptr && !stopping_;
   }

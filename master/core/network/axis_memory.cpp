@@ -45,8 +45,8 @@ void AxisMemory::see(std::int64_t statusword) noexcept {
   }
 }
 
-/// A controlword that disables has no effect here; only a statusword shows that the drive is
-/// disabled.
+/// Takes note only of an enabling controlword. That a drive is disabled must be shown by its
+/// statusword.
 void AxisMemory::write(std::int64_t controlword) noexcept {
   if (!enables(controlword)) return;
   word_ = ServiceWord::under_way;

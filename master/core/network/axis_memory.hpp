@@ -5,22 +5,23 @@
 
 namespace takt {
 
-/// What a drive does at a quick stop, as far as a boot has read it.
+/// The behaviour of a drive at a quick stop, if a boot has read it.
 enum class QuickStop : std::uint8_t {
   unread,
   brakes,
   coasts,  ///< 0x605A is 0: the quick stop disables the drive at once.
 };
 
-/// Remembers between ordered stops whether an axis is disabled: its newest statusword has shown
-/// that, and no command since then could enable it. In doubt, an axis counts as not disabled. Bus
-/// thread only.
+/// Remembers between ordered stops whether an axis is disabled. This is the case if its newest
+/// statusword has shown it, and no later command could enable the axis. In case of doubt, an axis
+/// counts as not disabled. Bus thread only.
 class AxisMemory {
  public:
-  /// A statusword this soon after an enabling word may be older than the answer to it.
+  /// A statusword that comes within this number of cycles after an enabling controlword may have
+  /// been sent before the drive has processed that controlword.
   static constexpr std::uint8_t settling_cycles = 3;
-  /// A drive may take this long to act on an enabling word that a service has brought, for example
-  /// while it charges its intermediate circuit.
+  /// Number of cycles that a drive may need to act on an enabling controlword that a service has
+  /// written, for example while it charges its intermediate circuit.
   static constexpr std::uint8_t standing_cycles = 100;
 
   /// Returns true if a TPDO with the statusword has come since the previous call. `frames` counts
@@ -36,9 +37,9 @@ class AxisMemory {
   /// Notes that a service (an SDO download, or an RPDO on request) was requested to write this
   /// controlword.
   void write(std::int64_t controlword) noexcept;
-  /// Such a service is not answered yet, as far as is known.
+  /// Returns true if a service that writes a controlword may not be answered yet.
   bool awaits_answer() const noexcept { return word_ == ServiceWord::under_way; }
-  /// Notes that every service that can bring a controlword is answered.
+  /// Notes that each service that can write a controlword is answered.
   void note_answer() noexcept {
     if (awaits_answer()) word_ = ServiceWord::standing;
   }
@@ -47,12 +48,12 @@ class AxisMemory {
   /// Notes that the node reports OPERATIONAL although this master has not booted it.
   void note_operational() noexcept { operational_ = true; }
 
-  /// Notes what the newest boot has read.
+  /// Notes the behaviour at a quick stop that the newest boot has read.
   void note_quick_stop(QuickStop what) noexcept { quick_stop_ = what; }
 
   QuickStop quick_stop() const noexcept { return quick_stop_; }
-  /// Returns true if no enabling controlword can be on its way, or in force without an answer to
-  /// it.
+  /// Returns true if no enabling controlword can still be on its way to the drive, and none can be
+  /// effective that the drive has not answered yet.
   bool quiet() const noexcept {
     return word_ == ServiceWord::harmless && quiet_ >= settling_cycles;
   }
@@ -67,11 +68,13 @@ class AxisMemory {
   }
 
  private:
-  /// What services have brought to the controlword.
+  /// The effect of services that have written the controlword.
   enum class ServiceWord : std::uint8_t {
-    harmless,   ///< No service has brought an enabling word, or the drive was seen to ignore it.
-    under_way,  ///< An enabling word was requested; it may reach the drive at any time.
-    standing,   ///< The service is answered. The enabling word may still be in force in the drive.
+    harmless,   ///< No service has written an enabling controlword, or the drive was seen to ignore
+                ///< it.
+    under_way,  ///< An enabling controlword was requested. It may reach the drive at any time.
+    standing,   ///< The service is answered. The enabling controlword may still be effective in the
+                ///< drive.
   };
 
   bool disabled_ = false;

@@ -6,7 +6,8 @@
 namespace takt {
 namespace {
 
-/// The longest distance between two frames of a TPDO of a moving axis, as far as the plan shows it.
+/// Returns the longest time between two frames of a TPDO while its values change, according to the
+/// plan.
 Time distance_of(const BusPlan& plan, const PdoRow& row) {
   if (row.cyclic()) return static_cast<Time::rep>(row.transmission) * plan.cycle.period;
   return std::max(row.inhibit, row.event_timer);

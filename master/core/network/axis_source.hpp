@@ -8,18 +8,18 @@
 
 namespace takt {
 
-/// Input of the ordered stop in one cycle, as far as it comes from TPDOs.
+/// The values that the ordered stop gets from TPDOs in one cycle.
 struct ReceivedValues {
   std::span<const std::int64_t> values{};  ///< values of the image
   std::span<const std::uint64_t> stale{};  ///< stale signals of the image, one bit for each
   std::span<const PdoMark> marks{};        ///< counters of the TPDOs, by row
 };
 
-/// The TPDO that brings one value of an axis. A value counts only if a frame has come since the
-/// previous one: the image repeats the newest value in each cycle. Bus thread only.
+/// The TPDO that carries one value of an axis. The image repeats the newest value in each cycle, so
+/// a value counts only if a new frame has come. Bus thread only.
 class AxisSource {
  public:
-  /// The longest silence of a TPDO after which the value is read by SDO as well.
+  /// If a TPDO is silent for longer than this time, the value is also read by SDO.
   static constexpr Time longest_silence = std::chrono::milliseconds{50};
 
   /// `signal` is empty if no TPDO carries the value.
@@ -29,9 +29,10 @@ class AxisSource {
   void begin() noexcept { begun_ = false; }
   /// Returns the value if a frame has come since the previous call.
   std::optional<std::int64_t> take(Time now, const ReceivedValues& received) noexcept;
-  /// Returns the newest value, from before the stop too, unless it may be old.
+  /// Returns the newest value, even if it came before the stop. Returns std::nullopt if it may be
+  /// out of date.
   std::optional<std::int64_t> newest(const ReceivedValues& received) const noexcept;
-  /// Returns true if the value comes by TPDO, and often enough to judge an axis by it.
+  /// Returns true if a TPDO carries the value often enough to judge the axis.
   bool serves(Time now) const noexcept {
     return signal_ && !slow_ && !stale_ && now - newest_ < longest_silence;
   }
@@ -40,7 +41,8 @@ class AxisSource {
  private:
   std::optional<SignalIndex> signal_;
   std::uint16_t row_ = PdoTable::no_row;
-  /// The period, the inhibit time or the event timer is longer than `longest_silence`.
+  /// True if the period, the inhibit time or the event timer of the TPDO is longer than
+  /// `longest_silence`.
   bool slow_ = false;
   bool stale_ = false;
   bool begun_ = false;        ///< take() was called since begin().

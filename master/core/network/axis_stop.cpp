@@ -10,7 +10,8 @@ constexpr Time silent_after = std::chrono::milliseconds{500};
 
 }  // namespace
 
-/// Takes a value. `from` is the begin of the rest if this value is its first one.
+/// Takes a value. `within` states whether it is inside the window. If it is the first value of a
+/// rest, the rest begins at `from`.
 void Standstill::rest(Time from, Time now, bool within) noexcept {
   if (!within || !resting_) {
     since_ = last_ = from;
@@ -24,7 +25,8 @@ void Standstill::rest(Time from, Time now, bool within) noexcept {
 }
 
 void Standstill::take(Time now, const AxisSample& sample) noexcept {
-  // A value that was read by SDO was measured between its request and its answer.
+  // The device has measured a value that was read by SDO at some time between the request and the
+  // answer.
   const Time asked = sample.motion_asked.value_or(now);
   if (sample.velocity) {
     velocity_ = *sample.velocity;
@@ -36,7 +38,7 @@ void Standstill::take(Time now, const AxisSample& sample) noexcept {
     return;
   }
   if (!sample.position) return;
-  // The velocity that the drive reports takes precedence while it is new.
+  // The velocity that the drive itself reports takes precedence while it is new.
   if (velocity_at_ && now - *velocity_at_ < standstill_time) {
     return set_anchor(now, asked, *sample.position);
   }
@@ -163,7 +165,8 @@ void AxisStop::recall(std::optional<std::int64_t> statusword,
   }
 }
 
-/// A value counts once a statusword shows that the axis was still enabled then.
+/// Notes the motion of an enabled axis. A value counts only when a statusword shows that the axis
+/// was still enabled when it was measured.
 void AxisStop::note_motion(Time now, const AxisSample& sample) noexcept {
   if (!sample.statusword || !powered_) return;
   if (standstill_.moves()) {
@@ -176,9 +179,9 @@ void AxisStop::note_motion(Time now, const AxisSample& sample) noexcept {
 
 /// Returns true if this statusword shows that an axis in this state was disabled before it stood
 /// still. A drive without power may report the velocity 0 although its axis coasts, so only values
-/// from before count: a drive with 0x605A = 0 must have shown its standstill, and a drive in the
-/// state "fault" must not have moved. All other drives may disable themselves at the end of the
-/// ramp.
+/// from the time before count. If 0x605A is 0, the drive must have shown its standstill before. If
+/// the drive is in the state "fault", it must not have shown a motion before. All other drives may
+/// disable themselves at the end of the ramp.
 bool AxisStop::drops(AxisState state, std::int64_t statusword) const noexcept {
   if (!disabled(statusword)) return false;
   const bool brakes = state == AxisState::braking;
@@ -197,8 +200,8 @@ void AxisStop::step(Time now, const AxisSample& sample) noexcept {
   // A velocity without a statusword does not tell whether the axis is enabled.
   const bool needs_word = state_ == AxisState::standing || state_ == AxisState::braking;
   if (needs_word && !sample.statusword && !standstill_.certain()) return;
-  // An axis leaves `standing` only if its newest value lies outside the window; a value inside is
-  // enough to stay, even if the standstill is not certain again.
+  // An axis leaves `standing` only if its newest value lies outside the window. It stays in this
+  // state after a value inside the window, even if the standstill is not certain at this moment.
   if (state_ == AxisState::standing && powered_ && !standstill_.moves()) return;
   const bool in_doubt = state_ == AxisState::unseen && commanded_;
   const AxisState state = in_doubt ? AxisState::braking : state_;

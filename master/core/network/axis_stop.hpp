@@ -7,7 +7,7 @@
 
 namespace takt {
 
-/// What the ordered stop knows of one axis.
+/// The state of one axis in the ordered stop.
 enum class AxisState : std::uint8_t {
   unseen,    ///< No statusword has come since the stop began.
   asked,     ///< As `unseen`; but an answer is not required, because the node was neither ready nor
@@ -23,7 +23,7 @@ enum class AxisState : std::uint8_t {
   dropped,   ///< The axis was disabled while it moved, or while nothing showed that it stood still.
 };
 
-/// What is known of an axis when the stop begins.
+/// The knowledge about an axis when the stop begins.
 enum class AxisPrior : std::uint8_t {
   untouched,  ///< The stop does not reach the axis, or its node was never heard.
   heard,      ///< The node was heard, but was neither ready nor OPERATIONAL.
@@ -33,7 +33,7 @@ enum class AxisPrior : std::uint8_t {
              ///< enabled.
 };
 
-/// What the front side reports of one axis after the stop.
+/// The result of the stop of one axis, as it is reported to the user.
 enum class AxisVerdict : std::uint8_t {
   stopped,   ///< The stop is confirmed, or there was nothing to stop.
   moving,    ///< The axis was disabled while it moved.
@@ -44,29 +44,29 @@ enum class AxisVerdict : std::uint8_t {
   unproven,  ///< The axis was disabled, and nothing showed before that it stood still.
 };
 
-/// What was read of an axis since the last call. A value is empty unless a frame has brought it
-/// since then. The values are those of the device, without units.
+/// The values of an axis that have come since the last call. A value is empty if no frame has
+/// carried it since then. The values are raw values of the device.
 struct AxisSample {
   std::optional<std::int64_t> statusword;
   std::optional<std::int64_t> velocity;  ///< 0x606C
   std::optional<std::int64_t> position;  ///< 0x6064
-  /// When the statusword was requested by SDO; empty for one that a TPDO has brought.
+  /// The time at which the statusword was requested by SDO. Empty if a TPDO has carried it.
   std::optional<Time> word_asked{};
-  /// As word_asked, for the velocity and the position.
+  /// The same time for the velocity and the position.
   std::optional<Time> motion_asked{};
 
   bool empty() const noexcept { return !statusword && !velocity && !position; }
 };
 
-/// Judges whether an axis moves, by 0x606C or, while no value of it comes, by differences of
-/// 0x6064. Standstill is certain when `enough_samples` values or more have stayed within a window
-/// for `standstill_time` or longer, without the longest pause between two of them: frames from
-/// before a pause of the bus may come after it, and a single pause proves nothing.
+/// Judges whether an axis moves. It uses 0x606C, or differences of 0x6064 while 0x606C does not
+/// come. Standstill is certain when at least `enough_samples` values in a row were inside a window
+/// for at least `standstill_time`. The longest pause between two of these values does not count as
+/// part of this time, because frames that were sent before a pause of the bus may arrive after it.
 class Standstill {
  public:
   /// Shortest rest that counts as certain standstill.
   static constexpr Time standstill_time = std::chrono::milliseconds{50};
-  /// Fewest values that show a standstill.
+  /// The smallest number of values that can show a standstill.
   static constexpr std::uint32_t enough_samples = 3;
 
   explicit Standstill(const AxisPlan& plan) noexcept
@@ -80,8 +80,8 @@ class Standstill {
   }
   /// Returns true if the newest value lies outside the window.
   bool moves() const noexcept { return measured_ && !resting_; }
-  /// Returns true if the newest value shows standstill and is no newer than `latest`. One
-  /// difference of positions shows nothing.
+  /// Returns true if the newest value shows standstill and is not newer than `latest`. A single
+  /// difference of positions does not count.
   bool rests(Time latest) const noexcept {
     return last_ <= latest && resting_ && (!by_position_ || certain());
   }
@@ -89,12 +89,14 @@ class Standstill {
   bool rests_at(std::int64_t velocity) const noexcept {
     return std::abs(velocity) <= velocity_window_;
   }
-  /// As moves(), for a value that is newer than `start` by more than `grace`. A difference of
-  /// positions must lie behind `start` as a whole, and an SDO must be requested after `start`.
+  /// Returns true if the newest value lies outside the window and is newer than `start` by more
+  /// than `grace`. For a difference of positions, both positions must be newer than `start`. A
+  /// value that was read by SDO must have been requested after `start`.
   bool moves_after(Time start, Time grace) const noexcept {
     return moves() && from_ >= start && (by_position_ ? last_ : from_) - start > grace;
   }
-  /// The unit is that of 0x606C in the device, or counts of 0x6064 per second.
+  /// Returns the newest velocity in the unit of 0x606C of the device, or in counts of 0x6064 per
+  /// second.
   std::int64_t velocity() const noexcept { return velocity_; }
   /// Returns true if the newest velocity comes from differences of 0x6064.
   bool by_position() const noexcept { return by_position_; }
@@ -123,16 +125,16 @@ class Standstill {
   bool by_position_ = false;
 };
 
-/// The ordered stop of one axis: it is commanded to stop quickly, is seen at standstill, and is
-/// disabled. The table in axis_stop.cpp has the transitions. Bus thread only.
+/// The ordered stop of one axis. The axis is commanded to stop quickly; when it is seen at
+/// standstill, it is disabled. The table in axis_stop.cpp lists the transitions. Bus thread only.
 class AxisStop {
  public:
   /// Controlword of the command "quick stop".
   static constexpr std::int64_t quick_stop_word = 0x0002;
   /// Controlword of the command "disable voltage".
   static constexpr std::int64_t disable_voltage_word = 0x0000;
-  /// An axis that disables itself at the end of its ramp may show a velocity for this long, and
-  /// until the next value comes.
+  /// After an axis has disabled itself at the end of its ramp, a velocity that it reports within
+  /// this time does not count as a motion.
   static constexpr Time settling_grace = std::chrono::milliseconds{40};
 
   AxisStop() noexcept : AxisStop{AxisPlan{}} {}
@@ -144,18 +146,18 @@ class AxisStop {
   /// Notes that a controlword that may change the state of the axis may have reached it. If the
   /// next statusword shows that the axis is disabled, it may have been enabled before.
   void note_command() noexcept { commanded_ = true; }
-  /// Notes what the drive does at a quick stop: it disables itself at once (0x605A is 0), or
-  /// brakes.
+  /// Notes the behaviour of the drive at a quick stop. `coasts` means that it disables itself at
+  /// once (0x605A is 0); otherwise it brakes.
   void note_quick_stop(bool coasts) noexcept { coasts_ = coasts; }
-  /// Notes that the node has restarted during the stop. Nobody has braked the axis since, and a
-  /// drive that starts may report the velocity 0: only the values count that came while it was
-  /// enabled.
+  /// Notes that the node has restarted during the stop. The drive no longer brakes the axis then,
+  /// and a drive that starts may report the velocity 0. Therefore only the values count that came
+  /// while the axis was enabled.
   void note_restart() noexcept {
     coasts_ = true;
     if (prior_ == AxisPrior::exposed || prior_ == AxisPrior::foreign) commanded_ = true;
   }
-  /// Takes the newest values from before the stop. They only tell whether an axis moved before the
-  /// stop has disabled it.
+  /// Takes the newest values from the time before the stop. They only show whether the axis moved
+  /// before it was disabled.
   void recall(std::optional<std::int64_t> statusword,
               std::optional<std::int64_t> velocity) noexcept;
   /// Takes a new sample and advances the stop.
@@ -164,8 +166,8 @@ class AxisStop {
   void cut() noexcept;
   /// Notes that the device has refused the read of its statusword with this abort code.
   void refuse(std::uint32_t abort_code) noexcept { refusal_ = abort_code; }
-  /// Notes that the device has no such statusword and is no drive. It may have been a drive when
-  /// this master had booted it.
+  /// Notes that the device has no such statusword and is not a drive. It may have been a drive if
+  /// this master has booted it before.
   void absent() noexcept {
     const bool foreign = state_ == AxisState::unseen && prior_ == AxisPrior::foreign;
     if (foreign || state_ == AxisState::asked) state_ = AxisState::exempt;
@@ -176,7 +178,7 @@ class AxisStop {
   bool seen() const noexcept {
     return state_ != AxisState::unseen && state_ != AxisState::asked && state_ != AxisState::rested;
   }
-  /// Returns true if the stop has nothing more to wait for.
+  /// Returns true if the stop does not have to wait for this axis any longer.
   bool settled() const noexcept;
   /// Returns true if the stop is confirmed, or there was nothing to stop.
   bool confirmed() const noexcept {
@@ -195,7 +197,7 @@ class AxisStop {
   bool by_position() const noexcept { return standstill_.by_position(); }
   /// The abort code of AxisVerdict::refused.
   std::uint32_t refusal() const noexcept { return refusal_; }
-  /// The report on this axis. `exchanging` tells whether the node exchanges PDOs.
+  /// Returns the result for this axis. `exchanging` states whether the node exchanges PDOs.
   AxisVerdict verdict(Time now, bool exchanging) const noexcept;
 
   /// Returns true if the power stage is off: the state is "not ready to switch on", "switch on
@@ -213,7 +215,7 @@ class AxisStop {
     off_rest,  ///< The axis is disabled and certainly at standstill.
     off_move,  ///< The axis is disabled and moves.
   };
-  /// What is known of the axis while it was enabled.
+  /// The last known motion of the axis while it was enabled.
   enum class Motion : std::uint8_t { unknown, rests, moves };
   static AxisState next(AxisState state, Seen seen) noexcept;
   Seen judge() const noexcept;

@@ -112,8 +112,8 @@ void Network::on_frame(const Frame& frame, Time now, Outbox& out) noexcept {
   touched(index_[node], now);
 }
 
-/// The sender of an EMCY that does not have the COB-ID of the predefined connection set; nullptr if
-/// there is none.
+/// Returns the session of the node whose EMCY has this COB-ID, if it is not the one of the
+/// predefined connection set. Returns nullptr if there is none.
 NodeSession* Network::emcy_sender(CobId id) noexcept {
   for (const auto& [own, position] : emcy_ids_) {
     if (own == id) return &sessions_[position];
@@ -121,7 +121,8 @@ NodeSession* Network::emcy_sender(CobId id) noexcept {
   return nullptr;
 }
 
-/// Reports a sign of life of a node that is not in the network file. CiA 302-2, status A.
+/// Reports that a node which is not in the network file has shown a sign of life. CiA 302-2, status
+/// A.
 void Network::meet_stranger(const Frame& frame, Time now) noexcept {
   const std::uint32_t node = frame.id.id() & 0x7F;
   const bool sign_of_life = (frame.id.id() & 0x780U) == 0x700 && frame.length != 0 && node != 0;
@@ -137,7 +138,7 @@ void Network::on_time(Time now, Outbox& out) noexcept {
   follow_start(now);
   send_heartbeat(now, out);
   send_own_commands(now, out);
-  serve_own_dictionary(now, out);  // before the NMT commands that it accepts
+  serve_own_dictionary(now, out);  // It may accept NMT commands, which are sent below.
   send_commands(now, out);
   if (!observe_) lss_.on_time(now, out, statuses_);
   run_sessions(now, out);
@@ -165,7 +166,8 @@ void Network::ask_own_dictionary(const Frame& frame, Time now) noexcept {
   }
 }
 
-/// Sends the answers of the dictionary. A block is sent in one turn, as far as there is room.
+/// Sends the answers of the dictionary of the master. The segments of a block are sent one after
+/// the other as long as there is room.
 void Network::serve_own_dictionary(Time now, Outbox& out) noexcept {
   while (server_.deadline() <= now && out.room() != 0) server_.on_time(now, out);
 }
@@ -208,7 +210,7 @@ Time Network::deadline() const noexcept {
 void Network::withdraw(std::uint64_t id) noexcept {
   requests_.withdraw(id);
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
-    if (sessions_[i].withdraw(id)) deadlines_[i] = Time{};  // the next request may begin
+    if (sessions_[i].withdraw(id)) deadlines_[i] = Time{};  // its next request may begin
   }
 }
 
@@ -222,7 +224,7 @@ bool Network::submit(const Request& request, Time now) noexcept {
   } else if (NodeSession* const peer = session(request.node); peer != nullptr) {
     peer->on_request(now);
     touched(index_[request.node], now);
-  } else if (request.kind != RequestKind::lss) {  // LSS requests wait in their own lane
+  } else if (request.kind != RequestKind::lss) {  // LSS requests do not concern a session.
     requests_.answer(*slot, SdoFault::no_such_node);
   }
   return true;

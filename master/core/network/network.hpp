@@ -25,7 +25,7 @@
 
 namespace takt {
 
-/// When the master sends an NMT command that ends the PDO exchange of axes.
+/// The time at which the master sends an NMT command that ends the PDO exchange of axes.
 enum class NmtStop : std::uint8_t {
   /// The command is sent at once.
   immediate,
@@ -33,10 +33,11 @@ enum class NmtStop : std::uint8_t {
                ///< were stopped.
 };
 
-/// State of the axes for which an NMT command has waited.
+/// The state of the axes for which an NMT command has waited.
 enum class AxesAtRest : std::uint8_t {
   confirmed,    ///< Each axis was seen at standstill and disabled, or was disabled before.
-  unconfirmed,  ///< Some axis was not. The command is sent nevertheless, and its answer says so.
+  unconfirmed,  ///< At least one axis was neither. The command is sent nevertheless, and its answer
+                ///< states this.
 };
 
 /// Options of a Network.
@@ -45,9 +46,9 @@ struct NetworkOptions {
   NmtStop nmt_stop = NmtStop::immediate;
 };
 
-/// The NMT master: owns the machines of all nodes, routes service frames to them and shares the
-/// frame budget between them. Bus thread only; nothing allocates after construction. `plan` must
-/// outlive the network.
+/// The NMT master. It owns the machines of all nodes, passes service frames to them, and divides
+/// the frame budget among them. Bus thread only. No function allocates memory after the
+/// construction. `plan` must outlive the network.
 class Network {
  public:
   explicit Network(const BusPlan& plan, NetworkOptions options = {});
@@ -57,8 +58,8 @@ class Network {
   /// Begins to boot all nodes, unless the master only observes.
   void start(Time now) noexcept;
   /// Takes service frames of nodes (SDO and LSS answers, heartbeats, EMCY) and ignores all others.
-  /// O(1). The frames that the master sends in reaction leave with on_time(), within the budget;
-  /// `out` is not used.
+  /// The function takes constant time. The reactions of the master are sent by on_time() within its
+  /// budget; `out` is not used.
   void on_frame(const Frame& frame, Time now, Outbox& out) noexcept;
   /// Handles time-outs, new SDO requests, the heartbeat of the master, NMT and LSS. Adds at most
   /// `service_frames` frames, or fewer if `out` has less room.
@@ -107,7 +108,8 @@ class Network {
   /// Returns true if a node is lost, and its loss demands a quick stop of the drives of this node.
   /// LossReaction::quick_stop.
   bool demands_quick_stop(std::size_t node_index) const noexcept;
-  /// Returns true if a block transfer is under way; frames come without a request for each.
+  /// Returns true if a block transfer is running, so that a device may send several frames after
+  /// one request.
   bool streams() const noexcept { return streaming_ != 0; }
   /// Number of sub-blocks of block uploads that were requested, including requests that are still
   /// to be sent.
@@ -120,13 +122,13 @@ class Network {
   /// counter of its SYNC starts at 1. CiA 301, 7.2.5.2.
   bool take_sync_restart() noexcept { return std::exchange(sync_restarts_, false); }
 
-  /// Handles the loss of the SYNC of another device: NMT stop goes to every other node.
+  /// Handles the loss of the SYNC of another device by an NMT stop of every other node, see
   /// SyncLoss::stop.
   void on_sync_loss() noexcept;
-  /// Handles the return of that SYNC: the nodes are started again.
+  /// Handles the return of this SYNC: the nodes are started again.
   void on_sync_back() noexcept;
 
-  /// Tells that the bus thread did not run for this time, which does not count as silence of a
+  /// Notes that the bus thread did not run for this time. The time does not count as silence of a
   /// node.
   void on_absence(Time away) noexcept;
 
@@ -137,7 +139,7 @@ class Network {
   /// for a command to all nodes, or for an NMT stop of the master itself, which ends SYNC.
   /// std::nullopt means that no command waits.
   std::optional<std::uint8_t> awaits_axes() const noexcept { return awaits_axes_; }
-  /// Lets the waiting command go, because its axes were stopped or their time is over.
+  /// Permits the waiting command, because its axes were stopped or their time is over.
   void axes_at_rest(AxesAtRest how) noexcept {
     axes_at_rest_ = awaits_axes_;
     rest_ = how;
@@ -157,7 +159,8 @@ class Network {
   NmtState own_state() const noexcept { return own_state_; }
   /// Returns true if all frames of the stop have been passed to the outbox.
   bool stopped() const noexcept;
-  /// Returns true if nothing is under way, so keep() covers the whole state.
+  /// Returns true if no boot, transfer or request is running, so that keep() covers the whole
+  /// state.
   bool idle() const noexcept;
 
   template <class Archive>

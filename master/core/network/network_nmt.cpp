@@ -14,7 +14,8 @@ bool ends_exchange(NmtCommand command) noexcept {
 
 }  // namespace
 
-/// Calls `change` with each session. It may change the deadline of the session, but not its status.
+/// Calls `change` for each session. `change` may change the deadline of the session, but not its
+/// status.
 template <class Change>
 void Network::change_all(Change change) noexcept {
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
@@ -96,8 +97,8 @@ void Network::on_sync_back() noexcept {
   change_all([](NodeSession& session) { session.resume(); });
 }
 
-/// Changes the NMT state of the master itself. The master does not receive its own broadcast, so it
-/// follows it by itself. CiA 302-2.
+/// Changes the NMT state of the master itself. The master does not receive its own broadcasts, so
+/// this function applies them to its state. CiA 302-2.
 void Network::command_master(NmtCommand command) noexcept {
   const bool starts_anew = own_state_ == NmtState::stopped && command != NmtCommand::stop;
   sync_restarts_ = sync_restarts_ || starts_anew || is_reset(command);
@@ -118,9 +119,9 @@ void Network::command_master(NmtCommand command) noexcept {
   }
 }
 
-/// The node whose axes lose their PDOs or the SYNC by this command; 0 means all nodes, std::nullopt
-/// no axes. A reset does not wait for axes, because it is also the remedy for a device that does
-/// not stop.
+/// Returns the node whose axes lose their PDOs or the SYNC by this command. 0 means all nodes, and
+/// std::nullopt means that no axis is affected. A reset does not wait for axes, because it must
+/// also work for a device that does not stop.
 std::optional<std::uint8_t> Network::axes_reached(const NmtMessage& message) const noexcept {
   if (nmt_stop_ == NmtStop::immediate || !ends_exchange(message.command)) return std::nullopt;
   const bool own = message.node == plan_.master_id.value();
@@ -132,7 +133,7 @@ std::optional<std::uint8_t> Network::axes_reached(const NmtMessage& message) con
   return any ? std::optional{reached} : std::nullopt;
 }
 
-/// The command has to wait until its axes are stopped, because they may be enabled.
+/// Returns true if the command has to wait until its axes are stopped, because they may be enabled.
 bool Network::waits_for_axes(const NmtMessage& message) const noexcept {
   const auto reached = axes_reached(message);
   return reached && axes_at_rest_ != 0 && axes_at_rest_ != *reached;

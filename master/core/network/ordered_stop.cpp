@@ -47,9 +47,10 @@ AxisPlan plan_of(const NodePlan& node, std::uint8_t number) {
   return found == node.axes.end() ? AxisPlan{.number = number} : *found;
 }
 
-/// What is known of an axis before the stop. Even if the boot of its node has failed, the axis may
-/// be enabled, because another master or a previous run has enabled it. In CiA 302-2, status B
-/// means that no answer has come, L that the node was found OPERATIONAL.
+/// Returns the knowledge about an axis before the stop. Even if the boot of its node has failed,
+/// the axis may be enabled, because another master or a previous run may have enabled it. In CiA
+/// 302-2, the status B means that no answer has come, and L means that the node was found
+/// OPERATIONAL.
 AxisPrior prior_of(const NodeStatus& node, const AxisMemory& memory) noexcept {
   if (node.boot_count != 0 || node.boot == BootState::ready) {
     return memory.disabled() ? AxisPrior::disabled : AxisPrior::exposed;
@@ -166,7 +167,8 @@ bool OrderedStop::all_settled(Time now, const StopView& view) const noexcept {
 }
 
 /// An axis may have received an enabling controlword in the previous cycle, which its statusword
-/// does not show yet. So every axis is commanded for some cycles first.
+/// does not show yet. Therefore the result is false during the stage `fallback`, in which every
+/// axis is commanded for some cycles.
 bool OrderedStop::nothing_to_stop() const noexcept {
   if (stage_ == StopStage::fallback) return false;
   return std::ranges::all_of(stops_, [](const AxisStop& stop) {
@@ -223,7 +225,7 @@ void OrderedStop::enter(StopStage stage) noexcept {
 void OrderedStop::step(Time now, const StopView& view) noexcept {
   if (stage_ == StopStage::running || stage_ == StopStage::done) return;
   const bool out_of_time = now >= limit();
-  // A controlword has to be on the bus before its answer can count.
+  // A statusword counts as an answer only after the controlword was sent.
   const bool seen = steps_++ >= fallback_cycles;
   if (!axes_done()) look(now, view);
   switch (stage_) {

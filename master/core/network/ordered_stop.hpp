@@ -33,16 +33,16 @@ struct StopView {
   ReceivedValues received;
   std::span<const bool> exchanging;  ///< by node index: its PDOs are exchanged
   std::span<const NodeStatus> nodes;
-  /// Every device is disarmed, as far as that is possible.
+  /// True if the disarming of every device is finished, with or without success.
   bool disarmed = false;
-  /// All frames of the network's stop were sent.
+  /// True if all frames of the NMT part of the stop were sent.
   bool network_stopped = false;
 };
 
-/// The ordered stop of a bus: fallback of each axis -> quick stop -> standstill seen -> disabled
-/// seen -> supervision disarmed (only if every axis was confirmed) -> NMT -> end. Each stage has a
-/// time limit, and the whole stop ends within BusPlan::stop_timeout. Bus thread only. CiA 402-2,
-/// state machine of the drive.
+/// The ordered stop of a bus. Its order is: fallback of each axis, quick stop, wait for the
+/// standstill, disable the axes, disarm the supervision of the master (only if every axis is
+/// confirmed), NMT command, end. Each stage has a time limit, and the whole stop ends within
+/// BusPlan::stop_timeout. Bus thread only. CiA 402-2, state machine of the drive.
 class OrderedStop {
  public:
   static constexpr std::int64_t quick_stop_word = AxisStop::quick_stop_word;
@@ -51,14 +51,14 @@ class OrderedStop {
   static constexpr Time longest_silence = std::chrono::seconds{1};
 
   explicit OrderedStop(const BusPlan& plan);
-  /// The axes of all CiA 402 devices that the master can command or read.
+  /// Returns the axes of all CiA 402 devices that the master can command or read.
   static std::vector<StopAxis> axes_of(const BusPlan& plan);
 
   /// Value of target() for a stop of all nodes.
   static constexpr std::uint8_t every_node = 0xFF;
 
-  /// Returns true if the node itself reports OPERATIONAL. The master only assumes the state of a
-  /// node after it has sent a broadcast.
+  /// Returns true if the node itself has reported OPERATIONAL. After a broadcast, the state of a
+  /// node is only an assumption of the master.
   static bool says_operational(const NodeStatus& node) noexcept {
     return node.nmt == NmtState::operational && node.last_heartbeat != Time{};
   }
@@ -107,7 +107,8 @@ class OrderedStop {
   bool needs_motion(std::size_t axis, Time now) const noexcept {
     return !sources_[axis].velocity.serves(now) && !sources_[axis].position.serves(now);
   }
-  /// The controlword that this axis has to receive now; std::nullopt leaves the commanded one.
+  /// Returns the controlword that this axis has to receive now. std::nullopt means that the
+  /// commanded one is sent.
   std::optional<std::int64_t> controlword(std::size_t axis) const noexcept;
 
   /// Returns true if the statusword shows that the power stage is off.
@@ -121,8 +122,8 @@ class OrderedStop {
   bool all_confirmed() const noexcept;
   Time limit() const noexcept;
   void enter(StopStage stage) noexcept;
-  /// If an axis is not confirmed, all supervision stays armed, because only the devices themselves
-  /// can still react.
+  /// Ends the stages that concern the axes. If an axis is not confirmed, all devices keep their
+  /// supervision of the master, because only the devices themselves can still react.
   void leave_axes(StopStage stage) noexcept { enter(all_confirmed() ? StopStage::disarm : stage); }
 
   /// The TPDOs that bring the values of one axis.

@@ -13,7 +13,7 @@ namespace takt {
 namespace {
 
 constexpr Time poll_pause = std::chrono::milliseconds{10};
-/// The axis is observed between two writes.
+/// The shortest time between two writes to an axis. In between, its values are read.
 constexpr Time write_pause = std::chrono::milliseconds{100};
 constexpr Time default_sdo_timeout = std::chrono::seconds{1};
 
@@ -42,9 +42,9 @@ bool arms(const BusPlan& plan, const BootStep& step) {
   }
 }
 
-/// Returns true if the device type names another profile than that of drives. A device without a
-/// standard profile (0) may be a drive. So may a device with several logical devices, because its
-/// device type is that of the first one. CiA 301, 0x1000.
+/// Returns true if the device type names a profile that is not the one of drives. A device without
+/// a standard profile (0) may be a drive. A device with several logical devices may also contain a
+/// drive, because its device type is that of the first logical device. CiA 301, 0x1000.
 bool is_no_drive(std::uint32_t device_type) noexcept {
   constexpr std::uint32_t several_devices = 0xFFFF;
   const std::uint32_t profile = device_type & 0xFFFF;
@@ -145,9 +145,10 @@ bool StopRequests::due_of_axis(std::size_t axis, Time now, const OrderedStop& st
                    !exchanging || stop.needs_motion(axis, now));
 }
 
-/// The device is armed: its boot has reached the step that arms it, even if it failed later, or
-/// failed in this step without an answer. A write that the device has refused has armed nothing,
-/// unless an earlier boot has. A lost node does not count as armed.
+/// Returns true if the device is armed, so that it supervises the master. This is the case if its
+/// boot has reached the step that arms it, even if the boot has failed later, or in this step
+/// without an answer. If the device has refused the write in this step, it is not armed by this
+/// boot. A lost node does not count as armed.
 bool StopRequests::armed(const Job& job, const NodeStatus& node) const noexcept {
   if (node.boot == BootState::ready) return true;
   const bool answered = node.boot_letter != 'B' || node.nmt != NmtState::unknown;
@@ -155,8 +156,8 @@ bool StopRequests::armed(const Job& job, const NodeStatus& node) const noexcept 
   return node.boot == BootState::failed && answered && job.step <= node.boot_step && !refused;
 }
 
-/// Makes the next write that disarms. The writes of a device follow each other; after the first one
-/// that it does not accept, no more are tried.
+/// Makes the next write that disarms a device. The writes of a device are made one after the other.
+/// If the device does not accept one, its other writes are left out.
 const Request* StopRequests::next_job(std::span<const NodeStatus> nodes) noexcept {
   for (; next_job_ < jobs_.size(); ++next_job_, ++answered_) {
     const Job& job = jobs_[next_job_];

@@ -15,9 +15,9 @@ class TimeProducer {
       : plan_{plan}, next_{plan.period > Time{} ? at_once : never} {}
 
   Time deadline() const noexcept { return next_; }
-  /// The frame with the time of day at `now`. `since_1970` is the difference between UTC and the
-  /// clock of `now`; 0 means unknown. Returns std::nullopt if the time of day is unknown, or if the
-  /// frame cannot represent it.
+  /// Returns the frame with the time of day at `now`. `since_1970` is the difference between UTC
+  /// and the clock of `now`; 0 means unknown. Returns std::nullopt if the time of day is unknown,
+  /// or if the frame cannot represent it.
   std::optional<Frame> frame(Time now, Time since_1970) const noexcept {
     if (since_1970 == Time{}) return std::nullopt;
     const auto time = time_of_day(now + since_1970);

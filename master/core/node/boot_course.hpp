@@ -5,22 +5,22 @@
 
 namespace takt {
 
-/// What a boot does with the steps of its plan.
+/// The way in which a boot runs the steps of its plan.
 enum class BootCourse : std::uint8_t {
-  configuring,          ///< It runs all steps.
-  probing_silent_node,  ///< The node may be OPERATIONAL: it runs only steps that make the node
-                        ///< report its state, until a sign of life comes.
-  identifying,          ///< The last boot has found another device: it runs only the steps that
-                        ///< identify the device.
-  keeping_operational,  ///< The node was found OPERATIONAL and stays so: it runs only steps that do
-                        ///< not change the node. CiA 302-2, status L.
+  configuring,          ///< The boot runs all steps.
+  probing_silent_node,  ///< The node may be OPERATIONAL: until it gives a sign of life, the boot
+                        ///< runs only steps that make it report its state.
+  identifying,          ///< The last boot has found another device: this boot runs only the steps
+                        ///< that identify the device.
+  keeping_operational,  ///< The node was found OPERATIONAL and stays so: the boot runs only steps
+                        ///< that do not change it. CiA 302-2, status L.
 };
 
-/// Returns true if a boot on this course leaves out the step. `written` says that the boot has
-/// written anything.
+/// Returns true if a boot with this course leaves out the step. `written` states whether the boot
+/// has written anything to the device.
 bool skips(BootCourse course, const BootStep& step, bool written) noexcept;
 
-/// Returns true if the step checks whether the right device is there.
+/// Returns true if the step checks the identity of the device.
 bool identifies_device(const BootStep& step) noexcept;
 
 }  // namespace takt

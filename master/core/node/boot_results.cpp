@@ -4,13 +4,13 @@
 #include "master/core/node/boot_runner.hpp"
 #include "master/core/node/boot_value.hpp"
 
-// Evaluates the results of the SDO transfers of a boot.
+// This file evaluates the results of the SDO transfers of a boot.
 
 namespace takt {
 
-/// A device may start itself after the command PRE-OPERATIONAL, and then refuse a write because of
-/// its state. A write that was refused may be repeated: it is sent once more, after a second
-/// command.
+/// Repeats a write that the device has refused because of its state, once, after a second command
+/// PRE-OPERATIONAL. Some devices start themselves after the first command. Returns false if the
+/// write can't be repeated.
 bool BootRunner::retries_in_preop(std::uint32_t abort_code) noexcept {
   if (current().action == BootAction::download_program || progress_.preop_again) return false;
   if (abort_code != abort_code::device_state || !nmt_.preoperational()) return false;
@@ -76,7 +76,7 @@ void BootRunner::on_uploaded(const SdoResult& result, Time now, const SdoClient&
   }
 }
 
-/// Handles a difference in a step that compares.
+/// Handles a value of the device that differs in a step that compares.
 void BootRunner::on_differs(const SdoResult& result, Time now, const SdoClient& client) noexcept {
   const BootStep& step = current();
   if (course_ == BootCourse::keeping_operational) {
@@ -89,7 +89,7 @@ void BootRunner::on_differs(const SdoResult& result, Time now, const SdoClient& 
   next();
 }
 
-/// Notes a value that was read, if it is used later.
+/// Stores the value that was read if it is used later.
 void BootRunner::take_value() noexcept {
   const ObjectKey object = current().object;
   const auto number = load_le<std::uint32_t>(received());
@@ -122,7 +122,8 @@ void BootRunner::write_cob_id() noexcept {
 
 void BootRunner::on_written() noexcept {
   device_ = Device::written;
-  // The device has refused this write before the second command, so it had started itself.
+  // The device had refused this write before the second command, so it had started itself
+  // meanwhile.
   if (progress_.preop_again) nmt_.note_taken_out();
   if (to_write_.size() == 4) cob_id_.note(current().object, load_le<std::uint32_t>(to_write_));
   next();

@@ -16,8 +16,9 @@ bool same_cause(const BootFailure& a, const BootFailure& b) noexcept {
          a.value == b.value && a.node_state == b.node_state;
 }
 
-/// A SYNC with counter came before the node had its 0x1019. Some stacks keep that error until their
-/// next reset and do not enter OPERATIONAL; after the reset, they know the counter.
+/// Returns true if the boot has failed because a SYNC with counter came before 0x1019 of the node
+/// was written. Some stacks keep this error until their next reset and do not enter OPERATIONAL.
+/// After the reset, they know the counter.
 bool met_counter_too_early(const BootFailure& failure) noexcept {
   return failure.action == BootAction::await_operational && failure.emcy == sync_length_emcy;
 }

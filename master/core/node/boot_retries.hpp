@@ -15,21 +15,21 @@ class BootRetries {
   /// `plan` must outlive the object.
   explicit BootRetries(const NodePlan& plan) noexcept : plan_{&plan} {}
 
-  /// The next boot begins at `from`, after the pause.
+  /// Plans the next boot after the pause. It begins at `from`.
   void after_pause(BootRunner::From from, Time now) noexcept;
-  /// The next boot begins now; its `from` stays as it is.
+  /// Plans the next boot for now. It begins where the planned boot would have begun.
   void without_pause(Time now) noexcept { at_ = now; }
-  /// No boot is planned.
+  /// Cancels the planned boot.
   void cancel() noexcept { at_ = never; }
   bool due(Time now) const noexcept { return now >= at_; }
   Time deadline() const noexcept { return at_; }
   BootRunner::From from() const noexcept { return from_; }
 
-  /// Takes the failure of a boot. Returns false if it is no failure of the node yet: then the next
-  /// boot begins at once.
+  /// Takes the failure of a boot. Returns false if it does not count as a failure of the node yet.
+  /// The next boot then begins at once.
   bool on_failure(const BootFailure& failure, Time now) noexcept;
   void on_success() noexcept;
-  /// The pause begins at its minimum again, because the node shows signs of life or an application
+  /// Sets the pause to its minimum again, because the node shows signs of life or an application
   /// has reset it.
   void shorten_pause() noexcept { failed_boots_ = 0; }
   /// Counts a boot-up message. Returns true if the node restarts again and again, so that it has to
@@ -59,7 +59,7 @@ class BootRetries {
   BootRunner::From from_ = BootRunner::From::beginning;
   std::uint32_t same_failures_ = 0;
   std::uint8_t failed_boots_ = 0;  // failures in a row since a boot-up message or a command
-  // The node was booted again because a SYNC with counter came too early.
+  // True if the node was already booted again because a SYNC with counter came too early.
   bool counter_excused_ = false;
   BootFailure last_failure_;
   std::uint32_t bootups_ = 0;  // number of boot-up messages since bootups_since_

@@ -5,7 +5,8 @@
 
 #include "eds_parser/table/waits.hpp"
 
-// Runs the boot from step to step: the waits, the NMT commands, and the begin of each transfer.
+// This file runs the boot from step to step: the waits, the NMT commands, and the begin of each
+// transfer.
 
 namespace takt {
 namespace {
@@ -239,9 +240,9 @@ bool BootRunner::begin_transfer(Time now, SdoClient& client) noexcept {
   return true;
 }
 
-/// Parameters are written in PRE-OPERATIONAL. A device that starts by itself leaves this state
-/// without a command, and a device in STOPPED answers no SDO at all. A node that is or may be
-/// OPERATIONAL is not written to.
+/// Returns true if the command PRE-OPERATIONAL must come before the transfer. Parameters are
+/// written in this state, but a device that starts by itself leaves it without a command. A device
+/// in STOPPED answers no SDO at all. A node that is or may be OPERATIONAL is not written to.
 bool BootRunner::needs_preop() const noexcept {
   const bool leaves_state =
       course_ == BootCourse::keeping_operational || course_ == BootCourse::probing_silent_node;

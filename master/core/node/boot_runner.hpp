@@ -47,10 +47,10 @@ namespace takt {
 /// | in_transfer        | the same, in a step that polls | before_transfer  |                 |
 /// | any                | stop()                         | idle             |                 |
 ///
-/// BootCourse is a second state: what this boot does with the steps.
+/// BootCourse is a second state. It decides which steps this boot runs.
 class BootRunner {
  public:
-  /// Where a boot begins.
+  /// The point at which a boot begins.
   enum class From : std::uint8_t {
     beginning,
     bootup,  ///< The node has just sent its boot-up message, so the boot skips the reset at its
@@ -104,8 +104,8 @@ class BootRunner {
   }
   /// When this boot began.
   Time began() const noexcept { return began_; }
-  /// The NMT state of the node, and what this boot has changed about it. After the NMT start, PDOs
-  /// may arrive, because their mapping is verified.
+  /// Returns the NMT state of the node and the changes that this boot has made to it. After the NMT
+  /// start, PDOs may be accepted, because their mapping is verified.
   const KnownNmtState& nmt() const noexcept { return nmt_; }
   /// Returns true if the node was OPERATIONAL and the boot leaves it in that state. CiA 302-2,
   /// status L.
@@ -150,17 +150,17 @@ class BootRunner {
   };
   /// The values that were compared since the newest BootAction::skip_if_same.
   enum class Compared : std::uint8_t { same, differs };
-  /// The device in this boot, see BootAction::write_if_changed.
+  /// States whether this boot has written to the device, see BootAction::write_if_changed.
   enum class Device : std::uint8_t { untouched, written };
   /// See guards().
   enum class Guarding : std::uint8_t { not_yet, begun };
-  /// The current step since it was entered.
+  /// The progress of the current step.
   struct Progress {
     Time entered{};
-    Time deadline = never;    ///< of the step
+    Time deadline = never;    ///< deadline of the step
     Time wait_until = never;  ///< end of a wait within the step
     std::uint8_t uploads = 0;
-    bool sign_came = false;    ///< the message has come that the step waits for
+    bool sign_came = false;    ///< the message for which the step waits has come
     bool preop_again = false;  ///< PRE-OPERATIONAL was sent a second time
     std::size_t received = 0;  ///< bytes of the newest upload
   };

@@ -35,30 +35,31 @@ inline bool same_value(std::span<const std::byte> got, std::span<const std::byte
          all_zero(want.subspan(common)) && all_zero(got.subspan(common));
 }
 
-/// In optional steps that expect zero, an absent object counts as zero.
+/// Returns true if the abort code means that the object is absent and the step permits this. In
+/// optional steps that expect zero, an absent object counts as zero.
 inline bool may_be_missing(const BootStep& step, std::uint32_t code) noexcept {
   return step.optional && all_zero(step.value) &&
          (code == abort_code::no_object || code == abort_code::no_sub_index);
 }
 
-/// Abort codes with which devices refuse to write a value that the object already has. The object
-/// is then read back.
+/// Returns true for abort codes with which devices refuse to write a value that the object already
+/// has. The object is then read back.
 inline bool may_be_redundant(const BootStep& step, std::uint32_t code) noexcept {
   return step.optional && (code == abort_code::access_unsupported ||
                            code == abort_code::read_only || code == abort_code::no_sub_index ||
                            code == abort_code::invalid_value || code == abort_code::device_state);
 }
 
-/// Returns true if the device is alive but not ready to answer. While it boots, the request is
-/// repeated.
+/// Returns true if the abort code means that the device is alive but not ready yet. While it boots,
+/// the request is repeated.
 inline bool means_busy(std::uint32_t code) noexcept {
   return code >> 16 == 0x0503 || code >> 16 == 0x0504 || code == abort_code::resource_unavailable ||
          code == abort_code::cannot_store || code == abort_code::local_control ||
          code == abort_code::device_state;
 }
 
-/// The firmware version in the value of an object. The revision number in 0x1018 is a number; all
-/// other objects hold a text.
+/// Returns the firmware version that the value of an object states. The revision number in 0x1018
+/// is a number; all other objects hold a text.
 inline std::optional<Firmware> firmware_in(ObjectKey object,
                                            std::span<const std::byte> value) noexcept {
   if (object.index == 0x1018) return Firmware::of_revision(load_le<std::uint32_t>(value));

@@ -6,9 +6,9 @@
 
 namespace takt {
 
-/// The COB-ID object that a boot has read or written last, and its value. The identifier of a PDO
-/// may change only while bit 31 is set (the PDO does not exist). Bit 30 keeps the value of the
-/// device. CiA 301, 7.5.2.35 and 7.5.2.37.
+/// The COB-ID object that a boot has read or written last, with its value. The identifier of a PDO
+/// may change only while bit 31 is set, which means that the PDO does not exist. Bit 30 keeps the
+/// value that it has in the device. CiA 301, 7.5.2.35 and 7.5.2.37.
 class CobIdMemory {
  public:
   /// Notes the value of an object if it is the COB-ID of a PDO or of EMCY (0x1014).

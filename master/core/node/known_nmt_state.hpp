@@ -6,8 +6,8 @@
 
 namespace takt {
 
-/// The NMT state of a node as far as its boot knows it: from the reports of the node, and from the
-/// NMT commands of this boot.
+/// The NMT state of a node that its boot knows from the reports of the node and from the NMT
+/// commands of this boot.
 class KnownNmtState {
  public:
   /// Notes that the node has sent a boot-up message.
@@ -37,7 +37,8 @@ class KnownNmtState {
     if (reported_ == NmtState::operational) note_taken_out();
     preoperational_ = true;
   }
-  /// The device refuses a write because of its state, so it has left PRE-OPERATIONAL by itself.
+  /// Notes that the device refuses a write because of its state, so it has left PRE-OPERATIONAL by
+  /// itself.
   void left_preoperational() noexcept { preoperational_ = false; }
   /// Notes that the boot has taken the node out of OPERATIONAL.
   void note_taken_out() noexcept { effect_ = Effect::taken_out; }
@@ -57,7 +58,7 @@ class KnownNmtState {
   bool taken_out() const noexcept { return effect_ == Effect::taken_out; }
 
  private:
-  /// What the commands of this boot have changed.
+  /// The effect of the commands of this boot on the state OPERATIONAL.
   enum class Effect : std::uint8_t { none, taken_out, started };
 
   NmtState reported_ = NmtState::unknown;

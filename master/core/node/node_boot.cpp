@@ -1,12 +1,12 @@
 #include "master/core/node/node_session.hpp"
 #include "master/wire/bytes.hpp"
 
-// The boot of a node by its session, and the consequences of its result.
+// This file contains the boot of a node by its session, and the consequences of its result.
 
 namespace takt {
 namespace {
 
-/// Another device has answered. A reset cannot change that.
+/// Returns true if another device has answered, which a reset can't change.
 bool is_another_device(const BootFailure& failure) noexcept {
   return failure.action == BootAction::expect && failure.fault == SdoFault::none &&
          failure.object.index == 0x1018;
@@ -100,7 +100,8 @@ void NodeSession::report_firmware(Time now) noexcept {
   const auto is = runner_.firmware();
   if (!is || !plan_->firmware) return;
   Firmware assumed = plan_->firmware->assumed;
-  if (plan_->firmware->of_revision()) assumed.parts[2] = 0;  // a revision number has only two parts
+  if (plan_->firmware->of_revision())
+    assumed.parts[2] = 0;  // A revision number has only two parts.
   if (*is != assumed) announce(EventKind::firmware_differs, now, is->packed());
 }
 
@@ -135,7 +136,7 @@ void NodeSession::boot_later(BootState state, BootRunner::From from, Time now) n
   retries_.after_pause(from, now);
 }
 
-/// The newest boot has failed because the node gave no sign of life at all.
+/// Returns true if the newest boot has failed because the node gave no sign of life at all.
 bool NodeSession::was_absent() const noexcept {
   const BootFailure& failure = retries_.last_failure();
   return status_.boot == BootState::failed && failure.fault == SdoFault::timeout &&

@@ -7,8 +7,8 @@
 
 namespace takt {
 
-/// Node guarding of one node: it decides when to ask for the NMT state, and checks the answers. Bus
-/// thread only. CiA 301, 7.2.8.3.2.1.
+/// The node guarding of one node. It decides when the master requests the NMT state, and checks the
+/// answers. Bus thread only. CiA 301, 7.2.8.3.2.1.
 class NodeGuard {
  public:
   explicit NodeGuard(const GuardPlan& plan) noexcept : plan_{plan} {}
@@ -30,13 +30,13 @@ class NodeGuard {
   /// Number of answers in a row whose toggle bit repeats.
   std::uint32_t repeated() const noexcept { return repeated_; }
 
-  /// While the master itself did not run, the node does not count as silent.
+  /// Extends the life time by the time for which the master itself did not run.
   void excuse(Time away) noexcept {
     if (silent_from_ != never) silent_from_ += away;
   }
 
-  /// When the life time of the node is over, returns once for how long the node has been silent.
-  /// The next answer starts the supervision again.
+  /// Returns once, when the life time is over, for how long the node has been silent. The next
+  /// answer starts the supervision again.
   std::optional<Time> on_time(Time now) noexcept;
   Time deadline() const noexcept;
 

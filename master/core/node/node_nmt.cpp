@@ -3,7 +3,7 @@
 
 #include "master/core/node/node_session.hpp"
 
-// NMT commands to the node, and who may start it.
+// This file handles the NMT commands to the node, and decides who may start it.
 
 namespace takt {
 
@@ -54,7 +54,7 @@ void NodeSession::on_commanded(NmtCommand command, Time now) noexcept {
   follow_command(command, now);
 }
 
-/// Follows an NMT command that was sent to the node.
+/// Applies an NMT command that was sent to the node to the state of the session.
 void NodeSession::follow_command(NmtCommand command, Time now) noexcept {
   switch (command) {
     case NmtCommand::start:

@@ -30,7 +30,7 @@ class NodeRequests {
   void cancel() noexcept;
   /// Forgets the active request, which the network answers.
   void forget() noexcept;
-  /// When to look next whether the sender still wants the transfer.
+  /// Returns the time of the next check whether the sender has cancelled the transfer.
   Time deadline() const noexcept { return next_look_; }
 
  private:

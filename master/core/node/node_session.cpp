@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-// The start of the session, and the evaluation of the node's frames.
+// This file contains the start of the session and the evaluation of the frames of the node.
 
 namespace takt {
 
@@ -79,9 +79,9 @@ void NodeSession::on_heartbeat(const Heartbeat& sign, Time now) noexcept {
   advance(now);
 }
 
-/// Brings a node back that leaves OPERATIONAL by itself, for example because it has missed the
-/// heartbeat of the master. The first such heartbeat is ignored, because it may have been under way
-/// while the node was started.
+/// Boots a node again if it has left OPERATIONAL by itself, for example because it has missed the
+/// heartbeat of the master. The first heartbeat with another state is ignored, because the node may
+/// have sent it before it has received NMT start.
 void NodeSession::look_for_fall(NmtState state, Time now) noexcept {
   const bool out = status_.boot == BootState::ready && wanted_ == NmtState::operational &&
                    (state == NmtState::preoperational || state == NmtState::stopped);

@@ -38,7 +38,7 @@ class NmtGate {
   Time next_{};
 };
 
-/// Whether the master manages a node.
+/// States whether the master manages a node.
 enum class Managed : std::uint8_t {
   no,   ///< The node is only watched; the master sends it nothing by itself.
   yes,  ///< The master boots and starts the node, and boots it again when it comes back.
@@ -64,7 +64,7 @@ enum class Managed : std::uint8_t {
 /// | booting             | give_up_boot(), was never ready   | failed    |                      |
 /// | any                 | begin_stop()                      | idle      |                      |
 ///
-/// Command says who may start the node:
+/// Command states who may start the node:
 ///
 /// | command         | event                                | next command | sent                 |
 /// | --------------- | ------------------------------------ | ------------ | -------------------- |
@@ -124,11 +124,13 @@ class NodeSession {
   bool take_loss() noexcept { return std::exchange(loss_to_report_, false); }
   /// Sends NMT stop; the node is not booted until an application resets or starts it.
   void halt() noexcept;
-  /// As halt(), but without the command, because a broadcast has stopped the node.
+  /// Does the same as halt(), but sends no command, because a broadcast has already stopped the
+  /// node.
   void await_command() noexcept;
 
-  /// An ordered stop has begun: the node is not booted any more, not even when it comes back. The
-  /// stop can read the state of its axes.
+  /// Ends the boot because an ordered stop has begun. The node is not booted any more, not even
+  /// when it comes back. The SDO client is then free for the stop, which reads the state of the
+  /// axes.
   void give_up_boot() noexcept;
 
   /// Sends NMT stop to an OPERATIONAL node, until resume() starts it again.
@@ -138,10 +140,10 @@ class NodeSession {
   /// Ends all running work and sends this last command to the node. A node with `keep_alive` goes
   /// to PRE-OPERATIONAL in any case.
   void begin_stop(NmtCommand last) noexcept;
-  /// begin_stop() was called, and the last command and all aborts were sent.
+  /// Returns true if begin_stop() was called, and the last command and all aborts were sent.
   bool stopped() const noexcept { return stopping() && !own_command_ && client_.idle(); }
 
-  /// Returns true if a block transfer is under way.
+  /// Returns true if a block transfer is running.
   bool streams() const noexcept { return client_.streams(); }
   /// Returns true if the node was requested to send a sub-block of a block upload, or is sending
   /// one.
@@ -160,11 +162,11 @@ class NodeSession {
   }
   const NodePlan& plan() const noexcept { return *plan_; }
   NodeStatus status() const noexcept;
-  /// Returns true if the node is booted, or is only watched, and is OPERATIONAL. One heartbeat with
-  /// OPERATIONAL is not enough after an NMT command that ends the exchange of PDOs: it may have
-  /// been under way.
+  /// Returns true if the node is booted, or is only watched, and is OPERATIONAL. After an NMT
+  /// command that ends the exchange of PDOs, one heartbeat with OPERATIONAL is not enough: the node
+  /// may have sent it before it has received the command.
   bool exchanges_pdos() const noexcept;
-  /// Returns true if no boot, no transfer and no command is under way.
+  /// Returns true if no boot and no transfer is running, and no command waits to be sent.
   bool idle() const noexcept {
     return !booting() && !requests_.active() && !own_command_ && client_.idle() && !stopping() &&
            !loss_to_report_;
@@ -185,7 +187,7 @@ class NodeSession {
     stopping,     ///< begin_stop() was called.
   };
 
-  /// The start-up of the whole network, as far as the network has reported it.
+  /// The phase of the start-up of the whole network, as the network has last reported it.
   enum class NetworkPhase : std::uint8_t { starting, started };
 
   // The boot, and its consequences (node_boot.cpp).
@@ -241,7 +243,7 @@ class NodeSession {
   NodeWatch watch_;
   NodeGuard guard_;
   TwinWatch twins_;
-  // Command that is not in the boot plan and waits to be sent.
+  // A command that waits to be sent and does not belong to the boot plan.
   std::optional<NmtCommand> own_command_;
   NmtState wanted_ = NmtState::unknown;  // the state that the newest NMT command demands
   // Heartbeats in a row in which a ready node is not OPERATIONAL although it should be.

@@ -10,15 +10,15 @@
 
 namespace takt {
 
-/// Evaluates what a node reports about itself (NMT state by heartbeat, silence, EMCY) and writes it
-/// to the NodeStatus. Bus thread only.
+/// Evaluates the heartbeats and the EMCYs of a node, and its silence. Writes the results to the
+/// NodeStatus. Bus thread only.
 class NodeWatch {
  public:
   /// `heartbeat_timeout` is the longest permitted silence; 0 means that the heartbeat is not
   /// supervised.
   explicit NodeWatch(Time heartbeat_timeout) noexcept : timeout_{heartbeat_timeout} {}
 
-  /// What a heartbeat or boot-up message has shown.
+  /// The meaning of a heartbeat or boot-up message.
   enum class Sign : std::uint8_t { bootup, same_state, new_state };
 
   /// Takes a heartbeat or a boot-up message. The first heartbeat starts the heartbeat consumer. A

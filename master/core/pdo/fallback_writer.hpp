@@ -9,17 +9,17 @@
 
 namespace takt {
 
-/// Writes fallbacks by SDO while SYNC is lost, because a synchronous RPDO takes effect only at the
-/// next SYNC. It writes the fallbacks of all outputs in such RPDOs, controlwords first; they take
-/// effect at once. Devices that refuse SDO writes to mapped objects keep their values until SYNC is
-/// back. Bus thread only.
+/// Writes the fallbacks of outputs by SDO while SYNC is lost. A synchronous RPDO takes effect only
+/// at the next SYNC, but a value that is written by SDO takes effect at once. The class writes the
+/// fallbacks of all outputs in synchronous RPDOs, controlwords first. Devices that refuse SDO
+/// writes to mapped objects keep their values until SYNC is back. Bus thread only.
 class FallbackWriter {
  public:
   explicit FallbackWriter(const BusPlan& plan);
 
   /// Begins to write the fallbacks of those outputs that were commanded.
   void begin(const PdoOutputs& outputs) noexcept;
-  /// Drops all writes that are not submitted yet.
+  /// Drops all writes that submitted() has not confirmed yet.
   void stop() noexcept { next_ = values_.size(); }
 
   /// Returns true if a write waits to be submitted.

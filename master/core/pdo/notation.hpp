@@ -6,8 +6,8 @@
 
 namespace takt {
 
-/// How the raw values of a signal become numbers: as the frame carries them, without the bits
-/// beyond the width of the object.
+/// Converts the raw values of a signal to numbers. The bits of a raw value above the width of the
+/// object are ignored, because a frame does not carry them.
 class Notation {
  public:
   explicit Notation(const Signal& signal) noexcept {

@@ -101,9 +101,9 @@ bool OutputLimits::narrow(const DeviceLimit& what, std::uint32_t low, std::uint3
   return false;
 }
 
-/// The distance between two positions; for positions that wrap around, the shorter way. Two
-/// positions of one turn are less than a turn apart; whole turns beyond that are a distance that
-/// the axis would move.
+/// Returns the distance between two positions. If positions wrap, it is the shorter way around,
+/// provided that they are less than one turn apart. A difference of a turn or more is a real
+/// distance that the axis would move.
 double OutputLimits::distance(std::size_t place, double from, double to) const noexcept {
   const double modulus = limits_[place].modulus;
   const double way = to - from;
@@ -118,7 +118,7 @@ std::optional<double> OutputLimits::actual(std::size_t place) const noexcept {
   return number(*feedback, image_.values[*feedback]);
 }
 
-/// The value of the offset, in counts of the limited output.
+/// Returns the value of the offset in counts of the limited output.
 double OutputLimits::offset(std::size_t place, std::int64_t raw) const noexcept {
   const auto added = limits_[place].offset;
   if (!added) return 0;
@@ -126,14 +126,15 @@ double OutputLimits::offset(std::size_t place, std::int64_t raw) const noexcept 
   return number(*added, raw) * (scale / signal_of(place).scale);
 }
 
-/// The set-point that the axis would follow, in counts of the limited output.
+/// Returns the set-point that the axis would follow, in counts of the limited output.
 double OutputLimits::set_point(std::size_t place, const AxisCommand& command,
                                Leads found) const noexcept {
   const double target = number(limits_[place].signal, command.value);
   return found.any() ? target + offset(place, command.offset) : target;
 }
 
-/// The set-point that the values sent last are in the commanded mode.
+/// Returns the set-point that results from the values that were sent last if the axis is in the
+/// commanded mode.
 double OutputLimits::last_set_point(std::size_t place, Leads found) const noexcept {
   const Slot& slot = slots_[place];
   return found.any() ? slot.value + slot.offset : slot.value;
@@ -164,7 +165,7 @@ double OutputLimits::most(std::size_t place, double counts, double at) const noe
 bool OutputLimits::exceeds(std::size_t place, double length, double counts,
                            double at) const noexcept {
   if (length <= counts - rounding) [[likely]] {
-    return false;  // without the rounding, which takes longer
+    return false;  // This check needs no rounding, which would take longer.
   }
   return !(length <= most(place, counts, at));
 }
@@ -215,8 +216,8 @@ std::optional<LimitBreach> OutputLimits::too_far(std::size_t place, const Way& w
   return std::nullopt;
 }
 
-/// Checks the second difference. Each of the three values is rounded to a count, and this rounding
-/// can look like the acceleration `feigned`.
+/// Checks the acceleration, which is the second difference of the last three values. Each of them
+/// is rounded to a count, so a difference up to `feigned` may only be an effect of rounding.
 std::optional<LimitBreach> OutputLimits::too_sharp(std::size_t place,
                                                    const Way& way) const noexcept {
   const Slot& slot = slots_[place];
@@ -241,8 +242,9 @@ bool OutputLimits::lacks_start(std::size_t place, std::int64_t mode) const noexc
          follows_each(place, leads(place, mode));
 }
 
-/// The distance from the actual position; with `from_earlier` from the nearest of the last cycles.
-/// To be called only if there is an actual position.
+/// Returns the distance of `value` from the actual position. With `from_earlier`, the nearest
+/// actual position of the last cycles counts. The function may be called only if there is an actual
+/// position.
 double OutputLimits::distance_from_actual(std::size_t place, double value,
                                           bool from_earlier) const noexcept {
   const Slot& slot = slots_[place];

@@ -21,16 +21,17 @@ struct LimitBreach {
   float limit = 0;
 };
 
-/// Whether an axis follows its set-points now, so that it moves on from the value that was sent
-/// last.
+/// States whether an axis follows its set-points now, so that its next step begins at the value
+/// that was sent last.
 enum class Obeying : std::uint8_t { yes, no };
 
-/// Whether a command brings a new set-point, or puts the one in force that was sent before.
+/// States whether a command contains a new set-point, or only makes the set-point effective that
+/// was sent before.
 enum class SetPointAge : std::uint8_t { commanded, held };
 
-/// What a command gives to a limited output and to the other outputs of its axis. Values are raw.
+/// The raw values that a command gives to a limited output and to the other outputs of its axis.
 struct AxisCommand {
-  std::int64_t value = 0;   ///< of the limited output
+  std::int64_t value = 0;   ///< value of the limited output
   std::int64_t offset = 0;  ///< 60B0, 60B1 or 60B2, if it is an output
   std::int64_t mode = 0;    ///< 6060, if it is an output
   std::int64_t order = 0;   ///< 6040, if it is an output
@@ -39,13 +40,13 @@ struct AxisCommand {
 
 /// Checks commands against the limits of the plan. The set-point of an axis is the sum of a target
 /// and of its offset; in modes in which the drive does not add them, each of them is checked alone.
-/// A step is measured from the value that was sent last,
-/// over the cycles since that value was commanded. If an axis is not enabled and has sent its
-/// actual position, the step is measured from there, because the axis would start from there. An
-/// axis that was not commanded, or whose fallback is in force, may start from either of the two. If
-/// the last value or the actual position is outside the range, commands may come back towards the
-/// range but not go further away. In modes that do not follow each position, only the range of
-/// positions is checked. Bus thread only.
+/// A step is measured from the value that was sent last, and is divided by the number of cycles
+/// since that value was commanded. If an axis is not enabled and its actual position is known, the
+/// step is measured from the actual position, because the axis would start there. If an axis was
+/// not commanded, or its fallback is effective, its step may begin at either of both values. If the
+/// last value or the actual position is outside the range, commands may move back towards the range
+/// but not further away from it. In modes in which the drive does not follow each position, only
+/// the range of positions is checked. Bus thread only.
 class OutputLimits {
  public:
   /// Result of place_of() for an output without limits.
@@ -57,10 +58,10 @@ class OutputLimits {
   bool empty() const noexcept { return slots_.empty(); }
   std::size_t size() const noexcept { return slots_.size(); }
   const OutputLimit& limit(std::size_t place) const noexcept { return limits_[place]; }
-  /// The place of the limits of this output.
+  /// Returns the place of the limits of this output.
   std::uint16_t place_of(SignalIndex signal) const noexcept { return places_[signal]; }
-  /// The places of other outputs whose check depends on this one, because it is the controlword,
-  /// the mode of operation or the offset that belongs to them.
+  /// Returns the places of the outputs whose check depends on this output, because this one is
+  /// their controlword, their mode of operation or their offset.
   std::span<const std::uint16_t> dependents(SignalIndex signal) const noexcept {
     return dependents_[signal];
   }
@@ -71,12 +72,12 @@ class OutputLimits {
   /// target in this commanded mode, so that the check of the target covers it.
   bool covered_by_target(std::size_t place, std::int64_t mode) const noexcept;
 
-  /// The node exchanges PDOs from now on, and nothing was sent to it so far.
+  /// Must be called when the node begins to exchange PDOs and nothing was sent to it yet.
   void open(std::size_t node_index) noexcept;
 
-  /// Takes a limit that was read from the device: a range from `low` to `high`, or else the value
-  /// `high`. It holds until open() is called again. Returns false, and ignores the limit, if it is
-  /// implausible.
+  /// Takes a limit that was read from the device. It is a range from `low` to `high`, or only the
+  /// value `high`. It is valid until open() is called again. Returns false, and ignores the limit,
+  /// if it is implausible.
   bool narrow(const DeviceLimit& what, std::uint32_t low, std::uint32_t high) noexcept;
   /// Returns true if this output has a limit in the file or from the device.
   bool bounds(std::size_t place) const noexcept { return slots_[place].bounded; }
@@ -95,8 +96,8 @@ class OutputLimits {
   void remember() noexcept;
   /// Notes that a command was outside its limits. Returns true if the previous one was inside.
   bool refuse(std::size_t place, std::uint64_t cycle) noexcept;
-  /// Notes that a command was inside its limits. From the next cycle on, this ends the refusal that
-  /// refuse() began.
+  /// Notes that a command was inside its limits. This ends the refusal that refuse() has begun,
+  /// from the next cycle on.
   void forgive(std::size_t place, std::uint64_t cycle) noexcept;
   /// Ends refusals that were not repeated for the time to live of a command.
   void expire(std::uint64_t cycle) noexcept {
@@ -116,8 +117,8 @@ class OutputLimits {
   }
 
  private:
-  /// A command is computed from an image that is some cycles old. An axis that is pushed, or that
-  /// coasts, has moved on since.
+  /// Number of cycles whose actual positions are stored. An application computes a command from an
+  /// image that is some cycles old, and an axis that coasts or is pushed has moved since.
   static constexpr std::uint8_t cycles_remembered = 4;
 
   struct Slot {
@@ -125,12 +126,13 @@ class OutputLimits {
     double high = OutputLimit::none;
     double rate = OutputLimit::none;
     double bend = OutputLimit::none;
-    bool bounded = false;               ///< there is a limit in the file or from the device
-    double value = 0;                   ///< the value that was sent last
-    double offset = 0;                  ///< the offset that was sent last, in counts of the value
-    std::optional<double> set_point{};  ///< the limited value in the mode of that time, if any
-    double speed = 0;                   ///< speed of the last step, per cycle
-    double gap = 1;                     ///< duration of the last step in cycles
+    bool bounded = false;  ///< there is a limit in the file or from the device
+    double value = 0;      ///< the value that was sent last
+    double offset = 0;     ///< the offset that was sent last, in counts of the value
+    std::optional<double>
+        set_point{};   ///< the set-point that was sent last, in the mode of that time
+    double speed = 0;  ///< speed of the last step, per cycle
+    double gap = 1;    ///< duration of the last step in cycles
     std::uint64_t cycle = 0;
     std::uint64_t refused_at = 0;
     bool known = false;      ///< a value was sent since open()
@@ -150,11 +152,11 @@ class OutputLimits {
     }
   };
   enum class Start : std::uint8_t { moving, standing };
-  /// The step that a command would make.
+  /// The step that the axis would make by a command.
   struct Way {
     double distance = 0;
     double cycles = 1;
-    double at = 0;  ///< value at its end
+    double at = 0;  ///< value at the end of the step
     Start start = Start::moving;
   };
 
@@ -182,8 +184,8 @@ class OutputLimits {
   // These functions are in output_limits_axis.cpp.
   bool enabled(std::size_t place) const noexcept;
   bool starts_from_actual(std::size_t place, std::int64_t order) const noexcept;
-  /// Whether the axis follows the set-point, of which the output is a part, in the commanded mode
-  /// and in the mode that the drive shows.
+  /// States whether the axis follows a set-point that contains this output: in the commanded mode,
+  /// and in the mode that the drive displays.
   struct Leads {
     bool commanded = false;
     bool shown = false;
@@ -193,13 +195,14 @@ class OutputLimits {
     bool both() const noexcept { return commanded && shown; }
   };
   Leads leads(std::size_t place, std::int64_t mode) const noexcept;
-  /// Returns true if the drive follows each value of the output. The steps of target velocities and
-  /// torques count in every mode, because the next mode may follow them.
+  /// Returns true if steps of this output are checked, because the drive follows each of its
+  /// values. Steps of target velocities and torques are checked in every mode, because the drive
+  /// may follow them after a change of the mode.
   bool follows_each(std::size_t place, Leads found) const noexcept {
     return limits_[place].quantity != AxisQuantity::position || found.any();
   }
   double cycles_since(const Slot& slot, std::uint64_t cycle) const noexcept;
-  /// The largest permitted difference, rounded to counts that the frame can carry.
+  /// Returns the largest permitted difference, rounded to counts that the frame can carry.
   double most(std::size_t place, double counts, double at) const noexcept;
   /// Returns true if a difference is larger than permitted.
   bool exceeds(std::size_t place, double length, double counts, double at) const noexcept;

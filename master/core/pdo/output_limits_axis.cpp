@@ -12,7 +12,8 @@ constexpr std::int64_t fault_reaction_active = 0x0F;
 constexpr std::int64_t fault = 0x08;
 constexpr std::int64_t switch_on_disabled = 0x40;
 
-/// In these states, drives ignore a controlword that stays at "enable operation".
+/// Returns true in the states in which drives ignore a controlword that stays at "enable
+/// operation".
 bool ignores_enabling(std::int64_t statusword) noexcept {
   const std::int64_t state = statusword & short_state_bits;
   return state == fault_reaction_active || state == fault || state == switch_on_disabled;
@@ -20,7 +21,8 @@ bool ignores_enabling(std::int64_t statusword) noexcept {
 
 }  // namespace
 
-/// Without a statusword, the axis is taken as enabled when the last controlword enables it.
+/// Returns true if the axis is enabled. Without a statusword, it counts as enabled if the
+/// controlword that was sent last enables it.
 bool OutputLimits::enabled(std::size_t place) const noexcept {
   const auto statusword = limits_[place].statusword;
   if (statusword && inputs_.fresh(*statusword)) {
@@ -29,9 +31,10 @@ bool OutputLimits::enabled(std::size_t place) const noexcept {
   return !limits_[place].controlword || enables(slots_[place].order);
 }
 
-/// The axis is not enabled, so that it would start from its actual position, and this position is
-/// known. A drive that has left Operation enabled by itself, while its application still commands a
-/// motion, can't be enabled without another controlword. Its set-points may continue until then.
+/// Returns true if the axis is not enabled, so that it would start from its actual position, and
+/// this position is known. The result is false for a drive that has left Operation enabled by
+/// itself while its application still commands a motion: it can't be enabled without another
+/// controlword, and its set-points may continue until then.
 bool OutputLimits::starts_from_actual(std::size_t place, std::int64_t order) const noexcept {
   if (enabled(place) || !actual(place)) return false;
   const auto statusword = limits_[place].statusword;

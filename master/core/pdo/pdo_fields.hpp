@@ -29,7 +29,7 @@ constexpr FieldProgram compile(const PdoField& field) noexcept {
           .right = static_cast<std::uint8_t>(64 - field.bits)};
 }
 
-/// The eight data bytes of a frame as one word.
+/// Returns the eight data bytes of a frame as one word.
 inline std::uint64_t load(const Frame& frame) noexcept {
   std::uint64_t word = 0;
   std::memcpy(&word, frame.data.data(), sizeof word);
@@ -41,7 +41,7 @@ inline void store(std::uint64_t word, Frame& frame) noexcept {
   std::memcpy(frame.data.data(), &word, sizeof word);
 }
 
-/// Extracts the value of one field, sign- or zero-extended. CiA 301, 7.1.4.
+/// Returns the value of one field, with its sign extended if it is signed. CiA 301, 7.1.4.
 constexpr std::int64_t take_field(std::uint64_t word, const FieldProgram& field) noexcept {
   const auto top = static_cast<std::int64_t>(word << field.left);
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(top >> field.right) & field.mask);

@@ -67,8 +67,8 @@ void PdoInputs::change_reception(std::size_t node_index, Reception reception) no
     row.misses = 0;
     row.waited = false;
     row.was_late = false;
-    // The first frame may take up to n beats, and with a SYNC start value also the time until the
-    // counter reaches it. A margin of 2 n beats covers every phase.
+    // The first frame of a TPDO of type n may come up to n beats later. With a SYNC start value, it
+    // also waits until the counter reaches this value. A margin of 2 n beats covers both.
     const bool watched = reception >= Reception::listening && row.every != 0;
     const std::uint64_t counted =
         plan_.pdos.tpdos[i].sync_start == 0 ? 0 : plan_.cycle.sync_overflow;
@@ -102,8 +102,8 @@ std::uint16_t PdoInputs::find_extended(CobId id) const noexcept {
   return found != extended_.end() && cob_id(*found) == id ? *found : no_row;
 }
 
-/// Finds the object of an MPDO by its header, the lower half of the frame. A DAM frame to node 0
-/// addresses all nodes, including the master.
+/// Returns the row of the object that an MPDO carries. The header in the lower half of the frame
+/// identifies it. A DAM frame to node 0 addresses all nodes, including the master.
 std::uint16_t PdoInputs::find_object(std::uint16_t first, const Frame& frame) const noexcept {
   constexpr std::uint32_t to_all = 0x80;
   auto header = static_cast<std::uint32_t>(load(frame));
@@ -126,8 +126,8 @@ std::uint16_t PdoInputs::row_of(const Frame& frame) const noexcept {
 }
 
 /// Counts a frame of wrong length, and reports it once until a frame of the right length comes.
-/// Returns true if the frame can be used: a short frame is ignored completely, of a long frame the
-/// first bytes are used.
+/// Returns true if the frame can be used. A frame that is too short is ignored completely; of a
+/// frame that is too long, the first bytes are used.
 bool PdoInputs::use_odd_length(std::size_t position, const StampedFrame& stamped) noexcept {
   Row& row = rows_[position];
   const bool longer = stamped.frame.length > row.length;
@@ -141,8 +141,8 @@ bool PdoInputs::use_odd_length(std::size_t position, const StampedFrame& stamped
   return longer;
 }
 
-/// Counts a synchronous frame after its window. The first one is reported, unless it counts as
-/// missing already. Returns false if the frame is not to be used.
+/// Counts a synchronous frame that has come after its window. The first such frame is reported,
+/// unless the TPDO already counts as missing. Returns false if the frame must not be used.
 bool PdoInputs::use_late(std::size_t position, const StampedFrame& stamped) noexcept {
   Row& row = rows_[position];
   ++row.late;
@@ -159,7 +159,7 @@ bool PdoInputs::use_late(std::size_t position, const StampedFrame& stamped) noex
 [[gnu::always_inline]] inline void PdoInputs::accept(Row& row, PdoMark& news,
                                                      const StampedFrame& stamped) noexcept {
   unpack(load(stamped.frame), {fields_.data() + row.first, row.count}, image_.values.data());
-  // A frame that arrived before this SYNC answers the previous SYNC.
+  // A frame that has arrived before this SYNC belongs to the previous SYNC.
   const unsigned before = stamped.when < sync_ ? 1 : 0;
   ++news.received;
   news.cycle = static_cast<std::uint32_t>(cycle_) - before;
@@ -169,7 +169,8 @@ bool PdoInputs::use_late(std::size_t position, const StampedFrame& stamped) noex
   if (row.deadline > Time{}) row.expires = stamped.when + row.deadline;
   if (row.every != 0) {
     row.known = row.reception == Reception::full;
-    // While its phase is unknown, a frame may come one round later.
+    // As long as the phase of the TPDO is unknown, its next frame may come n beats later than
+    // expected.
     row.due = of_beat + (row.known ? 1U : 2U) * std::uint64_t{row.every};
     if (row.waited && before == 0) {
       row.waited = false;

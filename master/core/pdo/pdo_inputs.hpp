@@ -12,7 +12,7 @@
 
 namespace takt {
 
-/// How the master receives the TPDOs of a node.
+/// The way in which the master receives the TPDOs of a node.
 enum class Reception : std::uint8_t {
   off,    ///< The mapping is not verified, so frames are ignored.
   early,  ///< Frames are accepted but not supervised, because the node may not be OPERATIONAL yet.
@@ -34,8 +34,8 @@ class PdoInputs {
   }
   Reception reception(std::size_t node_index) const noexcept { return receptions_[node_index]; }
 
-  /// Begins the beat of the SYNC that was sent at `sync`, and determines the expected TPDOs.
-  /// `heard` is false if the SYNC could not be sent.
+  /// Begins a cycle, whose SYNC was sent at `sync`, and determines the expected TPDOs. `heard` is
+  /// false if the SYNC could not be sent; the cycle is then no beat.
   void begin(std::uint64_t cycle, Time sync, bool heard = true) noexcept;
 
   /// Takes a frame. Returns false if it is no TPDO of this bus.
@@ -50,7 +50,8 @@ class PdoInputs {
 
   /// Ends the window of this beat; TPDOs that have not come are missing. Returns their number.
   std::uint32_t close(Time now) noexcept;
-  /// What each row has done since forget_marks(), which is called after the image was published.
+  /// Returns the marks of each row since forget_marks(), which is called after the image was
+  /// published.
   std::span<const PdoMark> marks() const noexcept { return marks_; }
   void forget_marks() noexcept {
     for (PdoMark& mark : marks_) mark.flags = 0;
@@ -80,8 +81,8 @@ class PdoInputs {
   struct Row {
     std::uint64_t due = not_due;  ///< beat in which the TPDO is expected next
     std::uint64_t last_beat = 0;
-    Time expires = never;  ///< end of its deadline; the first frame starts it
-    Time window = never;   ///< time after SYNC; a later frame is late
+    Time expires = never;  ///< time at which the deadline is over; the first frame starts it
+    Time window = never;   ///< time after SYNC after which a frame counts as late
     std::uint16_t first = 0;
     std::uint16_t count = 0;
     std::uint16_t number = 0;

@@ -62,7 +62,8 @@ void PdoOutputs::fall(Output& output, SignalIndex signal) noexcept {
   if (what.fallback == Fallback::value) image_.values[signal] = what.fallback_value;
 }
 
-/// Outputs without a time to live keep their value, as they do when no more commands come.
+/// Lets the output take its fallback because its sender has released it. An output without a time
+/// to live keeps its value, as it does when no more commands come.
 void PdoOutputs::let_go(Output& output, SignalIndex signal) noexcept {
   if (!output.commanded || output.fallen || output.limit == 0) return;
   fall(output, signal);
@@ -132,8 +133,9 @@ void PdoOutputs::report_changes(std::size_t position, bool lacking, OutputMoment
   row.held_reported = true;
 }
 
-/// Times are counted in cycles, so that a late wake-up does not lengthen them. A late wake-up
-/// shortens the inhibit time by the same amount, but by no more than a quarter of a period.
+/// Returns true if the RPDO is due. Times are counted in cycles, so a late wake-up of the thread
+/// does not make them longer. A frame that was sent late may shorten the inhibit time before the
+/// next one, but by no more than a quarter of a period.
 bool PdoOutputs::due(std::size_t position, OutputMoment moment) const noexcept {
   const PdoRow& pdo = plan_.pdos.rpdos[position];
   const Row& row = rows_[position];

@@ -23,21 +23,21 @@ struct OutputMoment {
 };
 
 /// Makes RPDO frames from set-points. An RPDO is sent only if its node exchanges PDOs and each of
-/// its signals was commanded, has a safe value or is seeded by its feedback. RPDOs of the
-/// transmission types 1..240 are sent in each n-th cycle, the others when a value has changed; such
-/// an event is kept until its frame was sent. If one set of commands changes several synchronous
-/// RPDOs, they are sent in one cycle, those of type n out of turn, so that all take effect at the
-/// next SYNC.
+/// its signals has a value: a command, a safe value, or the value of its feedback. An RPDO of the
+/// transmission type n in 1..240 is sent in each n-th cycle. The others are sent when a value has
+/// changed; such an event is kept until its frame was sent. If one set of commands changes several
+/// synchronous RPDOs, all of them are sent in the same cycle, even if it is not the n-th one, so
+/// that all take effect at the next SYNC.
 ///
 /// A command outside the limits of its output is not sent, and the outputs of its node take their
-/// fallback at once. All commands to the node are then dropped until a later command to that output
-/// is inside, or until no command has come for its time to live. Bus thread only.
+/// fallback at once. After that, all commands to the node are dropped until a later command to this
+/// output is inside the limits, or until no command has come for the time to live. Bus thread only.
 class PdoOutputs {
  public:
   /// Keeps references to all four arguments.
   PdoOutputs(const BusPlan& plan, WorkingImage& image, const PdoInputs& inputs, EventQueue& events);
 
-  /// Permits the RPDOs of the node from now on. Commands that were given before are forgotten.
+  /// Permits the RPDOs of the node from now on. Commands from the time before have no effect.
   void open(std::size_t node_index, std::span<const SetPoint> set_points) noexcept;
   /// Ends the RPDOs of the node.
   void shut(std::size_t node_index) noexcept;
@@ -54,9 +54,10 @@ class PdoOutputs {
   bool pending() const noexcept {
     return std::ranges::any_of(rows_, [](const Row& r) { return r.open && r.ready && r.pending; });
   }
-  /// Selects frames if not all packed ones fit into `bits`: all synchronous frames, because they
-  /// belong together, and as many of the others as fit; these take turns. Returns an empty span if
-  /// the synchronous frames alone do not fit. The span is valid until the next pack().
+  /// Selects frames if the packed ones do not all fit into `bits`. The selection has all
+  /// synchronous frames, because they belong together, and as many of the others as fit; the others
+  /// are preferred in turn. Returns an empty span if the synchronous frames alone do not fit. The
+  /// span is valid until the next pack().
   std::span<const Frame> pack_less(std::int64_t bits,
                                    std::int64_t (*bits_of)(const Frame&) noexcept) noexcept;
   /// Notes that the first `count` of the packed frames were sent; the others are tried again.
@@ -70,16 +71,18 @@ class PdoOutputs {
   /// Lets every commanded output take its fallback, for an ordered stop or the loss of SYNC.
   /// Commands are refused from now on, and none of them takes effect later.
   void fall_back() noexcept;
-  /// Ends fall_back(). Each output keeps its fallback until its next command.
+  /// Ends fall_back(), so that commands are accepted again. Each output keeps its fallback until
+  /// its next command.
   void hear_again() noexcept { stopping_ = false; }
   /// Returns true if the output has a value that can be sent.
   bool known(SignalIndex signal) const noexcept { return outputs_[output_of(signal)].known; }
-  /// Returns true if the output was commanded, and its fallback is in force.
+  /// Returns true if the output was commanded and its fallback is effective.
   bool fallen(SignalIndex signal) const noexcept { return outputs_[output_of(signal)].fallen; }
   /// Forces this value from now on and refuses commands to the output, for an ordered stop or the
   /// loss of a node.
   void force(SignalIndex signal, std::int64_t value) noexcept;
-  /// Ends force(). The output accepts its next command, but none that came before.
+  /// Ends force(). The output accepts its next command, but not those that came while force() was
+  /// effective.
   void release(SignalIndex signal) noexcept;
 
   /// Number of commands that the last pack() has seen for the first time.
@@ -109,9 +112,10 @@ class PdoOutputs {
     std::uint32_t limit = 0;  ///< configured time to live in cycles; 0 means no limit
     bool known = false;       ///< the output has a value that can be sent
     bool commanded = false;   ///< that value was commanded
-    bool fallen = false;      ///< the fallback is in force
+    bool fallen = false;      ///< the fallback is effective
     bool forced = false;
-    bool released = false;  ///< the fallback is in force because the sender has released the output
+    /// The fallback is effective because the sender has released the output.
+    bool released = false;
 
     template <class Archive>
     void keep(Archive& state) noexcept {
@@ -160,7 +164,8 @@ class PdoOutputs {
     output.released = false;
     image_.values[signal] = set_point.value;
   }
-  /// The shorter of the two times to live; 0 means that neither is set.
+  /// Returns the shorter one of the time to live of the output and that of the command. 0 means
+  /// that neither is set.
   static std::uint32_t limit_of(const Output& output, const SetPoint& set_point) noexcept {
     const bool configured = output.limit != 0 && output.limit < set_point.time_to_live;
     return set_point.time_to_live == 0 || configured ? output.limit : set_point.time_to_live;
@@ -179,8 +184,9 @@ class PdoOutputs {
   }
   /// Lets the output take its fallback, because its sender has released it.
   void let_go(Output& output, SignalIndex signal) noexcept;
-  /// Cycles since the front thread has determined the age of the command. The result is 0 if that
-  /// was after the previous outputs, which may have been a quarter of a period early.
+  /// Returns the number of cycles since the front thread has determined the age of the command. The
+  /// result is 0 if this was after the previous outputs, which may have been made up to a quarter
+  /// of a period early.
   std::uint32_t age(const SetPoint& set_point, OutputMoment moment) const noexcept {
     const Time period = plan_.cycle.period;
     const Time passed = moment.now - set_point.when - period / 4;
@@ -197,7 +203,7 @@ class PdoOutputs {
   void check_limits(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
   /// Checks one command from within the bus thread. Returns false if it is dropped.
   bool within_limits(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
-  /// Returns true if this command is new, and is accepted if it is inside its limits.
+  /// Returns true if this command is new and will be accepted if it is inside its limits.
   bool is_news(const Output& output, const SetPoint& set_point,
                OutputMoment moment) const noexcept {
     return set_point.generation != output.generation && set_point.time_to_live != output_released &&
@@ -222,7 +228,7 @@ class PdoOutputs {
                            std::int64_t value) const noexcept;
   bool covered(std::size_t place, std::int64_t mode, bool target_news) const noexcept;
   bool suits_targets(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
-  /// The output that a refusal is reported for, and its raw value.
+  /// The output for which a refusal is reported, and its raw value.
   struct Cause {
     SignalIndex signal = 0;
     std::int64_t value = 0;

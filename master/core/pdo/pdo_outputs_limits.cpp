@@ -82,9 +82,9 @@ bool PdoOutputs::judge(std::size_t place, const AxisCommand& command, Cause caus
   return false;
 }
 
-/// A cycle without outputs, or an inhibit time, may delay the fallback. Until the fallback is sent,
-/// the axis follows its set-points, but commands would be judged as those of an axis that does not
-/// follow. So the refusal lasts until then.
+/// Ends the refusal of commands to an output, but not before the fallback of its node was sent. A
+/// cycle without outputs, or an inhibit time, may delay the fallback. Until it is sent, the axis
+/// still follows its old set-points, although commands would already be judged as if it did not.
 void PdoOutputs::forgive(std::size_t place, OutputMoment moment) noexcept {
   const std::size_t node_index = plan_.layout.signals[limits_.limit(place).signal].node_index;
   if (!limits_.holds(node_index)) return;
@@ -96,7 +96,8 @@ void PdoOutputs::forgive(std::size_t place, OutputMoment moment) noexcept {
   limits_.forgive(place, moment.cycle);
 }
 
-/// The newest value of an output of this pack: a new command, or else the value of the image.
+/// Returns the newest value of an output in this pack: a new command, or else the value in the
+/// image.
 PdoOutputs::Newest PdoOutputs::newest(std::optional<SignalIndex> signal,
                                       std::span<const SetPoint> set_points,
                                       OutputMoment moment) const noexcept {
@@ -106,14 +107,15 @@ PdoOutputs::Newest PdoOutputs::newest(std::optional<SignalIndex> signal,
   return {.value = news ? set_point.value : image_.values[*signal], .news = news};
 }
 
-/// A controller in the bus thread has commanded the controlword, and it is not sent yet.
+/// Returns true if a controller in the bus thread has commanded this controlword and it is not sent
+/// yet.
 bool PdoOutputs::awaits_sending(SignalIndex signal) const noexcept {
   const Output& output = outputs_[output_of(signal)];
   return output.known && output.commanded && !output.fallen && !refuses(output);
 }
 
-/// Judges a new command. A new mode of operation is judged as well, because the position that it
-/// makes valid may be far away. The same is true of a controlword that enables the axis.
+/// Judges a new command. A new mode of operation is judged as well, because it may make a set-point
+/// effective that is far away. The same is true of a controlword that enables the axis.
 void PdoOutputs::judge_news(std::size_t place, std::span<const SetPoint> set_points,
                             OutputMoment moment) noexcept {
   const OutputLimit& limit = limits_.limit(place);
@@ -168,7 +170,7 @@ void PdoOutputs::admit_news(std::size_t place, std::span<const SetPoint> set_poi
                 moment.cycle);
 }
 
-/// Some output has a command that the last pack has not seen.
+/// Returns true if an output has a command that the last pack has not seen.
 bool PdoOutputs::has_news(std::span<const SetPoint> set_points) const noexcept {
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     if (set_points[i].generation != outputs_[i].generation) return true;
@@ -194,7 +196,8 @@ void PdoOutputs::check_limits(std::span<const SetPoint> set_points, OutputMoment
   }
 }
 
-/// The command that the image would be with this value of an output.
+/// Returns the command that consists of this value of an output and of the values in the image for
+/// the other outputs.
 AxisCommand PdoOutputs::command_with(std::size_t place, SignalIndex signal,
                                      std::int64_t value) const noexcept {
   const OutputLimit& limit = limits_.limit(place);
@@ -210,7 +213,8 @@ AxisCommand PdoOutputs::command_with(std::size_t place, SignalIndex signal,
                                                                      : SetPointAge::commanded};
 }
 
-/// The check of the target covers this offset. `target_news`: its target is commanded in this pack.
+/// Returns true if the output is an offset that the check of its target covers. `target_news`
+/// states whether the target is commanded in this pack.
 bool PdoOutputs::covered(std::size_t place, std::int64_t mode, bool target_news) const noexcept {
   if (!limits_.covered_by_target(place, mode)) return false;
   const SignalIndex target = *limits_.limit(place).target;
@@ -218,9 +222,9 @@ bool PdoOutputs::covered(std::size_t place, std::int64_t mode, bool target_news)
          (target_news || outputs_[output_of(target)].known);
 }
 
-/// Checks a mode of operation or an offset from within the bus thread. A controlword is
+/// Checks a mode of operation or an offset from within the bus thread. A controlword is normally
 /// checked when the outputs are packed, because the target may be commanded after it. It is checked
-/// here only if commands to the node are refused already, so that the refusal lasts.
+/// here only if commands to the node are already refused; its failure then prolongs the refusal.
 bool PdoOutputs::suits_targets(SignalIndex signal, std::int64_t value,
                                OutputMoment moment) noexcept {
   for (const std::uint16_t place : limits_.dependents(signal)) {
@@ -263,8 +267,8 @@ bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
   return true;
 }
 
-/// Index of the input for whose first value a set-point of this RPDO waits, plus 1; 0 means none.
-/// See OutputLimits::lacks_start().
+/// Returns 1 plus the index of the input whose first value a set-point of this RPDO waits for, see
+/// OutputLimits::lacks_start(). 0 means that no set-point waits.
 std::uint32_t PdoOutputs::awaited_start(const PdoRow& pdo) const noexcept {
   for (std::uint16_t i = 0; i < pdo.field_count; ++i) {
     const SignalIndex signal = fields_[pdo.first_field + i].signal;

@@ -10,7 +10,7 @@ Frame remote_request(const PdoRow& row) noexcept {
   return {.id = row.cob_id, .length = row.length, .rtr = true};
 }
 
-/// The row of this PDO, or rows.size() if there is none.
+/// Returns the row of this PDO, or rows.size() if there is none.
 std::size_t find(const std::vector<PdoRow>& rows, std::uint8_t node, std::uint16_t number) {
   const auto found = std::ranges::find_if(rows, [&](const PdoRow& row) {
     return row.node.value() == node && row.number == number && !row.multiplexed();
@@ -77,9 +77,9 @@ void PdoRequests::answer(Slot& slot, SdoFault fault) noexcept {
   if (fault != SdoFault::none) slot.frame.length = 0;
 }
 
-/// After a time-out, the answer may come late; it must not be taken for the answer to the next
-/// request. This does not apply to a remote frame, because every frame of its PDO is a valid
-/// answer.
+/// Ends a request that has timed out. Its answer may still come and must not be taken for the
+/// answer to the next request. This does not apply to a remote frame, because every frame of its
+/// PDO is a valid answer.
 void PdoRequests::give_up(Slot& slot, Time now) noexcept {
   if (slot.state == Slot::State::sent && !slot.frame.rtr) {
     Time& until = owed_until_[slot.tpdo];
@@ -97,7 +97,8 @@ void PdoRequests::forget_owed(Time now) noexcept {
   }
 }
 
-/// Permits one request at a time for each TPDO, because answers carry no number.
+/// Returns true if the request may be sent now. Only one request at a time is permitted for each
+/// TPDO, because answers carry no number.
 bool PdoRequests::is_next(const Slot& slot) const noexcept {
   if (owed_until_[slot.tpdo] != never) return false;
   return std::ranges::none_of(slots_, [&](const Slot& other) {
@@ -119,8 +120,9 @@ void PdoRequests::send(Slot& slot, std::span<const bool> exchanging, Time now,
   ++waiting_;
 }
 
-/// A poll with the period of the cycle is due in each cycle, although this thread does not wake up
-/// at exactly the same phase each time.
+/// Returns true if a poll is due. The tolerance of an eighth of the period lets a poll with the
+/// period of the cycle be due in each cycle, although this thread does not always wake up at
+/// exactly the same phase.
 bool PdoRequests::is_due(const Poll& poll, std::uint64_t beat, Time now) const noexcept {
   const PdoRow& row = plan_.pdos.tpdos[poll.row];
   if (row.poll > Time{}) return now >= poll.next - plan_.cycle.period / 8;

@@ -12,9 +12,10 @@
 
 namespace takt {
 
-/// PDOs on request: remote frames for TPDOs, periodic or on request, and exchanges, in which an
-/// RPDO is sent and the TPDO of the same number answers it. Each accepted request is answered once,
-/// and each wait has a deadline. Bus thread only; nothing allocates after construction.
+/// Serves PDOs on request. These are remote frames for TPDOs, which are sent periodically or for a
+/// request, and exchanges, in which the master sends an RPDO and the device answers with the TPDO
+/// of the same number. Each accepted request is answered once, and each wait has a deadline. Bus
+/// thread only. No function allocates memory after the construction.
 class PdoRequests {
  public:
   static constexpr std::size_t capacity = waits::pdo_requests;
@@ -39,7 +40,7 @@ class PdoRequests {
   void on_frame(std::uint16_t row, const StampedFrame& stamped) noexcept;
   /// Takes the next reply. Returns false if there is none.
   bool take(Reply& reply) noexcept;
-  /// Returns true if no request is under way, and no late answer can still come.
+  /// Returns true if there is no request, and no late answer can still come.
   bool idle() const noexcept { return used_ == 0 && owed_ == 0; }
   /// Returns true if a request to this node is not answered yet. The request may be an exchange
   /// that sends an RPDO.
@@ -67,7 +68,7 @@ class PdoRequests {
     State state = State::free;
     SdoFault fault = SdoFault::none;
     std::uint16_t tpdo = 0;
-    std::uint16_t rpdo = 0;  ///< only of an exchange
+    std::uint16_t rpdo = 0;  ///< row of the RPDO; exchanges only
     std::uint64_t id = 0;
     std::uint64_t order = 0;
     Frame frame{};  ///< the frame to send, later the answer
@@ -87,7 +88,7 @@ class PdoRequests {
   const BusPlan& plan_;
   std::vector<Poll> polls_;
   std::array<Slot, capacity> slots_{};
-  // By TPDO: until when the answer to a request that has timed out may still come.
+  // For each TPDO: the time until which the answer to a request that has timed out may still come.
   std::vector<Time> owed_until_;
   std::size_t owed_ = 0;             // number of TPDOs with such an answer
   std::vector<std::uint32_t> sent_;  // number of frames by RPDO

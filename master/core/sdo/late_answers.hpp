@@ -11,11 +11,11 @@ namespace takt {
 
 /// Measures how late an SDO server answers requests that have timed out. This distinguishes a slow
 /// server from one that does not answer. If a request is repeated, the first answer may belong to
-/// the repetition. Its lateness counts only when one more answer comes, because then the first one
-/// belonged to the request that had timed out.
+/// the repetition. Its lateness counts only when another answer comes, because this proves that the
+/// first one belonged to the request that had timed out.
 class LateAnswers {
  public:
-  /// Whether a frame also fits the request that is under way.
+  /// States whether a frame also fits the present request.
   enum class Fits : std::uint8_t { only_earlier, request_under_way };
 
   /// Notes that the request, which was sent at `sent`, has timed out.
@@ -24,8 +24,8 @@ class LateAnswers {
     open_[count_++] = {.request = request, .sent = sent};
   }
 
-  /// Takes a whole frame of the server. Returns true if it answers one of the requests that have
-  /// timed out, and not the request that is under way.
+  /// Takes a complete frame of the server. Returns true if it answers one of the requests that have
+  /// timed out, and not the present request.
   bool take(const Frame& frame, Time now, Fits fits) noexcept {
     const std::size_t at = find(frame, 0);
     if (at == count_) return false;
@@ -37,7 +37,7 @@ class LateAnswers {
     longest_ = std::max(longest_, assumed != Time{} ? assumed : now - open_[at].sent);
     forget(at);
     const std::size_t next = find(frame, at);
-    // The answers are one behind the requests, so this one belongs to the next request.
+    // The answers lag behind the requests by one, so this frame is the answer to the next request.
     if (assumed != Time{} && next != count_) open_[next].assumed = now - open_[next].sent;
     return true;
   }

@@ -35,7 +35,7 @@ using Milliseconds = std::chrono::milliseconds;
 using Microseconds = std::chrono::microseconds;
 using HundredMicroseconds = std::chrono::duration<std::int64_t, std::ratio<1, 10'000>>;
 
-/// A time as a number of units.
+/// Returns a time as a number of units.
 template <class T, class Unit>
 Value count_of(Time time) noexcept {
   return Value::number(static_cast<T>(std::chrono::duration_cast<Unit>(time).count()));
@@ -70,7 +70,7 @@ Value OwnDictionary::read(ObjectKey key) const noexcept {
 
 Value OwnDictionary::read_communication(ObjectKey key) const noexcept {
   if (key.index == 0x1016) return read_consumers(key.sub);
-  if (key.index == 0x1018) {  // takt has no vendor-ID of CAN in Automation
+  if (key.index == 0x1018) {  // takt has no vendor-ID from CAN in Automation.
     if (key.sub > 4) return Value::refused(abort_code::no_sub_index);
     return key.sub == 0 ? Value::number(std::uint8_t{4}) : Value::number(std::uint32_t{0});
   }

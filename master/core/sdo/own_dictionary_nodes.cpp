@@ -6,7 +6,7 @@
 #include "master/wire/bytes.hpp"
 #include "master/wire/sdo_abort.hpp"
 
-// Objects with one sub-index for each node of the network. CiA 302-2.
+// This file contains the objects with one sub-index for each node of the network. CiA 302-2.
 
 namespace takt {
 namespace {

@@ -7,8 +7,8 @@
 
 namespace takt {
 
-/// How the previous SDO transfer ended. This decides which frames of the server may still belong to
-/// it.
+/// The end of the previous SDO transfer. It decides which frames of the server may still belong to
+/// that transfer.
 struct PreviousTransfer {
   enum class End : std::uint8_t {
     regular,             ///< No frame of it is outstanding.
@@ -29,7 +29,7 @@ struct PreviousTransfer {
     return end == End::violated_in_block || end == End::abandoned_in_block;
   }
 
-  /// How a transfer ends that the master aborts.
+  /// Returns the end of a transfer that the master aborts.
   static constexpr End end_by_abort(SdoFault fault, bool in_block_upload) noexcept {
     if (fault == SdoFault::aborted_by_master) {
       return in_block_upload ? End::violated_in_block : End::violated;

@@ -100,7 +100,8 @@ bool SdoBlockUpload::confirm_after_silence() noexcept {
 
 SdoStep SdoBlockUpload::on_end(const Frame& frame) noexcept {
   const bool confirmed = to_send_ == Next::nothing;
-  if (!confirmed || !is_block_end(frame)) return {};  // a segment that was already under way
+  if (!confirmed || !is_block_end(frame))
+    return {};  // The device has sent this segment before it has received the confirmation.
   const SdoBlockEnd end = decode_block_end(frame);
   if (repeats_last(frame) && end.crc != crc_with_held(end)) return {};
   if (!commit(segment_bytes - end.unused)) return exceeds_buffer();
@@ -111,14 +112,14 @@ SdoStep SdoBlockUpload::on_end(const Frame& frame) noexcept {
   return {.kind = Kind::done};
 }
 
-/// The frame repeats the last segment. With some segment numbers, that looks like the end of the
-/// transfer.
+/// Returns true if the frame repeats the last segment. With some segment numbers, such a frame
+/// looks like the end of the transfer.
 bool SdoBlockUpload::repeats_last(const Frame& frame) const noexcept {
   const SdoBlockSegment part = decode_block_segment(frame);
   return part.last && part.number == confirmed_ && part.data == held_;
 }
 
-/// The CRC that the end of the transfer has to carry.
+/// Returns the CRC that the end of the transfer must carry.
 std::uint16_t SdoBlockUpload::crc_with_held(const SdoBlockEnd& end) const noexcept {
   return crc_used_ ? sdo_crc(std::span{held_}.first(segment_bytes - end.unused), crc_) : 0;
 }

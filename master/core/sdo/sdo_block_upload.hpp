@@ -62,7 +62,7 @@ class SdoBlockUpload {
   /// the server may repeat the rest. Returns false if there is nothing to confirm, or if this was
   /// tried before.
   bool confirm_after_silence() noexcept;
-  /// Silence now calls for confirm_after_silence().
+  /// Returns true if confirm_after_silence() must be called when the server is silent now.
   bool in_sub_block() const noexcept {
     return state_ == State::segments && held_back_ != Held::nothing && !asked_again_;
   }
@@ -97,7 +97,7 @@ class SdoBlockUpload {
   Next to_send_ = Next::nothing;
   bool crc_used_ = false;
   Held held_back_ = Held::nothing;
-  bool asked_again_ = false;      ///< the missing segments were asked for, and none has come since
+  bool asked_again_ = false;      ///< missing segments were requested again, and none has come
   std::uint8_t in_sequence_ = 0;  ///< segments of this sub-block that came in sequence
   std::uint8_t confirmed_ = 0;    ///< number of segments that the confirmation reports
   std::uint8_t fruitless_ = 0;

@@ -6,14 +6,15 @@
 #include "eds_parser/table/waits.hpp"
 #include "master/wire/sdo_abort.hpp"
 
-// Begin and end of a transfer, its frames to the server, and its time-out.
+// This file contains the begin and the end of a transfer, its frames to the server, and its
+// time-out.
 
 namespace takt {
 
 namespace {
 
-/// Objects of up to this number of bytes may come without block transfer, because four segments are
-/// as quick.
+/// Up to this number of bytes, the server may answer without a block transfer, because four
+/// segments take no longer.
 constexpr std::uint8_t switch_threshold = 28;
 
 }  // namespace
@@ -159,7 +160,7 @@ void SdoClient::on_silence() noexcept {
     state_ = State::withdrawing;
     return;
   }
-  // No other answer came than the ignored one, so that one belonged to this request.
+  // No answer has come except the ignored one, so the ignored one was the answer to this request.
   if (asked_.misanswered) return abort(SdoFault::aborted_by_master, abort_code::command_unknown);
   give_up_late();
 }

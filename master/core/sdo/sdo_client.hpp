@@ -21,7 +21,7 @@
 
 namespace takt {
 
-/// How a transfer ended.
+/// The result of a transfer.
 struct SdoResult {
   SdoFault fault = SdoFault::none;
   std::uint32_t abort_code = 0;
@@ -29,8 +29,8 @@ struct SdoResult {
   bool shortened = false;  ///< fewer bytes came than the device has announced
 };
 
-/// How an upload is requested. A block upload falls back to a plain one if the device refuses it or
-/// does not answer.
+/// The kind of upload that is requested. If the device refuses a block upload or does not answer
+/// it, the client makes a plain upload.
 enum class SdoMode : std::uint8_t { plain, block };
 
 /// The newest frames of a transfer, for reports. A length of 0 means that there is no such frame.
@@ -99,10 +99,10 @@ class SdoClient {
 
   /// Returns the result of the transfer once.
   std::optional<SdoResult> take_result() noexcept { return std::exchange(result_, std::nullopt); }
-  /// The device does not support block transfer; all further transfers are plain.
+  /// The report that the device does not support block transfer. All further transfers are plain.
   struct NoBlock {
     ObjectKey object;
-    std::uint32_t abort_code = 0;  ///< 0 means that it gave no answer
+    std::uint32_t abort_code = 0;  ///< 0 means that the device gave no answer
   };
   /// Reports once that the device does not support block transfer.
   std::optional<NoBlock> take_no_block() noexcept;
@@ -116,7 +116,7 @@ class SdoClient {
     if (deadline_ != never) deadline_ += away;
   }
 
-  /// Returns true if a block transfer is under way, so the next frame of the server comes soon.
+  /// Returns true if a block transfer is running, so the next frame of the server comes soon.
   bool streams() const noexcept { return state_ == State::running && is_block(); }
   /// Returns true if the server sends a sub-block, one segment after another, as fast as the wire
   /// permits.
@@ -130,7 +130,7 @@ class SdoClient {
   const SdoTrace& trace() const noexcept { return trace_; }
   /// Returns true if a frame of the newest transfer was sent.
   bool begun() const noexcept { return trace_.sent.length != 0; }
-  /// When the newest frame of the server came, whatever it was.
+  /// Returns the time at which the newest frame of the server came, of whatever kind it was.
   Time heard_at() const noexcept { return heard_at_; }
   /// The object of an answer that did not fit the request; std::nullopt if there was none.
   std::optional<ObjectKey> answered() const noexcept { return answered_; }
@@ -152,10 +152,10 @@ class SdoClient {
                     ///< to be sent.
     without_block,  ///< As `running`, after `withdrawing` and before the first answer, which shows
                     ///< that the server is silent only for block transfers.
-    settling,       ///< The server has aborted the transfer while segments were under way, and may
-                    ///< refuse each of them.
+    settling,  ///< The server has aborted the transfer before it has received all segments that
+               ///< were sent, and may refuse each of them.
   };
-  /// Whether the server supports block transfer, as far as its answers have shown.
+  /// States whether the server supports block transfer, according to its answers so far.
   enum class BlockSupport : std::uint8_t { assumed, lacking };
   /// The last frame of a transfer that has ended: an abort, or the end of a block upload.
   struct Closing {

@@ -2,7 +2,7 @@
 #include "master/core/sdo/sdo_client.hpp"
 #include "master/wire/sdo_abort.hpp"
 
-// The frames of the server, and what they mean for the transfer.
+// This file evaluates the frames of the server.
 
 namespace takt {
 
@@ -56,7 +56,7 @@ bool SdoClient::note_late(const Frame& frame, Time now) noexcept {
                     fits ? LateAnswers::Fits::request_under_way : LateAnswers::Fits::only_earlier);
 }
 
-/// The request that was sent last, unless this is a block transfer.
+/// Returns the request that was sent last, or std::nullopt in a block transfer.
 std::optional<SdoQuestion> SdoClient::question() const noexcept {
   if (!runs()) return std::nullopt;
   if (const auto* const upload = plain_upload()) return upload->question();
@@ -64,7 +64,7 @@ std::optional<SdoQuestion> SdoClient::question() const noexcept {
   return std::nullopt;
 }
 
-/// The frame has all the bytes that it needs. In a block, only the last segment may be short.
+/// Returns true if the frame is complete. In a block, only the last segment may be short.
 bool SdoClient::is_whole(const Frame& frame) const noexcept {
   const bool segment =
       block_upload() != nullptr && block_upload()->in_sub_block() && frame.data[0] != 0x80;
@@ -72,7 +72,7 @@ bool SdoClient::is_whole(const Frame& frame) const noexcept {
   return frame.length >= sdo_answer_bytes(frame);
 }
 
-/// The first request of the transfer is not answered yet.
+/// Returns true if the first request of the transfer is not answered yet.
 bool SdoClient::initiates() const noexcept {
   return std::visit([](const auto& transfer) { return transfer.initiates(); }, transfer_);
 }
@@ -107,7 +107,7 @@ void SdoClient::on_plain_answer(const Frame& frame, Time now, bool late) noexcep
     case SdoQuestion::Fit::other_toggle:
       trace_.received = frame;
       // A late segment of an earlier try has the wrong toggle bit, and the segment before it may
-      // have been late too. Then the server is too slow, and its bytes are of no use.
+      // have been late too. The server is then too slow, and its bytes can't be used.
       if (late) return give_up_late();
       return abort(SdoFault::aborted_by_master, abort_code::toggle_not_alternated);
     case SdoQuestion::Fit::fits:
@@ -120,7 +120,7 @@ void SdoClient::on_plain_answer(const Frame& frame, Time now, bool late) noexcep
   on_step(std::get_if<SdoDownload>(&transfer_)->on_answer(frame), frame, now);
 }
 
-/// Notes the answer for an object that neither this request nor an earlier one has asked for.
+/// Notes an answer for an object that neither this request nor an earlier one has requested.
 void SdoClient::on_other_object(const Frame& frame, bool late) noexcept {
   if (late || frame == previous_.last_answer) return;
   trace_.received = frame;
@@ -181,7 +181,7 @@ void SdoClient::on_done() noexcept {
 void SdoClient::on_abort(const Frame& frame, Time now) noexcept {
   if (is_abort_of_previous(frame)) return;
   const std::uint32_t code = sdo_abort_code(frame);
-  // The server refuses the block transfer late; it does not refuse the request that was sent since.
+  // This is the late refusal of the block transfer and not of the request that was sent since.
   if (state_ == State::without_block && code == abort_code::command_unknown) {
     state_ = State::running;
     return learn_no_block(code);

@@ -6,13 +6,13 @@
 
 namespace takt {
 
-/// The answer that a request of the client asks for. Transfers by blocks have none of these.
+/// The answer that a request of the client expects. It is not used in block transfers.
 struct SdoQuestion {
   SdoAnswer answer = SdoAnswer::upload_initiate;  ///< command specifier of the answer
   bool toggle = false;                            ///< toggle bit of the answer; segments only
   ObjectKey object;
 
-  /// How a frame of the server fits the request.
+  /// The result of the comparison of a frame of the server with the request.
   enum class Fit : std::uint8_t { fits, other_object, other_toggle, other_command };
 
   /// Compares a frame with the request. Segments carry no object. A frame that begins a transfer of

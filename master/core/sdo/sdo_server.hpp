@@ -43,7 +43,7 @@ class SdoServer {
   SdoServer(SdoChannel channel, const OwnDictionary& dictionary) noexcept
       : channel_{channel}, dictionary_{dictionary} {}
 
-  /// Whether the server accepts a request for an NMT command now.
+  /// States whether the server accepts a request for an NMT command now.
   enum class Orders : std::uint8_t { taken, refused };
 
   /// Takes a frame of a client.

@@ -20,12 +20,12 @@ struct SdoStep {
   std::uint32_t abort_code = 0;
 };
 
-/// The server has broken the protocol.
+/// Returns the abort after an answer of the server that breaks the protocol.
 constexpr SdoStep violation(std::uint32_t code) noexcept {
   return {.kind = SdoStep::Kind::abort, .abort_code = code};
 }
 
-/// The value does not fit into the buffer of the caller.
+/// Returns the abort for a value that does not fit into the buffer of the caller.
 constexpr SdoStep exceeds_buffer() noexcept {
   return {.kind = SdoStep::Kind::abort,
           .fault = SdoFault::too_long,
