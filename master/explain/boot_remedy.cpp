@@ -12,7 +12,7 @@
 namespace takt {
 namespace {
 
-/// For a node that gets its node-ID by LSS and has given no sign of life.
+/// Returns the advice for a node that gets its node-ID by LSS and has given no sign of life.
 std::string against_missing_id(const BusPlan& plan, const NodePlan& node) {
   return fmt::format(
       "node {} has sent nothing. LSS (`lss: true`) assigns this id to a device without node id "
@@ -25,7 +25,8 @@ std::string against_missing_id(const BusPlan& plan, const NodePlan& node) {
       node.id.value(), identity_text(*node.lss), plan.bitrate / 1000);
 }
 
-/// If no first answer has come, the SDO channel of the network file may be the cause.
+/// Returns a hint at the SDO channel of the network file, which may be the reason why not even a
+/// first answer has come.
 std::string about_channel(const BusPlan& plan, const NodePlan& node, const BootFailure& failure) {
   const SdoChannel used = node.sdo.channel_of(node.id);
   if (failure.letter != 'B' || used == default_sdo_channel(node.id)) return {};
@@ -36,8 +37,8 @@ std::string about_channel(const BusPlan& plan, const NodePlan& node, const BootF
       to_string(used.request), to_string(used.answer), node.id.value(), interface_text(plan));
 }
 
-/// Returns the newest reset before the failure if the node has answered in this boot before that
-/// reset and not since. Returns nullptr otherwise.
+/// Returns the last reset before the failed step if the node has answered in this boot before this
+/// reset but not after it. Otherwise returns nullptr.
 const BootStep* reset_of_a_node_that_was_there(const NodePlan& node, const BootFailure& failure) {
   const auto& steps = node.boot_plan.steps;
   const BootStep* reset = nullptr;
@@ -127,7 +128,8 @@ bool accepted_block(const BootFailure& failure) noexcept {
 
 constexpr std::uint16_t sync_length_emcy = 0x8240;
 
-/// A SYNC came before 0x1019 was written, and some stacks keep that error until their next reset.
+/// Returns the advice if a SYNC came before 0x1019 was written. Some stacks keep this error until
+/// their next reset.
 std::string against_counter() {
   return "a SYNC with counter reached the device before 0x1019 was written (EMCY 0x8240), and this "
          "error keeps the device out of OPERATIONAL; the next try may succeed. Let the device "
@@ -135,8 +137,8 @@ std::string against_counter() {
          "(`sync_overflow: 0`)";
 }
 
-/// For an endless sequence of segments, or a value that is longer than any object that a boot
-/// reads.
+/// Returns the advice for an endless sequence of segments, or for a value that is longer than any
+/// object that a boot reads.
 std::string against_long_answer(const BootStep& step, const BootFailure& failure) {
   const std::string object = to_string(failure.object);
   if (!step.value.empty() && step.value.size() < request_bytes) {
@@ -149,8 +151,8 @@ std::string against_long_answer(const BootStep& step, const BootFailure& failure
                      request_bytes);
 }
 
-/// For an answer with fewer bytes than its command specifier needs. CiA 301, 7.2.4.3.1 demands
-/// eight bytes.
+/// Returns the advice for an answer with fewer bytes than its command specifier needs, else an
+/// empty text. CiA 301, 7.2.4.3.1 demands eight bytes.
 std::string against_short_answer(const BootFailure& failure) {
   const Frame frame{.id = {}, .length = failure.received_size, .data = failure.received};
   const bool empty = frame.length == 0 && failure.empty_answer;
@@ -168,13 +170,13 @@ bool was_late(const NodePlan& node, const BootFailure& failure) noexcept {
   return failure.late > node.sdo_timeout && node.sdo_timeout > Time{};
 }
 
-/// Lateness explains the failure. If the device has sent nothing for longer than its answers were
-/// ever late, the device is silent now, and its late answers were an earlier matter.
+/// Returns true if late answers explain the failure. They do not if the device has sent nothing for
+/// longer than its latest answer has taken, because the device is then silent.
 bool is_late(const NodePlan& node, const BootFailure& failure) noexcept {
   return was_late(node, failure) && failure.quiet <= failure.late;
 }
 
-/// The sentence about late answers that came before the device became silent.
+/// Returns a sentence about late answers that came before the device became silent.
 std::string about_earlier_lateness(const NodePlan& node, const BootFailure& failure) {
   if (!was_late(node, failure)) return {};
   return fmt::format(
@@ -183,8 +185,8 @@ std::string about_earlier_lateness(const NodePlan& node, const BootFailure& fail
       time_text(failure.late), time_text(node.sdo_timeout));
 }
 
-/// For a server that answers late, with too few bytes, or with another object than the requested
-/// one.
+/// Returns the advice for a server that answers late, with too few bytes, or with another object
+/// than the requested one.
 std::string against_odd_answers(const NodePlan& node, const BootFailure& failure) {
   if (is_late(node, failure)) {
     return fmt::format(
@@ -200,7 +202,8 @@ std::string against_odd_answers(const NodePlan& node, const BootFailure& failure
       to_string(*failure.answered), to_string(failure.object));
 }
 
-/// For an answer that breaks the protocol, so that the master has ended the transfer.
+/// Returns the advice for an answer that breaks the protocol, so that the master has ended the
+/// transfer.
 std::string against_protocol_error(const BootFailure& failure) {
   const std::string other =
       ". Or a second SDO client uses this server at the same time (stop other masters and tools)";

@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// Says what the user can try against the cause of a failed boot.
+/// Returns a text that says what the user can try against the cause of a failed boot.
 std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure& failure);
 
 /// A part of remedy(): says what the user can try when a device has answered a step of its boot

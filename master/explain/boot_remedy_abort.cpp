@@ -14,7 +14,7 @@ bool is_mapping_entry(ObjectKey object) noexcept {
          (object.index >= 0x1A00 && object.index <= 0x1BFF);
 }
 
-/// "TPDO2" for a communication or mapping object, "the PDO" for other objects.
+/// Returns "TPDO2" for a communication or mapping object, and "the PDO" for other objects.
 std::string pdo_name(ObjectKey object) {
   const unsigned area = object.index & 0xFE00U;
   const unsigned number = (object.index & 0x1FFU) + 1;
@@ -23,8 +23,8 @@ std::string pdo_name(ObjectKey object) {
   return "the PDO";
 }
 
-/// The object that a mapping entry maps, for example "6077:00"; for other objects, the written
-/// object itself.
+/// Returns the object that a mapping entry maps, for example "6077:00". For other objects, returns
+/// the written object itself.
 std::string mapped_object(const BootStep& step) {
   if (!is_mapping_entry(step.object) || step.object.sub == 0 || step.value.size() != 4) {
     return to_string(step.object);
@@ -36,8 +36,8 @@ std::string mapped_object(const BootStep& step) {
 
 using namespace abort_code;
 
-/// What the user can try against an abort code. `{object}` stands for the object, `{eds}` for the
-/// file that describes the device, `{pdo}` for the PDO, `{code}` for the abort code.
+/// The advice for an abort code: what the user can try. `{object}` stands for the object, `{eds}`
+/// for the file that describes the device, `{pdo}` for the PDO, `{code}` for the abort code.
 struct Advice {
   std::uint32_t code;
   std::string_view text;
@@ -59,7 +59,7 @@ constexpr std::string_view out_of_range =
     "the device does not accept this value for {object}: look up its range in the manual and "
     "correct the network file";
 
-/// For a write to a mapping entry; code 0 stands for all other codes.
+/// The advice for a write to a mapping entry. The code 0 stands for all other codes.
 constexpr Advice mapping_advice[] = {
     {not_mappable, not_mapped},
     {write_only, not_mapped},
@@ -76,7 +76,7 @@ constexpr Advice mapping_advice[] = {
      "communication`), or the mapping is fixed; then remove `mapping` of this PDO from the network "
      "file"}};
 
-/// For codes that name their cause, whichever object is meant.
+/// The advice for codes that name their cause. It is the same for all objects.
 constexpr Advice advice[] = {
     {toggle_not_alternated, two_clients},
     {command_unknown, two_clients},
@@ -165,8 +165,8 @@ bool was_reset(const NodePlan& node, const BootFailure& failure) {
                      });
 }
 
-/// For a write that was refused twice, each time after the command PRE-OPERATIONAL. Only a
-/// heartbeat shows the NMT state of the device for sure.
+/// Returns the advice for a write that was refused twice, each time after the command
+/// PRE-OPERATIONAL. Only a heartbeat shows the NMT state of the device with certainty.
 std::string against_self_start(const BootFailure& failure) {
   return fmt::format(
       "the device refuses {} because of its state, although it was sent to PRE-OPERATIONAL (NMT "
@@ -176,7 +176,7 @@ std::string against_self_start(const BootFailure& failure) {
       failure.node_state == NmtState::operational ? "leaves" : "probably leaves");
 }
 
-/// For an object that the device refuses in its present state.
+/// Returns the advice for an object that the device refuses in its present state.
 std::string against_state(const NodePlan& node, const BootFailure& failure) {
   return fmt::format("{} can't be {} in the present state of the device: disable the drive{}",
                      to_string(failure.object), failure.downloading ? "written" : "read",
@@ -224,7 +224,7 @@ std::string against_refusal(const NodePlan& node, const BootStep& step,
 
 std::string against_abort(const NodePlan& node, const BootStep& step, const BootFailure& failure) {
   const std::string text = against_refusal(node, step, failure);
-  // In PRE-OPERATIONAL, the NMT state is not the cause.
+  // If the device is in PRE-OPERATIONAL, its NMT state is not the cause.
   if (!failure.preop_again || failure.node_state == NmtState::preoperational) return text;
   const std::string self_start = against_self_start(failure);
   return failure.node_state == NmtState::operational ? self_start : self_start + ". Else: " + text;

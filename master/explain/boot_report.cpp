@@ -13,12 +13,12 @@
 namespace takt {
 namespace {
 
-/// Adds one line of the explanation: "  sent      605  40 ...".
+/// Adds one line to the explanation, such as " sent 605 40 ...".
 void add_line(std::string& text, std::string_view label, std::string_view content) {
   if (!content.empty()) text += fmt::format("\n  {:<9} {}", label, content);
 }
 
-/// A value as "0x0000015A (346)", or its bytes if there are more than eight.
+/// Returns a value as "0x0000015A (346)", or its bytes if there are more than eight.
 std::string value_text(std::span<const std::uint8_t> bytes, std::size_t size) {
   if (size == 0) return "nothing (zero bytes)";
   if (size > 8) {
@@ -202,7 +202,8 @@ std::string explain(const BusPlan& plan, std::size_t node_index, const BootFailu
   if (failure.fault == SdoFault::none && failure.sent_size != 0) {
     add_line(text, "expected", wanted_text(step));
   }
-  if (step.action != BootAction::await_operational) {  // CiA 302 has no letter for this failure
+  if (step.action !=
+      BootAction::await_operational) {  // CiA 302 has no letter for a failure of await_operational.
     add_line(text, "status", status_text(failure));
   }
   add_line(text, "heard", heard_text(failure));

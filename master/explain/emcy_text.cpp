@@ -12,7 +12,7 @@ struct CodeText {
   std::string_view text;
 };
 
-// Codes of CiA 301 (table 26) and CiA 402. The first row that covers a code wins, so the narrow
+// Codes of CiA 301 (table 26) and CiA 402. The first row that covers a code is used, so the narrow
 // rows come before the classes.
 constexpr std::array texts{
     CodeText{0x2110, 0x2113, "short circuit or earth leakage, input side"},

@@ -24,7 +24,8 @@ std::string signal_name(const BusPlan& plan, std::int64_t index) {
   return fmt::format("{} ({})", signal.name, to_string(signal.object));
 }
 
-/// Describes which TPDO carries an actual position, and what makes the device send it soon.
+/// Returns a text that names the TPDO with an actual position, and says how to make the device send
+/// it soon.
 std::string first_time_text(const BusPlan& plan, SignalIndex signal) {
   const PdoRow* const pdo = tpdo_of(plan.pdos, signal);
   if (pdo == nullptr) return {};
@@ -109,8 +110,8 @@ std::string no_block_text(const Event& event) {
                        : fmt::format("refuses SDO block transfer ({}, {})", object, abort));
 }
 
-/// Describes that a device has another firmware than the one for which its device data were made:
-/// the consequences, and what the user can write in the network file.
+/// Returns a text for a device with another firmware than the one for which its device data were
+/// made. It states the consequences and what the user can write in the network file.
 std::string firmware_line(const BusPlan& plan, const Event& event) {
   const NodePlan* const node = plan.find(event.node);
   if (node == nullptr || !node->firmware) return "the firmware differs from the plan";
@@ -197,7 +198,8 @@ std::string node_line(const BusPlan& plan, const Event& event) {
   }
 }
 
-/// The time without a command after which an output takes its fallback, and the key that sets it.
+/// Returns the time without a command after which an output takes its fallback, and the key that
+/// sets this time.
 std::string within(const BusPlan& plan, const Event& event) {
   const auto signal = static_cast<std::size_t>(event.value);
   if (signal >= plan.layout.signals.size()) return {};

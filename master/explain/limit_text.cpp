@@ -15,7 +15,7 @@ std::string number(double value, const std::string& unit) {
   return fmt::format("{:.6g}{}{}", value, unit.empty() ? "" : " ", unit);
 }
 
-/// The unit of the line that limits this signal in this way.
+/// Returns the unit of the line of the plan that has a limit of this kind for the signal.
 std::string unit_of(const BusPlan& plan, SignalIndex signal, LimitKind kind) {
   for (const LimitLine& line : plan.limits.lines) {
     if (line.kind == kind && std::ranges::find(line.signals, signal) != line.signals.end()) {
@@ -25,7 +25,7 @@ std::string unit_of(const BusPlan& plan, SignalIndex signal, LimitKind kind) {
   return {};
 }
 
-/// A limit as text: `-1.5 .. 1.5 rad`, `from 0 rad`, `2 rad/s`.
+/// Returns a limit as text: `-1.5 .. 1.5 rad`, `from 0 rad`, `2 rad/s`.
 std::string read_value(const LimitLine& line, std::int64_t value) {
   const auto in_unit = [&](double raw) { return raw * line.scale + line.offset; };
   if (line.kind != LimitKind::position) {

@@ -12,7 +12,7 @@
 
 namespace takt {
 
-// Parts of the texts of reports.
+// These functions return parts of the texts of reports.
 
 /// Bytes as text: "37 06".
 inline std::string bytes_text(std::span<const std::uint8_t> bytes) {

@@ -16,7 +16,7 @@ constexpr std::uint32_t by_position = 1U << 16U;
 
 unsigned axis_number(const Event& event) { return event.detail >> 8U & 0xFF; }
 
-/// The units of this axis, or nullptr if the plan has no such axis.
+/// Returns the plan of the axis of an event, or nullptr if there is no such axis.
 const AxisPlan* axis_of(const BusPlan& plan, const Event& event) {
   const NodePlan* const node = plan.find(event.node);
   if (node == nullptr) return nullptr;
@@ -24,8 +24,8 @@ const AxisPlan* axis_of(const BusPlan& plan, const Event& event) {
   return axis == node->axes.end() ? nullptr : &*axis;
 }
 
-/// The speed in the unit of the network file, and in mm/s below 1 m/s. The value is raw if the file
-/// gives no unit.
+/// Returns the speed in the unit of the network file, or in mm/s if it is below 1 m/s. Returns the
+/// raw value if the file states no unit.
 std::string velocity_text(const BusPlan& plan, const Event& event) {
   const bool differences = (event.detail & by_position) != 0;
   const AxisPlan* const axis = axis_of(plan, event);

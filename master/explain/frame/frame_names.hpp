@@ -10,8 +10,8 @@
 
 namespace takt {
 
-/// Names and types of nodes and objects. They come from the network if one is given, or else from
-/// CiA 301.
+/// The names of nodes and the names and types of objects. They come from the network if there is
+/// one, else from CiA 301.
 class FrameNames {
  public:
   FrameNames() = default;
@@ -42,7 +42,8 @@ class FrameNames {
 };
 
 /// Returns the name of an object of the communication profile (`1017:00`: "producer heartbeat
-/// time", `1801:02`: "TPDO2 transmission type"). Empty for other objects. CiA 301, 7.5.
+/// time", `1801:02`: "TPDO2 transmission type"). Returns an empty text for other objects. CiA 301,
+/// 7.5.
 std::string communication_object_name(ObjectKey key);
 
 }  // namespace takt

@@ -81,7 +81,8 @@ std::string inquire_text(std::uint8_t code, const Frame& frame, bool of_master) 
                    : fmt::format("{} is 0x{:08X}", name, word(frame));
 }
 
-/// Describes a question of the scan: do the upper bits of a part of the LSS address agree?
+/// Describes a question of the fast scan, which asks the devices whether the upper bits of a part
+/// of their LSS address have a certain value.
 std::string fast_scan_text(const Frame& frame) {
   const std::uint8_t bit = frame.data[5];
   if (bit == lss::FastScan::everybody) return "fastscan: which device has no node id?";

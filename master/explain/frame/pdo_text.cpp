@@ -23,8 +23,8 @@ std::uint64_t bits_of(const Frame& frame, const PdoField& field) {
   return all >> field.bit_offset & mask;
 }
 
-/// Returns true if the row describes the object of this MPDO, and for every frame that is no MPDO.
-/// A DAM frame to all nodes also addresses the node of the row.
+/// Returns true if the row describes the object that this MPDO carries. Also returns true for all
+/// other PDOs. A DAM frame to all nodes also addresses the node of the row.
 bool is_of(const PdoRow& row, const Frame& frame) {
   if (!row.multiplexed() || frame.rtr) return true;
   const auto header = load_le<std::uint32_t>(std::span{frame.data});
@@ -37,7 +37,7 @@ Found find(const std::vector<PdoRow>& rows, bool tpdo, const Frame& frame) {
   for (const PdoRow& row : rows) {
     if (row.cob_id != frame.id) continue;
     if (is_of(row, frame)) return {&row, tpdo};
-    if (found.row == nullptr) found = {&row, tpdo};  // MPDO with another object
+    if (found.row == nullptr) found = {&row, tpdo};  // This MPDO may carry another object.
   }
   return found;
 }
