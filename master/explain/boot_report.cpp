@@ -202,8 +202,7 @@ std::string explain(const BusPlan& plan, std::size_t node_index, const BootFailu
   if (failure.fault == SdoFault::none && failure.sent_size != 0) {
     add_line(text, "expected", wanted_text(step));
   }
-  if (step.action !=
-      BootAction::await_operational) {  // CiA 302 has no letter for a failure of await_operational.
+  if (step.action != BootAction::await_operational) {  // CiA 302 has no letter for this failure.
     add_line(text, "status", status_text(failure));
   }
   add_line(text, "heard", heard_text(failure));

@@ -216,7 +216,7 @@ class Network {
   std::vector<NodeSession> sessions_;     // in the order of plan.nodes
   // Copies of the statuses of the sessions, contiguous for the reader.
   std::vector<NodeStatus> statuses_;
-  std::vector<bool> streams_;            // by session: a block transfer is under way
+  std::vector<bool> streams_;            // by session: a block transfer is running
   std::size_t streaming_ = 0;            // number of true entries in streams_
   std::vector<bool> awaits_;             // by session: an SDO answer is outstanding
   std::size_t awaited_ = 0;              // number of true entries in awaits_

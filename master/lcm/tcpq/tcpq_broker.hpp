@@ -27,8 +27,8 @@ class TcpqBroker final : public Transport {
   static constexpr std::size_t most_characters = 32768;
   static constexpr std::size_t longest_name = 63;  ///< longest channel name, as in LCM
   static constexpr Time opening_limit = std::chrono::seconds{2};
-  static constexpr Time reading_limit =
-      std::chrono::seconds{10};  ///< A client that reads nothing for this time is closed.
+  /// A client that reads nothing for this time is closed.
+  static constexpr Time reading_limit = std::chrono::seconds{10};
   /// If all places are taken, a connection that has sent nothing for this time may be closed for a
   /// new one.
   static constexpr Time idle_limit = std::chrono::seconds{10};

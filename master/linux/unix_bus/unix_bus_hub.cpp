@@ -30,8 +30,8 @@ namespace {
 constexpr std::size_t max_clients = 64;
 constexpr std::size_t client_batch_frames = 64;
 constexpr int takeover_poll_ms = 20;
-constexpr int most_takeovers =
-    25;  // how often a program tries again at its start while the path is taken
+/// While the path is taken, a program repeats its attempt this often at its start.
+constexpr int most_takeovers = 25;
 /// After an accept() that failed, for example because no descriptor is left, the client waits in
 /// the kernel, and the hub does not look at the listening socket for this time.
 constexpr Time accept_pause = std::chrono::milliseconds{100};
