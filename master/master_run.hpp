@@ -95,6 +95,16 @@ class MasterRun {
   /// later. Each accepted request is answered exactly once.
   bool submit(const Request& request) noexcept { return exchange_->requests.push(request); }
 
+  /// Hands a message about motions to the bus thread. Returns false if too many messages wait;
+  /// submit it again later.
+  bool submit(const motion::MotionMessage& message) noexcept {
+    return exchange_->motions.push(message);
+  }
+  /// Takes the next end of an order of motion. Returns false if there is none.
+  bool take(motion::MotionEnd& end) noexcept { return exchange_->motion_ends.pop(end); }
+  /// Copies the newest reports of all axes that can be moved.
+  void motions(MotionSnapshot& snapshot) const { exchange_->motion_board.read(snapshot); }
+
   /// Buffers for SDO values that are too long for a request. They live as long as the master.
   std::span<SdoTransfer> transfers() noexcept { return exchange_->transfers; }
 

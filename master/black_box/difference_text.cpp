@@ -24,7 +24,8 @@ std::string_view call_text(Mark mark) noexcept {
                                             "can't pass on a reply",
                                             "reports an event",
                                             "receives data that was too long to record",
-                                            "saves a checkpoint"};
+                                            "saves a checkpoint",
+                                            "takes a message about motions"};
   return name_of(mark, names, unknown);
 }
 

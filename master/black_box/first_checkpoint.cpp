@@ -27,6 +27,7 @@ std::uint64_t length_of(std::uint64_t word) noexcept {
     case Mark::set_points:
       return payload == 0 ? 0 : 1 + payload * sizeof(SetPoint) / 8;
     case Mark::request:
+    case Mark::motion:
     case Mark::checkpoint:
       return payload;
     default:

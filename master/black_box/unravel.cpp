@@ -57,6 +57,7 @@ class Unraveller {
         keep(payload == 0 ? 0 : 1 + payload * sizeof(SetPoint) / 8);
         break;
       case Mark::request:
+      case Mark::motion:
       case Mark::checkpoint:
         keep(payload);
         break;

@@ -15,6 +15,7 @@
 #include "master/rt/intake.hpp"
 #include "master/rt/machines/bus_machines.hpp"
 #include "master/rt/machines/services.hpp"
+#include "master/rt/motion/motion_stage.hpp"
 #include "master/rt/node_exchange.hpp"
 #include "master/rt/output_stage.hpp"
 #include "master/rt/port.hpp"
@@ -56,6 +57,7 @@ class BusLoop {
   void begin_beat() noexcept;
   bool send_sync() noexcept;
   void publish() noexcept;
+  void run_motions() noexcept;
   void use_slack() noexcept;
   void serve_round() noexcept;
   void send_outputs() noexcept;
@@ -78,6 +80,7 @@ class BusLoop {
   ImagePublisher<S> images_;
   RequestRouter<P, L, S> requests_;
   Slack<P, S> slack_;
+  MotionStage<L, S> motions_;
   OutputStage<P, L, S> outputs_;
   CycleReport<L, S> report_;
   Time published_{};             ///< publish time of the newest image
@@ -97,6 +100,7 @@ BusLoop<P, L, S>::BusLoop(const BusPlan& plan, P& port, L front, BusLoopOptions 
       images_{beat_, bus_, front_.exchange(), options.controller},
       requests_{port, front_, bus_, stop_.stops()},
       slack_{port, beat_, sender_, intake_, bus_},
+      motions_{front_, bus_},
       outputs_{port, front_, beat_, sender_, bus_},
       report_{front_, beat_, bus_} {
   StateSize size;
@@ -120,6 +124,7 @@ void BusLoop<P, L, S>::cycle() noexcept {
   begin_beat();       // A
   intake_.receive();  // B
   publish();          // C
+  run_motions();
   keep_state();
   finish_cycle();
 }
@@ -163,6 +168,11 @@ void BusLoop<P, L, S>::publish() noexcept {
   sender_.on_news(bus_.status.port, published_);
   images_.run_controller();
   bus_.pdos.inputs().forget_marks();
+}
+
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::run_motions() noexcept {
+  motions_.run({.cycle = beat_.cycle(), .now = published_}, stop_.stops().stopping());
 }
 
 /// Runs the services and the requests, then advances the stops.

@@ -6,7 +6,7 @@ namespace takt {
 
 /// The first word of a checkpoint. It changes whenever the order of the other words changes,
 /// because a checkpoint can only be used by the version of takt that has written it.
-inline constexpr std::uint64_t checkpoint_layout = 0x7461'6B74'0000'0003;
+inline constexpr std::uint64_t checkpoint_layout = 0x7461'6B74'0000'0004;
 
 /// Returns true if no operation is in progress, so that the state in keep() alone decides what
 /// follows.
@@ -20,7 +20,7 @@ template <Port P, FrontLink L, Services S>
 template <class Archive>
 void BusLoop<P, L, S>::keep(Archive& state) noexcept {
   std::uint64_t layout = checkpoint_layout;
-  state(layout, bus_, beat_, sender_, intake_, stop_, slack_);
+  state(layout, bus_, beat_, sender_, intake_, stop_, slack_, motions_);
 }
 
 /// Writes a checkpoint from time to time, in the slack and only if there is time for it.

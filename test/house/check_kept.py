@@ -16,11 +16,13 @@ SHOWN = "decides nothing: is only shown, or says when to show"
 NOT_KEPT = {
     "ArrivalPrediction": {PLAN: "window_"},
     "AxisStops": {SHARED: "bus_", IDLE: "ordered_ halt_ requests_"},
+    "AxisRunner": {PLAN: "period_"},
     "AxisMemories": {PLAN: "axes_", SHARED: "bus_"},
     "Beat": {PLAN: "plan_", SHARED: "status_ timing_", ANEW: "began_"},
     "BusLoop": {PLAN: "state_words_", SHARED: "port_ front_", SHOWN: "report_", IDLE: "requests_",
                 ANEW: "nodes_ images_ outputs_ published_"},
     "BusMachines": {PLAN: "plan observe wire", IDLE: "events service_frames"},
+    "DrivenAxis": {PLAN: "axis_ position_ velocity_ target_ velocity_offset_ node_outputs_"},
     "FrameSender": {SHARED: "port_ beat_ status_"},
     "Intake": {SHARED: "port_ beat_ bus_ timing_", IDLE: "left_from_ left_end_", ANEW: "received_"},
     "LossStop": {SHARED: "bus_ stops_"},
@@ -31,6 +33,7 @@ NOT_KEPT = {
     "Network": {PLAN: "plan_ observe_ nmt_stop_ stops_drives_ index_ emcy_ids_ answers_ dictionary_", SHARED: "events_",
                 IDLE: "stopping_ boots_given_up_ broadcasts_ streams_ streaming_ awaits_ awaited_ server_ command_ awaits_axes_ axes_at_rest_ "
                       "rest_"},
+    "MotionStage": {SHARED: "front_ bus_", ANEW: "inputs_"},
     "NetworkStart": {PLAN: "plan_"},
     "NmtGate": {PLAN: "inhibit_"},
     "NodeGuard": {PLAN: "plan_"},
@@ -203,7 +206,7 @@ def main(argument):
     if argument == "--self-test":
         return 1 if self_test() else 0
     root = pathlib.Path(argument)
-    headers = sorted(path for part in ("core", "rt") for path in (root / "master" / part).rglob("*.hpp"))
+    headers = sorted(path for part in ("core", "motion", "rt") for path in (root / "master" / part).rglob("*.hpp"))
     complaints, known = check([(path.relative_to(root), path.read_text()) for path in headers], NOT_KEPT)
     if len(known) < 20:
         complaints.append(f"only {len(known)} machines with a keep() were found")

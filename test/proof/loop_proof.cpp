@@ -168,7 +168,7 @@ template <class P>
 int prove(const BusPlan& plan, P& master_port, P& device_port, const Circumstances& given) {
   const auto exchange = std::make_unique<Exchange>(plan);
   Breaker breaker{given.to_break};
-  Journal journal{288 << 10};  // holds checkpoints, begins anew now and then
+  Journal journal{1 << 20};  // holds checkpoints, begins anew now and then
   journal.want();
   RecordedPort<P> port{master_port, &journal};
   const auto loop = std::make_unique<BusLoop<RecordedPort<P>, RecordedLink>>(

@@ -253,6 +253,24 @@ void PdoOutputs::command(SignalIndex signal, std::int64_t value, std::uint32_t t
        moment);
 }
 
+bool PdoOutputs::lead(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept {
+  Output& output = outputs_[output_of(signal)];
+  if (stopping_ || output.forced) return false;
+  output.led = true;
+  if (!limits_.empty() && !within_limits(signal, value, moment)) return false;
+  take(output, signal,
+       {.value = value, .generation = output.generation, .time_to_live = 0, .when = moment.now},
+       moment);
+  return true;
+}
+
+void PdoOutputs::trail(SignalIndex signal, std::int64_t value) noexcept {
+  const Output& output = outputs_[output_of(signal)];
+  const bool fallen = output.fallen && plan_.layout.signals[signal].fallback == Fallback::value;
+  if (!output.known || refuses(output) || fallen) return;
+  image_.values[signal] = value;
+}
+
 void PdoOutputs::fall_back() noexcept {
   stopping_ = true;
   for (std::size_t i = 0; i < outputs_.size(); ++i) {

@@ -85,6 +85,24 @@ class PdoOutputs {
   /// effective.
   void release(SignalIndex signal) noexcept;
 
+  /// Commands an output from a motion of the bus thread. Until release_lead(), commands of others
+  /// to this output are refused, and none of them takes effect later. Returns false if the value
+  /// was not taken: it is outside the limits, or an ordered stop or the loss of a node commands the
+  /// output.
+  bool lead(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
+  /// Ends lead(). The output keeps its value and accepts its next command.
+  void release_lead(SignalIndex signal) noexcept { outputs_[output_of(signal)].led = false; }
+  /// Sets the value of an output that has no effect now, because its axis is not enabled. This is
+  /// no command. Does nothing if another value is in force.
+  void trail(SignalIndex signal, std::int64_t value) noexcept;
+  /// The command of the output stays valid in this cycle, if it was valid before.
+  void keep_alive(SignalIndex signal, OutputMoment moment) noexcept {
+    Output& output = outputs_[output_of(signal)];
+    if (output.commanded && !output.fallen) {
+      output.expires = std::max(output.expires, moment.cycle + 1);
+    }
+  }
+
   /// Number of commands that the last pack() has seen for the first time.
   std::uint32_t fresh_commands() const noexcept { return fresh_commands_; }
   /// Returns true if every signal of this RPDO has a value that can be sent.
@@ -114,12 +132,13 @@ class PdoOutputs {
     bool commanded = false;   ///< that value was commanded
     bool fallen = false;      ///< the fallback is effective
     bool forced = false;
+    bool led = false;  ///< see lead()
     /// The fallback is effective because the sender has released the output.
     bool released = false;
 
     template <class Archive>
     void keep(Archive& state) noexcept {
-      state(expires, generation, limit, known, commanded, fallen, forced, released);
+      state(expires, generation, limit, known, commanded, fallen, forced, led, released);
     }
   };
   struct Row {
@@ -196,7 +215,9 @@ class PdoOutputs {
     constexpr std::int64_t most = 0xFFFF'FFFF;
     return static_cast<std::uint32_t>(std::min(passed / period, most));
   }
-  bool refuses(const Output& output) const noexcept { return stopping_ || output.forced; }
+  bool refuses(const Output& output) const noexcept {
+    return stopping_ || output.forced || output.led;
+  }
 
   // These functions are in pdo_outputs_limits.cpp.
   /// Drops those new commands of this pack that are outside their limits.

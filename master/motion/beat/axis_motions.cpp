@@ -77,6 +77,7 @@ void AxisMotions::begin_orders(BeatNumber beat) noexcept {
   std::array<Outcome, max_axes> objections{};
   std::array<std::uint8_t, max_axes> ready{};  // orders of each group
   const auto leads = [&](const MotionOrder& order) {
+    if (order.group >= runners_.size()) return false;
     const MotionOrder* first = runners_[order.group].due(beat);
     return first != nullptr && first->id == order.id;
   };

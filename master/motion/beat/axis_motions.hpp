@@ -38,7 +38,7 @@ class AxisMotions {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(runners_, heard_);
+    state(runners_, reports_, stops_, heard_);
   }
 
  private:
@@ -46,6 +46,11 @@ class AxisMotions {
   struct GroupStop {
     Stop stop;
     std::uint32_t id = 0;  ///< 0: of all axes of the group
+
+    template <class Archive>
+    void keep(Archive& state) noexcept {
+      state(stop, id);
+    }
   };
 
   void add_stop(std::size_t axis, StopCause cause) noexcept;

@@ -104,6 +104,12 @@ struct AxisReport {
   bool kept_alive = false;
   Stop stop;
   EndedOrders ended;  ///< in this beat
+
+  /// Not the orders that have ended: they are told in the beat in which they end.
+  template <class Archive>
+  void keep(Archive& archive) noexcept {
+    archive(state, commanded, actual, following_error, running, beats_left, kept_alive, stop);
+  }
 };
 
 }  // namespace takt::motion

@@ -58,12 +58,10 @@ class AxisRunner {
   /// Id of the newest motion that began; 0 for none.
   std::uint32_t newest() const noexcept { return newest_; }
 
-  /// An axis ends no order in the beat of a checkpoint that a replay could miss: run() has passed.
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(report_.state, report_.commanded, report_.running, report_.kept_alive, report_.stop,
-          player_, began_, stop_limits_, timeout_, latest_stop_, max_following_error_, waiting_,
-          newest_, has_taken_);
+    state(report_, player_, began_, stop_limits_, timeout_, latest_stop_, max_following_error_,
+          waiting_, newest_, has_taken_);
     state.position(group_, max_axes);
     state.position(sender_, max_axes);
   }

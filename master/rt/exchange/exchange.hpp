@@ -4,9 +4,12 @@
 #include <cstdint>
 
 #include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/motion_axes.hpp"
 #include "master/core/event.hpp"
 #include "master/core/request.hpp"
+#include "master/motion/beat/motion_message.hpp"
 #include "master/rt/exchange/histogram.hpp"
+#include "master/rt/exchange/motion_board.hpp"
 #include "master/rt/exchange/process_image.hpp"
 #include "master/rt/exchange/set_points.hpp"
 #include "master/rt/exchange/spsc_ring.hpp"
@@ -32,6 +35,7 @@ struct Exchange {
   explicit Exchange(const BusPlan& plan)
       : images{plan.layout.signals.size(), plan.pdos.tpdos.size()},
         status{plan.nodes.size(), plan.pdos.tpdos.size(), plan.pdos.rpdos.size()},
+        motion_board{motion_axes(plan).size()},
         set_points{plan.layout.outputs()} {}
   Exchange(const Exchange&) = delete;
   Exchange& operator=(const Exchange&) = delete;
@@ -41,6 +45,8 @@ struct Exchange {
   SpscRing<Reply, 16> replies;
   SpscRing<Event, 1024> events;
   StatusBoard status;
+  MotionBoard motion_board;
+  SpscRing<motion::MotionEnd, 512> motion_ends;
   TimingHistograms timing;
   /// Expected publish time of the next image (monotonic clock, ns). The front thread sets its own
   /// timer to this time; the bus thread does not wake it.
@@ -50,6 +56,7 @@ struct Exchange {
   // From the front thread to the bus thread.
   SetPoints set_points;
   SpscRing<Request, 16> requests;
+  SpscRing<motion::MotionMessage, 256> motions;
   std::array<SdoTransfer, 4> transfers;  ///< SdoTransfer names the thread that may use each
   std::atomic<bool> stop_requested{false};
 };

@@ -17,13 +17,15 @@ namespace takt {
 template <class L>
 concept FrontLink = std::copy_constructible<L> &&
                     requires(L link, const L constant, std::uint64_t cycle, Request& request,
-                             const Reply& reply, const Event& event, std::size_t words) {
+                             motion::MotionMessage& motion, const Reply& reply, const Event& event,
+                             std::size_t words) {
                       /// Images, states and times go straight to the exchange. They have no
                       /// reply.
                       { link.exchange() } noexcept -> std::same_as<Exchange&>;
                       /// The newest set; valid until the next call.
                       { link.set_points() } noexcept -> std::same_as<const SetPointFrame&>;
                       { link.take_request(request) } noexcept -> std::same_as<bool>;
+                      { link.take_motion(motion) } noexcept -> std::same_as<bool>;
                       { link.stop_requested() } noexcept -> std::same_as<bool>;
                       /// Returns false if there is no room; the loop then offers the reply again.
                       { link.give_reply(reply) } noexcept -> std::same_as<bool>;
@@ -47,6 +49,9 @@ class DirectLink {
   Exchange& exchange() noexcept { return *exchange_; }
   const SetPointFrame& set_points() noexcept { return exchange_->set_points.newest(); }
   bool take_request(Request& request) noexcept { return exchange_->requests.pop(request); }
+  bool take_motion(motion::MotionMessage& message) noexcept {
+    return exchange_->motions.pop(message);
+  }
   bool stop_requested() noexcept {
     return exchange_->stop_requested.load(std::memory_order_relaxed);
   }

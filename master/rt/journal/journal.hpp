@@ -31,6 +31,7 @@ enum class Mark : std::uint8_t {
   event = 11,         ///< event_words words
   gap = 12,           ///< an item was too long to be kept
   checkpoint = 13,    ///< payload: number of words; state of the master, see BusLoop::resume
+  motion = 14,        ///< payload: number of words; see put_motion()
 };
 
 namespace journal {

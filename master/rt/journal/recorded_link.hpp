@@ -5,6 +5,7 @@
 
 #include "master/rt/exchange/front_link.hpp"
 #include "master/rt/journal/journal.hpp"
+#include "master/rt/journal/journal_motion.hpp"
 #include "master/rt/journal/journal_request.hpp"
 
 namespace takt {
@@ -27,6 +28,11 @@ class RecordedLink {
   bool take_request(Request& request) noexcept {
     if (!direct_.take_request(request)) return false;
     if (journal_ != nullptr) put_request(*journal_, request, exchange().transfers);
+    return true;
+  }
+  bool take_motion(motion::MotionMessage& message) noexcept {
+    if (!direct_.take_motion(message)) return false;
+    if (journal_ != nullptr) put_motion(*journal_, message);
     return true;
   }
   bool stop_requested() noexcept {

@@ -204,6 +204,16 @@ bool ReplayPort::take_request(Request& request) noexcept {
   return false;
 }
 
+bool ReplayPort::take_motion(motion::MotionMessage& message) noexcept {
+  if (!comes(Mark::motion)) return false;
+  const std::uint64_t count = next(Mark::motion).value_or(0);
+  std::span<const std::uint64_t> words;
+  if (!take(count, words)) return false;
+  if (get_motion(words, message)) return true;
+  differ({.what = What::broken});
+  return false;
+}
+
 bool ReplayPort::stop_requested() noexcept {
   return comes(Mark::stop) && next(Mark::stop).has_value();
 }

@@ -8,6 +8,7 @@
 
 #include "master/rt/exchange/front_link.hpp"
 #include "master/rt/journal/journal.hpp"
+#include "master/rt/journal/journal_motion.hpp"
 #include "master/rt/journal/journal_request.hpp"
 #include "master/rt/journal/recorded_port.hpp"
 
@@ -75,6 +76,7 @@ class ReplayPort {
   void begin_cycle(std::uint64_t cycle) noexcept;
   const SetPointFrame& set_points() noexcept;
   bool take_request(Request& request) noexcept;
+  bool take_motion(motion::MotionMessage& message) noexcept;
   bool stop_requested() noexcept;
   bool give_reply() noexcept;
   void note_event() noexcept;
@@ -116,6 +118,7 @@ class ReplayedLink {
   Exchange& exchange() noexcept { return *exchange_; }
   const SetPointFrame& set_points() noexcept { return port_->set_points(); }
   bool take_request(Request& request) noexcept { return port_->take_request(request); }
+  bool take_motion(motion::MotionMessage& message) noexcept { return port_->take_motion(message); }
   bool stop_requested() noexcept { return port_->stop_requested(); }
   bool give_reply(const Reply&) noexcept { return port_->give_reply(); }
   void announce(const Event& event) noexcept {

@@ -1,0 +1,37 @@
+#pragma once
+#include <cstdint>
+
+#include "master/motion/beat/axis_report.hpp"
+#include "master/motion/beat/motion_order.hpp"
+
+namespace takt::motion {
+
+/// What a message of the front thread is about.
+enum class MessageKind : std::uint8_t {
+  heard,  ///< the sender is alive
+  order,  ///< `order` waits for its first beat
+  stop,   ///< the axis and its group stop along their limits
+};
+
+/// A message of the front thread about motions. Plain data.
+struct MotionMessage {
+  MessageKind kind = MessageKind::heard;
+  std::uint8_t sender = 0;  ///< of `heard`
+  std::uint8_t axis = 0;    ///< of `stop`
+  MotionOrder order{};      ///< of `order`
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(kind, sender, axis);
+    if (kind == MessageKind::order) state(order);
+  }
+};
+
+/// Tells the front thread how an order of an axis has ended.
+struct MotionEnd {
+  std::uint8_t axis = 0;
+  EndedOrder order{};
+  Stop stop{};  ///< of an order that was stopped
+};
+
+}  // namespace takt::motion

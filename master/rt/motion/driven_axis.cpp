@@ -1,0 +1,126 @@
+#include "master/rt/motion/driven_axis.hpp"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace takt {
+namespace {
+
+using motion::AxisCondition;
+using motion::AxisState;
+
+/// CiA 402-2, 0x6041.
+AxisCondition condition_of(std::int64_t statusword) noexcept {
+  if ((statusword & 0x6F) == 0x27) return AxisCondition::enabled;
+  const std::int64_t state = statusword & 0x4F;
+  return state == 0x0F || state == 0x08 ? AxisCondition::fault : AxisCondition::disabled;
+}
+
+/// Returns true if the drive follows the target position of each cycle: cyclic synchronous
+/// position, or a mode of the manufacturer. CiA 402-2, 0x6061.
+bool follows_each_target(std::int64_t mode) noexcept {
+  constexpr std::int8_t cyclic_synchronous_position = 8;
+  const auto number = static_cast<std::int8_t>(mode);
+  return number == cyclic_synchronous_position || number < 0;
+}
+
+bool moves(const motion::AxisReport& report) noexcept {
+  return report.state == AxisState::moving || report.state == AxisState::stopping;
+}
+
+}  // namespace
+
+DrivenAxis::DrivenAxis(const MotionAxis& axis, const BusPlan& plan)
+    : axis_{axis}, position_{scale_of(plan, axis.position)}, target_{scale_of(plan, axis.target)} {
+  if (axis.velocity) velocity_ = scale_of(plan, *axis.velocity);
+  if (axis.velocity_offset) velocity_offset_ = scale_of(plan, *axis.velocity_offset);
+  for (std::size_t i = plan.layout.inputs; i < plan.layout.signals.size(); ++i) {
+    if (plan.layout.signals[i].node_index != axis.node_index) continue;
+    node_outputs_.push_back(static_cast<SignalIndex>(i));
+  }
+}
+
+DrivenAxis::Scale DrivenAxis::scale_of(const BusPlan& plan, SignalIndex signal) noexcept {
+  return {.scale = plan.layout.signals[signal].scale, .offset = plan.layout.signals[signal].offset};
+}
+
+/// Returns std::nullopt for a number that INTEGER32 can't hold.
+std::optional<std::int64_t> DrivenAxis::Scale::raw(double number) const noexcept {
+  const double counts = std::round((number - offset) / scale);
+  constexpr double largest = std::numeric_limits<std::int32_t>::max();
+  if (!(std::abs(counts) <= largest)) return std::nullopt;
+  return static_cast<std::int64_t>(counts);
+}
+
+AxisCondition DrivenAxis::condition(const WorkingImage& image, bool exchanging) noexcept {
+  if (!exchanging) return AxisCondition::lost;
+  if (image.is_stale(axis_.statusword)) {
+    if (silent_beats_ < most_silent_beats) ++silent_beats_;
+    return silent_beats_ == most_silent_beats ? AxisCondition::lost : condition_;
+  }
+  silent_beats_ = 0;
+  const AxisCondition found = condition_of(image.values[axis_.statusword]);
+  const bool follows = !axis_.mode || follows_each_target(image.values[*axis_.mode]);
+  return found == AxisCondition::enabled && !follows ? AxisCondition::disabled : found;
+}
+
+/// While the actual position is missing, the following error counts as unchanged.
+motion::AxisInput DrivenAxis::read(PdoExchange& pdos, bool exchanging,
+                                   const motion::AxisReport& last) noexcept {
+  const WorkingImage& image = pdos.image();
+  condition_ = condition(image, exchanging);
+  motion::AxisInput input{.condition = condition_, .actual = last.actual, .set_point = {}};
+  input.actual.position = image.is_stale(axis_.position)
+                              ? last.commanded.position - last.following_error
+                              : position_.number(image.values[axis_.position]);
+  if (axis_.velocity) input.actual.velocity = velocity_.number(image.values[*axis_.velocity]);
+  const std::int64_t target = image.values[axis_.target];
+  if (target != written_) writer_ = Writer::others;
+  if (writer_ == Writer::others && pdos.outputs().known(axis_.target)) {
+    input.set_point = target_.number(target);
+  }
+  return input;
+}
+
+/// In the beat in which a motion ends, the output is still led: set-points that others have sent
+/// during the motion must not take effect after it.
+bool DrivenAxis::write(PdoOutputs& outputs, const motion::AxisReport& report,
+                       OutputMoment moment) noexcept {
+  if (moves(report)) return lead(outputs, report.commanded, moment);
+  const bool ends = report.state == AxisState::standing && writer_ == Writer::in_motion;
+  if (ends) {
+    const bool taken = lead(outputs, report.commanded, moment);
+    if (taken) writer_ = Writer::motion;
+    return taken;
+  }
+  stop_leading(outputs);
+  if (report.state == AxisState::standing) return true;
+  const auto raw = target_.raw(report.actual.position);
+  if (writer_ == Writer::others || !raw) return true;
+  outputs.trail(axis_.target, *raw);
+  written_ = *raw;
+  if (axis_.velocity_offset) outputs.trail(*axis_.velocity_offset, 0);
+  return true;
+}
+
+bool DrivenAxis::lead(PdoOutputs& outputs, const motion::State& state,
+                      OutputMoment moment) noexcept {
+  const auto raw = target_.raw(state.position);
+  const auto speed = velocity_offset_.raw(state.velocity);
+  bool taken = raw && speed && outputs.lead(axis_.target, *raw, moment);
+  if (taken && axis_.velocity_offset) {
+    taken = outputs.lead(*axis_.velocity_offset, *speed, moment);
+  }
+  writer_ = taken ? Writer::in_motion : Writer::others;
+  if (taken) written_ = *raw;
+  return taken;
+}
+
+void DrivenAxis::stop_leading(PdoOutputs& outputs) noexcept {
+  outputs.release_lead(axis_.target);
+  if (axis_.velocity_offset) outputs.release_lead(*axis_.velocity_offset);
+  if (writer_ == Writer::in_motion) writer_ = Writer::motion;
+}
+
+}  // namespace takt

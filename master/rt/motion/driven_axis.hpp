@@ -1,0 +1,75 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "eds_parser/table/motion_axes.hpp"
+#include "master/core/pdo/pdo_exchange.hpp"
+#include "master/motion/beat/axis_report.hpp"
+
+namespace takt {
+
+/// One axis between its motions and the image: it reads what the drive tells, and writes what the
+/// motion commands. Numbers of motions are in the units of the network file. Bus thread only.
+class DrivenAxis {
+ public:
+  DrivenAxis(const MotionAxis& axis, const BusPlan& plan);
+
+  std::uint8_t node_index() const noexcept { return axis_.node_index; }
+
+  /// Returns what the drive tells in this beat. `exchanging` states whether its node exchanges
+  /// PDOs, `last` is the report of the beat before.
+  motion::AxisInput read(PdoExchange& pdos, bool exchanging,
+                         const motion::AxisReport& last) noexcept;
+  /// Commands the target position, and the velocity as its offset, while the axis moves. While the
+  /// drive is not enabled, the target position follows the actual position if a motion has
+  /// commanded it last, so that the drive does not jump when it is enabled. Returns false if a
+  /// set-point was not taken, see PdoOutputs::lead().
+  bool write(PdoOutputs& outputs, const motion::AxisReport& report, OutputMoment moment) noexcept;
+  /// Keeps the commands of all outputs of the node valid in this cycle.
+  void keep_alive(PdoOutputs& outputs, OutputMoment moment) const noexcept {
+    for (const SignalIndex output : node_outputs_) outputs.keep_alive(output, moment);
+  }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(condition_, silent_beats_, written_, writer_);
+  }
+
+ private:
+  /// Who has commanded the target position last.
+  enum class Writer : std::uint8_t {
+    others,     ///< set-points of applications, or a fallback
+    motion,     ///< a motion that has ended
+    in_motion,  ///< a motion that runs
+  };
+  /// One signal as a number in its unit.
+  struct Scale {
+    double scale = 1.0;
+    double offset = 0.0;
+
+    double number(std::int64_t raw) const noexcept {
+      return static_cast<double>(static_cast<std::int32_t>(raw)) * scale + offset;
+    }
+    std::optional<std::int64_t> raw(double number) const noexcept;
+  };
+  static Scale scale_of(const BusPlan& plan, SignalIndex signal) noexcept;
+  /// A drive whose statusword is missing in so many beats in a row is lost.
+  static constexpr std::uint8_t most_silent_beats = 3;
+
+  motion::AxisCondition condition(const WorkingImage& image, bool exchanging) noexcept;
+  bool lead(PdoOutputs& outputs, const motion::State& state, OutputMoment moment) noexcept;
+  void stop_leading(PdoOutputs& outputs) noexcept;
+
+  MotionAxis axis_;
+  Scale position_;
+  Scale velocity_;
+  Scale target_;
+  Scale velocity_offset_;
+  std::vector<SignalIndex> node_outputs_;
+  motion::AxisCondition condition_ = motion::AxisCondition::disabled;
+  std::uint8_t silent_beats_ = 0;
+  std::int64_t written_ = 0;  ///< target position that a motion has written last
+  Writer writer_ = Writer::others;
+};
+
+}  // namespace takt

@@ -1,0 +1,120 @@
+#pragma once
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "eds_parser/table/motion_axes.hpp"
+#include "master/motion/beat/axis_motions.hpp"
+#include "master/motion/beat/motion_message.hpp"
+#include "master/rt/exchange/front_link.hpp"
+#include "master/rt/machines/bus_machines.hpp"
+#include "master/rt/motion/driven_axis.hpp"
+
+namespace takt {
+
+/// Runs the motions of the axes between the image and the outputs of each cycle. Costs nothing
+/// until the first message about motions has come. Bus thread only.
+template <FrontLink L, Services S>
+class MotionStage {
+ public:
+  /// Keeps references to both arguments.
+  MotionStage(L& front, BusMachines<S>& bus)
+      : front_{front},
+        bus_{bus},
+        motions_{motion_axes(bus.plan).size(),
+                 std::chrono::duration<double>{bus.plan.cycle.period}.count()} {
+    for (const MotionAxis& axis : motion_axes(bus.plan)) axes_.emplace_back(axis, bus.plan);
+    inputs_.resize(axes_.size());
+  }
+
+  /// Runs one cycle, after its image is complete and before its outputs are packed. `stopping`
+  /// states whether the ordered stop has begun.
+  void run(OutputMoment moment, bool stopping) noexcept {
+    if (bus_.observe) return;
+    take_messages();
+    if (!active_) return;
+    if (bus_.status.beats != beat_) run_beat(moment, stopping);
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      if (motions_.reports()[i].kept_alive) axes_[i].keep_alive(bus_.pdos.outputs(), moment);
+    }
+  }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(active_, beat_, axes_, motions_);
+  }
+
+ private:
+  /// Messages that are taken in one cycle: an order for each axis, and a few more.
+  static constexpr std::size_t most_messages = motion::max_axes + 8;
+
+  void take_messages() noexcept {
+    motion::MotionMessage message;
+    for (std::size_t i = 0; i < most_messages && front_.take_motion(message); ++i) {
+      active_ = true;
+      accept(message);
+    }
+  }
+  void accept(const motion::MotionMessage& message) noexcept;
+  void run_beat(OutputMoment moment, bool stopping) noexcept;
+  void tell_ends() noexcept;
+
+  L& front_;
+  BusMachines<S>& bus_;
+  std::vector<DrivenAxis> axes_;
+  motion::AxisMotions motions_;
+  std::vector<motion::AxisInput> inputs_;
+  motion::BeatNumber beat_ = 0;  ///< the last one that was run
+  bool active_ = false;          ///< a message has come
+};
+
+template <FrontLink L, Services S>
+void MotionStage<L, S>::accept(const motion::MotionMessage& message) noexcept {
+  switch (message.kind) {
+    case motion::MessageKind::heard:
+      motions_.sender_heard(message.sender, bus_.status.beats);
+      break;
+    case motion::MessageKind::stop:
+      motions_.stop_axis(message.axis, motion::StopCause::application);
+      break;
+    case motion::MessageKind::order: {
+      const motion::Outcome refusal = motions_.take(message.order, bus_.status.beats);
+      if (refusal == motion::Outcome::none) break;
+      const motion::EndedOrder ended{.id = message.order.id, .outcome = refusal};
+      front_.exchange().motion_ends.push({.axis = message.order.axis, .order = ended, .stop = {}});
+      break;
+    }
+  }
+}
+
+template <FrontLink L, Services S>
+void MotionStage<L, S>::run_beat(OutputMoment moment, bool stopping) noexcept {
+  beat_ = bus_.status.beats;
+  if (stopping) motions_.stop_all(motion::StopCause::ordered_stop);
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const bool exchanging = bus_.exchanging[axes_[i].node_index()];
+    inputs_[i] = axes_[i].read(bus_.pdos, exchanging, motions_.reports()[i]);
+  }
+  const auto reports = motions_.run(beat_, inputs_);
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (axes_[i].write(bus_.pdos.outputs(), reports[i], moment) || stopping) continue;
+    motions_.stop_axis(static_cast<std::uint8_t>(i), motion::StopCause::limit);
+  }
+  tell_ends();
+  front_.exchange().motion_board.write(moment.cycle, beat_, reports);
+}
+
+template <FrontLink L, Services S>
+void MotionStage<L, S>::tell_ends() noexcept {
+  const auto reports = motions_.reports();
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    for (const motion::EndedOrder& order : reports[i].ended.orders()) {
+      front_.exchange().motion_ends.push(
+          {.axis = static_cast<std::uint8_t>(i), .order = order, .stop = reports[i].stop});
+    }
+  }
+}
+
+}  // namespace takt

@@ -1,0 +1,158 @@
+#include <gtest/gtest.h>
+
+#include "test/motions/moved_axes.hpp"
+
+namespace takt {
+namespace {
+
+using motion::AxisState;
+using motion::Outcome;
+using motion::StopCause;
+using test::MovedAxes;
+
+TEST(MotionStage, MovesBothAxesAsOneGroup) {
+  MovedAxes bus;
+  bus.enable();
+  bus.move({1.0, -0.5});
+  ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[0].state == AxisState::moving; }, 10));
+  EXPECT_EQ(bus.now.axes[1].state, AxisState::moving) << "they begin in the same beat";
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  ASSERT_TRUE(bus.run_until([&] { return bus.ends.size() == 2; }));
+  for (const motion::MotionEnd& end : bus.ends) EXPECT_EQ(end.order.outcome, Outcome::done);
+  bus.run(10);
+  EXPECT_NEAR(bus.position(0), 1.0, 2e-3);
+  EXPECT_NEAR(bus.position(1), -0.5, 2e-3);
+  EXPECT_TRUE(bus.enabled(0));
+}
+
+/// The set-point of each beat is that of the planned motion, rounded to counts: none is left out,
+/// and none comes twice.
+TEST(MotionStage, WritesTheSetPointOfEachBeat) {
+  MovedAxes bus;
+  bus.enable();
+  bus.move({2.0});
+  const Signal& signal = bus.network.plan.layout.signals[bus.axes[0].target];
+  int beats = 0;
+  bus.each_cycle = [&] {
+    bus.keep_alive();
+    if (bus.now.axes[0].state != AxisState::moving) return;
+    ++beats;
+  };
+  std::vector<std::int64_t> written;
+  ASSERT_TRUE(bus.run_until([&] {
+    if (bus.now.axes[0].state == AxisState::moving) {
+      const double counts = bus.now.axes[0].commanded.position / signal.scale;
+      written.push_back(std::llround(counts));
+    }
+    // The image shows the outputs of the cycle before.
+    if (written.size() > 1) {
+      EXPECT_EQ(bus.target(0), written[written.size() - 2]);
+    }
+    return !bus.ends.empty();
+  }));
+  EXPECT_GT(beats, 100);
+  for (std::size_t i = 2; i < written.size(); ++i) {
+    const auto bend = written[i] - 2 * written[i - 1] + written[i - 2];
+    // 20 rad/s^2 in 2 ms are 0.13 counts a beat squared, and rounding adds at most two counts.
+    EXPECT_LE(std::abs(bend), 2) << i;
+  }
+}
+
+TEST(MotionStage, AMotionOutlivesItsApplicationByTheTimeoutAndTheDriveIsDisabledAfterTheStop) {
+  MovedAxes bus;
+  bus.enable();
+  bus.move({40.0});
+  ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[0].state == AxisState::moving; }, 10));
+  bus.run(240);  // the time to live of the controlword is 500 cycles, some of which have passed
+  EXPECT_EQ(bus.now.axes[0].state, AxisState::moving);
+  ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[0].state == AxisState::stopping; }, 20));
+  EXPECT_EQ(bus.now.axes[0].stop.cause, StopCause::sender_silent);
+  EXPECT_TRUE(bus.enabled(0)) << "the drive stays enabled during its stop";
+  ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[0].state == AxisState::standing; }));
+  EXPECT_NEAR(bus.now.axes[0].commanded.velocity, 0.0, 1e-12);
+  ASSERT_TRUE(bus.run_until([&] { return !bus.enabled(0); }, 600)) << "its commands have expired";
+}
+
+TEST(MotionStage, AnAxisThatStandsIsKeptEnabledWhileItsSenderIsAlive) {
+  MovedAxes bus;
+  bus.enable();
+  bus.move({0.1});
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  bus.run(2000);  // four times the time to live of the controlword
+  EXPECT_TRUE(bus.enabled(0));
+  EXPECT_FALSE(bus.enabled(1)) << "nobody commands the other axis";
+}
+
+TEST(MotionStage, DirectSetPointsAreRefusedDuringAMotionAndTakenAfterIt) {
+  MovedAxes bus;
+  bus.enable();
+  bus.move({1.0});
+  ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[0].state == AxisState::moving; }, 10));
+  bus.each_cycle = [&] {
+    bus.keep_alive();
+    if (!bus.ends.empty()) return;
+    bus.master.set(bus.axes[0].target, 0);
+    bus.master.publish_outputs(bus.world.now());
+  };
+  ASSERT_TRUE(bus.run_until([&] { return !bus.ends.empty(); }));
+  EXPECT_EQ(bus.ends[0].order.outcome, Outcome::done);
+  bus.run(5);
+  const std::int64_t at_rest = bus.target(0);
+  EXPECT_NEAR(static_cast<double>(at_rest) * 6.283185307179586e-4, 1.0, 1e-3);
+  bus.master.set(bus.axes[0].target, at_rest + 10);
+  bus.master.publish_outputs(bus.world.now());
+  bus.run(3);
+  EXPECT_EQ(bus.target(0), at_rest + 10);
+  EXPECT_NEAR(bus.now.axes[0].commanded.position,
+              static_cast<double>(at_rest + 10) * 6.283185307179586e-4, 1e-9)
+      << "the next motion begins there";
+}
+
+TEST(MotionStage, TheGroupStopsIfTheNodeOfOneAxisIsLost) {
+  MovedAxes bus{{{.kind = sim::FaultKind::power_off,
+                  .node = 1_node,
+                  .at = std::chrono::seconds{4},
+                  .until = std::chrono::seconds{20}}}};
+  bus.enable();
+  ASSERT_LT(bus.world.now(), std::chrono::seconds{3});
+  bus.run_until([&] { return bus.world.now() > std::chrono::milliseconds{3700}; });
+  bus.enable();
+  bus.move({40.0, 40.0});
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[1].state == AxisState::stopping; }));
+  EXPECT_EQ(bus.now.axes[1].stop.cause, StopCause::node_lost);
+  EXPECT_EQ(bus.now.axes[1].stop.axis, 0);
+  EXPECT_LT(bus.world.now(), std::chrono::milliseconds{4015});
+}
+
+TEST(MotionStage, AnOrderedStopEndsEachMotion) {
+  MovedAxes bus;
+  bus.enable();
+  bus.move({40.0, 40.0});
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  bus.run(200);
+  bus.master.request_stop();
+  ASSERT_TRUE(bus.run_until([&] { return bus.ends.size() == 2; }));
+  for (const motion::MotionEnd& end : bus.ends) {
+    EXPECT_EQ(end.order.outcome, Outcome::stopped);
+    EXPECT_EQ(end.stop.cause, StopCause::ordered_stop);
+  }
+  ASSERT_TRUE(bus.run_until([&] { return bus.master.finished(); }));
+}
+
+TEST(MotionStage, AStopOfTheApplicationActsInTheNextBeat) {
+  MovedAxes bus;
+  bus.enable();
+  bus.move({40.0, 40.0});
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  bus.run(200);
+  bus.stop(1);
+  bus.cycle();
+  EXPECT_EQ(bus.now.axes[0].state, AxisState::stopping);
+  EXPECT_EQ(bus.now.axes[0].stop.cause, StopCause::application);
+  ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[0].state == AxisState::standing; }));
+  EXPECT_TRUE(bus.enabled(0));
+}
+
+}  // namespace
+}  // namespace takt
