@@ -155,7 +155,8 @@ std::vector<TypedMessage> typed_messages(const BusPlan& plan) {
   std::vector<TypedMessage> messages;
   std::set<std::string> used;
   // A node called `transfer` would get this channel, too.
-  std::set<std::string> channels{channel_name(plan.name, "TRANSFER_STATE")};
+  std::set<std::string> channels{channel_name(plan.name, "TRANSFER_STATE"),
+                                 channel_name(plan.name, "MOTION_COMMAND")};
   for (std::size_t node = 0; node < plan.nodes.size(); ++node) {
     for (const bool command : {false, true}) {
       TypedMessage message = message_of(plan, node, command);

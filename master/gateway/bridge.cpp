@@ -27,6 +27,8 @@ Channels::Channels(const std::string& bus)
     : image{channel_name(bus, "IMAGE")},
       layout{channel_name(bus, "LAYOUT")},
       command{channel_name(bus, "COMMAND")},
+      motion{channel_name(bus, "MOTION")},
+      motion_command{channel_name(bus, "MOTION_COMMAND")},
       status{channel_name(bus, "STATUS")},
       sync{channel_name(bus, "SYNC")},
       pdos{channel_name(bus, "PDOS")},
@@ -55,6 +57,9 @@ Bridge::Bridge(MasterRun& master, Transport& transport, const Clocks& clocks, Br
                   outputs_staged_ |= master_.set(signal, value, time_to_live);
                 },
                 [this](const Notice& notice) { this->announce(notice); }},
+      motions_{master.plan(), commands_,
+               [this](const motion::MotionMessage& message) { return master_.submit(message); },
+               [this](const Notice& notice) { this->announce(notice); }},
       requests_{master.plan(),
                 {.session = options_.session, .observe = options_.observe},
                 [this](const Request& request) { return master_.submit(request); }},
@@ -112,6 +117,7 @@ std::uint64_t Bridge::cycle_at(Time now) const noexcept {
 bool Bridge::serve() {
   notice_gap();
   const bool some = publish_images();
+  serve_motions();
   notice_gap();
   take_messages();
   serve_requests();
@@ -194,6 +200,7 @@ void Bridge::take_messages() {
 
 void Bridge::on_message(std::string_view channel, Bytes data) {
   if (channel == channels_.command) on_command(data);
+  if (channel == channels_.motion_command) on_motion(data);
   if (channel == channels_.request) on_request(data);
   if (channel == channels_.transfer) on_transfer(data);
   if (typed_) on_typed(channel, data);
@@ -208,20 +215,22 @@ void Bridge::on_typed(std::string_view channel, Bytes data) {
 
 void Bridge::take_command(const command_t& command, std::optional<std::size_t> only_node) {
   const Time now = clocks_.now();
-  if (waited(command, now)) return commands_.discard();
+  if (waited(command.cycle, now)) return commands_.discard();
   take_at(command, now, only_node);
 }
 
-bool Bridge::waited(const command_t& command, Time now) const noexcept {
+bool Bridge::waited(std::int64_t cycle, Time now) const noexcept {
   if (gap_.discards_commands(now)) return true;
-  return command.cycle >= 1 && static_cast<std::uint64_t>(command.cycle) < first_cycle_;
+  return cycle >= 1 && static_cast<std::uint64_t>(cycle) < first_cycle_;
 }
 
 bool Bridge::take_at(const command_t& command, Time now, std::optional<std::size_t> only_node) {
   if (!outputs_staged_) judged_ = now;
-  return commands_.take(
-      command,
-      {.cycle = cycle_at(now), .now = now, .nodes = snapshot_.nodes, .only_node = only_node});
+  return commands_.take(command, context_at(now, only_node));
+}
+
+CommandContext Bridge::context_at(Time now, std::optional<std::size_t> only_node) const noexcept {
+  return {.cycle = cycle_at(now), .now = now, .nodes = snapshot_.nodes, .only_node = only_node};
 }
 
 void Bridge::on_command(Bytes data) {

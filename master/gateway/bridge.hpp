@@ -16,6 +16,7 @@
 #include "master/gateway/message/image_messages.hpp"
 #include "master/gateway/message/status_messages.hpp"
 #include "master/gateway/message/typed_channels.hpp"
+#include "master/gateway/motion/motion_commands.hpp"
 #include "master/gateway/notice/emcy_log.hpp"
 #include "master/gateway/notice/notice.hpp"
 #include "master/gateway/notice/notice_limit.hpp"
@@ -30,10 +31,10 @@ namespace takt {
 /// The LCM channels of one bus.
 struct Channels {
   explicit Channels(const std::string& bus);
-  std::string image, layout, command, status, sync, pdos, timing, event, request, reply, transfer,
-      transfer_state;
+  std::string image, layout, command, motion, motion_command, status, sync, pdos, timing, event,
+      request, reply, transfer, transfer_state;
   /// The channels that the daemon receives.
-  std::vector<std::string> heard() const { return {command, request, transfer}; }
+  std::vector<std::string> heard() const { return {command, motion_command, request, transfer}; }
 };
 
 struct BridgeOptions {
@@ -103,9 +104,9 @@ class Bridge {
   /// Returns the present cycle by the clock; this includes cycles whose images were not seen yet.
   std::uint64_t cycle_at(Time now) const noexcept;
   bool take_at(const command_t& command, Time now, std::optional<std::size_t> only_node = {});
-  /// Returns true if the command came from the transports too soon after a gap, or was computed
-  /// from an image from before its end.
-  bool waited(const command_t& command, Time now) const noexcept;
+  /// Returns true if a command came from the transports too soon after a gap, or was computed from
+  /// an image from before its end. `cycle` is that of the image.
+  bool waited(std::int64_t cycle, Time now) const noexcept;
   void publish_outputs();
   /// Returns why a request is too old to be executed; empty if it is not too old.
   std::string age_trouble(std::int64_t utime, Time now) const;
@@ -124,6 +125,9 @@ class Bridge {
   void on_command(Bytes data);
   void on_typed(std::string_view channel, Bytes data);
   void take_command(const command_t& command, std::optional<std::size_t> only_node = {});
+  void on_motion(Bytes data);
+  void serve_motions();
+  CommandContext context_at(Time now, std::optional<std::size_t> only_node = {}) const noexcept;
   void on_request(Bytes data);
   void send(Notice notice);
   void answer_history(const request_t& request);
@@ -172,6 +176,8 @@ class Bridge {
   TimingMessages timing_messages_;
   Histogram sync_to_lcm_;  // from SYNC until the image, with its typed messages, is handed over
   Commands commands_;
+  MotionCommands motions_;
+  MotionSnapshot motion_reports_;
   Requests requests_;
   Transfers transfers_;
   PdoOutages outages_;

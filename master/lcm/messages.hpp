@@ -10,6 +10,8 @@
 #include <takt/event_t.hpp>
 #include <takt/image_t.hpp>
 #include <takt/layout_t.hpp>
+#include <takt/motion_command_t.hpp>
+#include <takt/motion_t.hpp>
 #include <takt/pdo_status_t.hpp>
 #include <takt/reply_t.hpp>
 #include <takt/request_t.hpp>
@@ -64,6 +66,8 @@ consteval std::string_view message_layout() {
   if (std::same_as<T, event_t>) return "lhllhsshs";
   if (std::same_as<T, image_t>) return "llhhhlllin(l)n(i)";
   if (std::same_as<T, layout_t>) return "lhhhllliiin(shsihbhhsdd)";
+  if (std::same_as<T, motion_command_t>) return "lhllslissin(sbdddddd)";
+  if (std::same_as<T, motion_t>) return "lhhhlln(hbbiibddddddd)";
   if (std::same_as<T, pdo_status_t>) return "lhhhlln(hhbibhllbibhllll)";
   if (std::same_as<T, sync_status_t>) return "lhlhshllllls";
   if (std::same_as<T, reply_t>) return "lhllsblsn(b)";

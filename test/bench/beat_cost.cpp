@@ -28,19 +28,23 @@ struct MovingAxes {
     std::vector<PlannedAxis> planned(axes);
     if (!plan_trajectory(tasks, {}, planned)) return;
     for (std::size_t i = 0; i < axes; ++i) {
-      motions.take({.id = 1,
-                    .axis = static_cast<std::uint8_t>(i),
-                    .axes = axes,
-                    .begin = beat + 1,
-                    .profile = planned[i].profile,
-                    .stop = limits,
-                    .timeout = 1'000'000'000},
-                   beat);
+      MotionOrder order;
+      order.id = 1;
+      order.axis = static_cast<std::uint8_t>(i);
+      order.axes = axes;
+      order.begin = beat + 1;
+      order.profile = planned[i].profile;
+      order.stop = limits;
+      order.timeout = 1'000'000'000;
+      motions.take(order, beat);
     }
     for (int i = 0; i < 100; ++i) run();
   }
 
-  std::span<const AxisReport> run() { return motions.run(++beat, inputs); }
+  std::span<const AxisReport> run() {
+    ++beat;
+    return motions.run(beat, beat, inputs);
+  }
 
   AxisMotions motions;
   std::vector<AxisInput> inputs;

@@ -1,4 +1,5 @@
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -64,8 +65,9 @@ class Gateway {
       case 0:
         return send_raw(input);
       case 1:
-      case 2:
         return send(bridge_.channels().command, command(input), input);
+      case 2:
+        return send(bridge_.channels().motion_command, motion(input), input);
       case 3:
         return send(bridge_.channels().request, request(input), input);
       case 4:
@@ -108,6 +110,40 @@ class Gateway {
     fill_numbers(message.signals, count, 1, input);
     fill_numbers(message.values, count, 1 + input.byte() % 8, input);
     message.num_values = static_cast<std::int32_t>(count);
+    return message;
+  }
+  /// Any number as a position or a limit, with some that a command would have.
+  static double number(Input& input) {
+    constexpr std::array usual{0.0, 0.5, -1.0, 2.0, 20.0, 400.0};
+    const std::uint8_t which = input.byte();
+    return which < 0xE0 ? usual[which % usual.size()] : std::bit_cast<double>(input.number(8));
+  }
+  takt::motion_command_t motion(Input& input) const {
+    constexpr std::array kinds{"move", "jog", "stop", "alive"};
+    constexpr std::array nodes{"shoulder", "elbow", "io"};
+    takt::motion_command_t message{};
+    message.schema = takt::message_schema;
+    message.session = session;
+    message.instance = input.byte() % 4;
+    message.sender = word(input);
+    message.cycle = cycle_number(input);
+    message.id = input.byte();
+    const std::uint8_t kind = input.byte();
+    message.kind = kind < 0xF0 ? kinds[kind % kinds.size()] : word(input);
+    message.timeout_ms = static_cast<std::int32_t>(input.number(input.byte() % 5));
+    for (int i = input.byte() % 4; i > 0; --i) {
+      takt::motion_goal_t goal{};
+      goal.node = nodes[input.byte() % nodes.size()];
+      goal.axis = static_cast<std::int8_t>(input.byte() % 3);
+      goal.position = number(input);
+      goal.velocity = number(input);
+      goal.max_velocity = number(input);
+      goal.max_acceleration = number(input);
+      goal.max_jerk = number(input);
+      goal.max_following_error = number(input);
+      message.goals.push_back(goal);
+    }
+    message.num_goals = static_cast<std::int32_t>(message.goals.size());
     return message;
   }
   static takt::request_t request(Input& input) {

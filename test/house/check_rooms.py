@@ -73,6 +73,7 @@ ROOMS = {
     "master/explain/frame": ("tells the CANopen meaning of a frame in words", "master/wire master/explain master/trace"),
     "master/motion": ("trajectories of axes within their limits", ""),
     "master/motion/beat": ("runs the motions of all axes cycle by cycle", "master/motion"),
+    "master/motion/planner": ("plans the orders of axes from the states that they will have", "master/motion master/motion/beat"),
     "master/rt/exchange": ("what crosses between the bus thread and the front thread",
                            "master/core master/motion/beat master/rt/port.hpp"),
     "master/rt/journal": ("records everything that decides a run, and plays it back",
@@ -119,12 +120,15 @@ ROOMS = {
     "master/gateway/command": ("turns LCM messages into set-points, requests and transfers; leases",
                                "master/wire master/core master/core/lss master/units master/lcm master/gateway/notice "
                                "master/gateway/message"),
+    "master/gateway/motion": ("turns LCM messages about motions into orders of the bus thread",
+                              "master/motion master/motion/beat master/motion/planner master/rt/exchange master/lcm "
+                              "master/gateway/notice master/gateway/command"),
     "master/gateway/ascii": ("text commands of CiA 309-3",
                              "master/wire master/core master/core/lss master/units master/lcm master/linux master/linux/unix_bus "
                              "master/gateway/message master/gateway/front_guest.hpp"),
     "master/gateway": ("the work of the front thread",
                        "master master/wire master/core master/explain master/lcm master/rt/exchange "
-                       "master/gateway/notice master/gateway/message master/gateway/command"),
+                       "master/gateway/notice master/gateway/message master/gateway/command master/gateway/motion"),
     "master/black_box": ("recordings of the master, and their replay",
                          "master/core master/explain master/trace master/linux master/rt master/rt/journal"),
 

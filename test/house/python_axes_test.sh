@@ -23,4 +23,11 @@ for _ in 1 2 3; do
   PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/axes.py" demo 2 && moved=yes && break
 done
 [ "$moved" ] || { cat "$tmp/log" >&2; exit 1; }
+# taktd runs the motions of the other program, so a pause of the machine does not end them.
+motion() { PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/motion.py" demo "$@"; }
+motion shoulder 1.5 --velocity 3 --acceleration 20 >"$tmp/moved" || { cat "$tmp/log" >&2; exit 1; }
+grep -q '^the motion is done: shoulder is at 1\.[45]' "$tmp/moved" || { cat "$tmp/moved" >&2; exit 1; }
+motion elbow --jog -1 --for 1 --velocity 2 --acceleration 20 | grep -q '^the motion has stopped: elbow is at -'
+if motion shoulder 150 --velocity 3 --acceleration 20 2>"$tmp/refused"; then echo "a position outside was not refused" >&2; exit 1; fi
+grep -q 'would leave its range' "$tmp/refused" || { cat "$tmp/refused" >&2; exit 1; }
 timeout 240 "$python" "$here/test/house/python_axes_faults.py" "$tmp"

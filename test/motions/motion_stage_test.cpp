@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "test/motions/moved_axes.hpp"
+#include "test/support/counted_new.hpp"
 
 namespace takt {
 namespace {
@@ -138,6 +139,23 @@ TEST(MotionStage, AnOrderedStopEndsEachMotion) {
     EXPECT_EQ(end.stop.cause, StopCause::ordered_stop);
   }
   ASSERT_TRUE(bus.run_until([&] { return bus.master.finished(); }));
+}
+
+TEST(MotionStage, TheBusThreadAllocatesNothingWhileAxesBeginMoveAndStop) {
+  MovedAxes bus;
+  bus.enable();
+  bus.move({40.0, 40.0});
+  std::uint64_t made = 0;
+  for (int i = 0; i < 400; ++i) {
+    if (i == 300) bus.stop(0);
+    bus.keep_alive();
+    const std::uint64_t before = allocations();
+    bus.master.cycle();
+    made += allocations() - before;
+  }
+  bus.master.motions(bus.now);
+  EXPECT_EQ(bus.now.axes[0].stop.cause, StopCause::application);
+  EXPECT_EQ(made, 0U);
 }
 
 TEST(MotionStage, AStopOfTheApplicationActsInTheNextBeat) {

@@ -7,6 +7,7 @@
 #include "eds_parser/lcm/lcm_channel.hpp"
 #include "eds_parser/lcm/typed_message.hpp"
 #include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/table/motion_axes.hpp"
 #include "eds_parser/table/name_of.hpp"
 
 namespace takt {
@@ -97,6 +98,12 @@ std::vector<LcmChannel> lcm_channels(const BusPlan& plan, const LcmOptions& opti
       {channel("TRANSFER_STATE"), "takt.transfer_state_t",
        "progress of these transfers, and data that were read"},
   };
+  if (!motion_axes(plan).empty()) {
+    channels.push_back({channel("MOTION_COMMAND"), "takt.motion_command_t",
+                        "motions that taktd runs: move, jog, stop"});
+    channels.push_back({channel("MOTION"), "takt.motion_t",
+                        "after each image, once a motion was commanded: what the axes do"});
+  }
   if (!options.typed) return channels;
   for (const TypedMessage& message : typed_messages(plan)) {
     channels.push_back({message.channel, message.package + '.' + message.name,

@@ -170,7 +170,8 @@ std::uint32_t Commands::lease_cycles(std::size_t node_index) const noexcept {
   return longest;
 }
 
-bool Commands::check_node(std::size_t node_index, const Received& from) {
+/// Gives the node to the sender for `cycles`; 0 means no limit.
+bool Commands::check_node(std::size_t node_index, std::uint32_t cycles, const Received& from) {
   const std::uint8_t node = plan_.nodes[node_index].id.value();
   const NodeStatus& status = from.context.nodes[node_index];
   if (plan_.nodes[node_index].boot && status.boot != BootState::ready) {
@@ -181,7 +182,7 @@ bool Commands::check_node(std::size_t node_index, const Received& from) {
   }
   const Sender sender{.instance = from.command.instance, .name = from.command.sender};
   const LeaseTerm term{.now = from.context.cycle,
-                       .cycles = lease_cycles(node_index),
+                       .cycles = cycles,
                        .computed_from = static_cast<std::uint64_t>(from.command.cycle)};
   switch (leases_.take(node_index, sender, term)) {
     case LeaseVerdict::taken:
@@ -257,6 +258,24 @@ std::optional<CommandLimit> Commands::newest_limit(std::int64_t signal) const no
   return index < limits_.size() ? limits_[index] : std::nullopt;
 }
 
+bool Commands::admits(const command_t& header, const CommandContext& context) {
+  const Received from{header, context};
+  return check_message(from) && check_cycle(from);
+}
+
+bool Commands::lease(const command_t& header, std::span<const std::size_t> nodes,
+                     std::uint32_t cycles, const CommandContext& context) {
+  const Received from{header, context};
+  for (const std::size_t node : nodes) {
+    if (!freshness_of(header, context.cycle, shortest_limit(node)).fresh) {
+      return refuse(from, {CommandRefusal::too_old, plan_.nodes[node].id.value()},
+                    too_old(header, context));
+    }
+    if (!check_node(node, cycles, from)) return false;
+  }
+  return true;
+}
+
 bool Commands::take(const command_t& command, const CommandContext& context) {
   const Received from{command, context};
   if (!check_message(from)) return false;
@@ -269,7 +288,8 @@ bool Commands::take(const command_t& command, const CommandContext& context) {
     const std::size_t node = plan_.layout.signals[item.signal].node_index;
     if (node >= context.nodes.size()) continue;
     if (verdicts_[node] == Verdict::unknown) {
-      verdicts_[node] = check_node(node, from) ? Verdict::accepted : Verdict::refused;
+      verdicts_[node] =
+          check_node(node, lease_cycles(node), from) ? Verdict::accepted : Verdict::refused;
     }
     if (verdicts_[node] == Verdict::refused) continue;
     set_output_(item.signal, item.value, item.cycles);

@@ -67,6 +67,18 @@ class Commands {
   /// Returns true if at least one output was staged.
   bool take(const command_t& command, const CommandContext& context);
 
+  /// Checks the session, the sender and the cycle of a message that is no command of outputs, such
+  /// as a motion. A refusal is reported.
+  bool admits(const command_t& header, const CommandContext& context);
+  /// Gives these nodes to the sender of such a message for `cycles`, if it is not too old and
+  /// nobody else holds one of them. A refusal is reported.
+  bool lease(const command_t& header, std::span<const std::size_t> nodes, std::uint32_t cycles,
+             const CommandContext& context);
+  /// Returns true if the sender with this instance holds the node.
+  bool holds(std::size_t node, std::int64_t instance, std::uint64_t cycle) const noexcept {
+    return leases_.holds(node, instance, cycle);
+  }
+
   std::uint64_t taken() const noexcept { return taken_; }
   std::uint64_t refused() const noexcept {
     return std::accumulate(refused_.begin(), refused_.end(), std::uint64_t{0});
@@ -101,7 +113,7 @@ class Commands {
 
   bool check_message(const Received& from);
   bool read_items(const Received& from);
-  bool check_node(std::size_t node_index, const Received& from);
+  bool check_node(std::size_t node_index, std::uint32_t cycles, const Received& from);
   bool check_cycle(const Received& from);
   std::string owned_text(std::size_t node_index, const Received& from) const;
   bool release(const Received& from);

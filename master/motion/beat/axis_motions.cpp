@@ -10,15 +10,15 @@ AxisMotions::AxisMotions(std::size_t axes, double period) : reports_(std::min(ax
   }
 }
 
-Outcome AxisMotions::take(const MotionOrder& order, BeatNumber beat) noexcept {
+Outcome AxisMotions::take(const MotionOrder& order, CycleNumber cycle) noexcept {
   if (order.axis >= runners_.size() || order.group >= runners_.size()) return Outcome::unsound;
   const Outcome refusal = runners_[order.axis].wait(order);
-  if (refusal == Outcome::none) sender_heard(order.sender, beat);
+  if (refusal == Outcome::none) sender_heard(order.sender, cycle);
   return refusal;
 }
 
-void AxisMotions::sender_heard(std::uint8_t sender, BeatNumber beat) noexcept {
-  if (sender < max_axes) heard_[sender] = beat;
+void AxisMotions::sender_heard(std::uint8_t sender, CycleNumber cycle) noexcept {
+  if (sender < max_axes) heard_[sender] = cycle;
 }
 
 void AxisMotions::stop_axis(std::uint8_t axis, StopCause cause) noexcept {
@@ -43,11 +43,11 @@ void AxisMotions::add_stop(std::size_t axis, StopCause cause) noexcept {
   }
 }
 
-std::span<const AxisReport> AxisMotions::run(BeatNumber beat,
+std::span<const AxisReport> AxisMotions::run(BeatNumber beat, CycleNumber cycle,
                                              std::span<const AxisInput> inputs) noexcept {
-  observe(beat, inputs);
+  observe(beat, cycle, inputs);
   stop_groups(beat);
-  begin_orders(beat);
+  begin_orders(beat, cycle);
   for (std::size_t i = 0; i < runners_.size(); ++i) {
     reports_[i] = runners_[i].run(beat);
     runners_[i].forget_ended();
@@ -55,9 +55,10 @@ std::span<const AxisReport> AxisMotions::run(BeatNumber beat,
   return reports_;
 }
 
-void AxisMotions::observe(BeatNumber beat, std::span<const AxisInput> inputs) noexcept {
+void AxisMotions::observe(BeatNumber beat, CycleNumber cycle,
+                          std::span<const AxisInput> inputs) noexcept {
   for (std::size_t i = 0; i < runners_.size(); ++i) {
-    const BeatNumber silence = silence_of(runners_[i].sender(), beat);
+    const CycleNumber silence = silence_of(runners_[i].sender(), cycle);
     const StopCause cause = runners_[i].observe(beat, inputs[i], silence);
     if (cause != StopCause::none) add_stop(i, cause);
   }
@@ -73,7 +74,7 @@ void AxisMotions::stop_groups(BeatNumber beat) noexcept {
 }
 
 /// An order begins if all orders of its group are due, have its id, and may begin.
-void AxisMotions::begin_orders(BeatNumber beat) noexcept {
+void AxisMotions::begin_orders(BeatNumber beat, CycleNumber cycle) noexcept {
   std::array<Outcome, max_axes> objections{};
   std::array<std::uint8_t, max_axes> ready{};  // orders of each group
   const auto leads = [&](const MotionOrder& order) {
@@ -84,7 +85,7 @@ void AxisMotions::begin_orders(BeatNumber beat) noexcept {
   for (std::size_t i = 0; i < runners_.size(); ++i) {
     const MotionOrder* order = runners_[i].due(beat);
     if (order == nullptr) continue;
-    objections[i] = objection_of(i, beat);
+    objections[i] = objection_of(i, beat, cycle);
     if (objections[i] == Outcome::none && leads(*order)) ++ready[order->group];
   }
   std::array<Outcome, max_axes> verdicts{};
@@ -105,14 +106,14 @@ void AxisMotions::begin_orders(BeatNumber beat) noexcept {
   }
 }
 
-Outcome AxisMotions::objection_of(std::size_t axis, BeatNumber beat) noexcept {
+Outcome AxisMotions::objection_of(std::size_t axis, BeatNumber beat, CycleNumber cycle) noexcept {
   const MotionOrder& order = *runners_[axis].due(beat);
-  if (silence_of(order.sender, beat) > order.timeout) return Outcome::sender_was_silent;
+  if (silence_of(order.sender, cycle) > order.timeout) return Outcome::sender_was_silent;
   return runners_[axis].objection(beat);
 }
 
-BeatNumber AxisMotions::silence_of(std::uint8_t sender, BeatNumber beat) const noexcept {
-  return beat - std::min(heard_[sender], beat);
+CycleNumber AxisMotions::silence_of(std::uint8_t sender, CycleNumber cycle) const noexcept {
+  return cycle - std::min(heard_[sender], cycle);
 }
 
 }  // namespace takt::motion

@@ -21,9 +21,9 @@ class AxisMotions {
 
   /// Takes an order before its first beat or in it. It counts as a message of its sender. Returns a
   /// refusal, or Outcome::none if the order waits for its first beat.
-  Outcome take(const MotionOrder& order, BeatNumber beat) noexcept;
-  /// The sender is alive in this beat.
-  void sender_heard(std::uint8_t sender, BeatNumber beat) noexcept;
+  Outcome take(const MotionOrder& order, CycleNumber cycle) noexcept;
+  /// The sender is alive in this cycle.
+  void sender_heard(std::uint8_t sender, CycleNumber cycle) noexcept;
   /// Stops the axis and its group, each axis along its own limits, in the next run(). An order of
   /// the axis that waits ends as well.
   void stop_axis(std::uint8_t axis, StopCause cause) noexcept;
@@ -31,8 +31,10 @@ class AxisMotions {
   void stop_all(StopCause cause) noexcept;
 
   /// Runs one beat. `inputs` has one element for each axis, and so has the result, which is valid
-  /// until the next call. Beats must follow each other without a gap, from 1 on.
-  std::span<const AxisReport> run(BeatNumber beat, std::span<const AxisInput> inputs) noexcept;
+  /// until the next call. Beats must follow each other without a gap, from 1 on; the cycles, by
+  /// which the silence of senders counts, may jump.
+  std::span<const AxisReport> run(BeatNumber beat, CycleNumber cycle,
+                                  std::span<const AxisInput> inputs) noexcept;
   /// The reports of the last run.
   std::span<const AxisReport> reports() const noexcept { return reports_; }
 
@@ -54,16 +56,16 @@ class AxisMotions {
   };
 
   void add_stop(std::size_t axis, StopCause cause) noexcept;
-  void observe(BeatNumber beat, std::span<const AxisInput> inputs) noexcept;
+  void observe(BeatNumber beat, CycleNumber cycle, std::span<const AxisInput> inputs) noexcept;
   void stop_groups(BeatNumber beat) noexcept;
-  void begin_orders(BeatNumber beat) noexcept;
-  Outcome objection_of(std::size_t axis, BeatNumber beat) noexcept;
-  BeatNumber silence_of(std::uint8_t sender, BeatNumber beat) const noexcept;
+  void begin_orders(BeatNumber beat, CycleNumber cycle) noexcept;
+  Outcome objection_of(std::size_t axis, BeatNumber beat, CycleNumber cycle) noexcept;
+  CycleNumber silence_of(std::uint8_t sender, CycleNumber cycle) const noexcept;
 
   std::vector<AxisRunner> runners_;
   std::vector<AxisReport> reports_;
-  std::array<GroupStop, max_axes> stops_{};   ///< of each group in the next beat
-  std::array<BeatNumber, max_axes> heard_{};  ///< of each sender
+  std::array<GroupStop, max_axes> stops_{};    ///< of each group in the next beat
+  std::array<CycleNumber, max_axes> heard_{};  ///< of each sender
 };
 
 }  // namespace takt::motion

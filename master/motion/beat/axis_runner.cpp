@@ -91,7 +91,7 @@ void AxisRunner::refuse(Outcome why) noexcept {
 }
 
 StopCause AxisRunner::observe(BeatNumber beat, const AxisInput& input,
-                              BeatNumber silence) noexcept {
+                              CycleNumber silence) noexcept {
   report_.actual = input.actual;
   report_.following_error = report_.commanded.position - input.actual.position;
   if (report_.state == AxisState::unpowered) {

@@ -43,8 +43,8 @@ class AxisRunner {
   void refuse(Outcome why) noexcept;
 
   /// Takes what the drive tells. Returns the cause if the axis makes its group stop. `silence` is
-  /// the number of beats since the sender was heard.
-  StopCause observe(BeatNumber beat, const AxisInput& input, BeatNumber silence) noexcept;
+  /// the number of cycles since the sender was heard.
+  StopCause observe(BeatNumber beat, const AxisInput& input, CycleNumber silence) noexcept;
   /// Starts the shortest stop from the commanded state of the beat before. It also ends an order
   /// that waits. An axis that doesn't move keeps its state.
   void stop(BeatNumber beat, const Stop& stop) noexcept;
@@ -78,7 +78,7 @@ class AxisRunner {
   ProfilePlayer player_;
   BeatNumber began_ = 0;
   Limits stop_limits_;
-  BeatNumber timeout_ = 0;
+  CycleNumber timeout_ = 0;
   BeatNumber latest_stop_ = 0;
   double max_following_error_ = 0.0;
   std::optional<MotionOrder> waiting_;

@@ -33,7 +33,7 @@ class MotionStage {
   /// states whether the ordered stop has begun.
   void run(OutputMoment moment, bool stopping) noexcept {
     if (bus_.observe) return;
-    take_messages();
+    take_messages(moment.cycle);
     if (!active_) return;
     if (bus_.status.beats != beat_) run_beat(moment, stopping);
     for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -50,14 +50,14 @@ class MotionStage {
   /// Messages that are taken in one cycle: an order for each axis, and a few more.
   static constexpr std::size_t most_messages = motion::max_axes + 8;
 
-  void take_messages() noexcept {
+  void take_messages(motion::CycleNumber cycle) noexcept {
     motion::MotionMessage message;
     for (std::size_t i = 0; i < most_messages && front_.take_motion(message); ++i) {
       active_ = true;
-      accept(message);
+      accept(message, cycle);
     }
   }
-  void accept(const motion::MotionMessage& message) noexcept;
+  void accept(const motion::MotionMessage& message, motion::CycleNumber cycle) noexcept;
   void run_beat(OutputMoment moment, bool stopping) noexcept;
   void tell_ends() noexcept;
 
@@ -71,16 +71,17 @@ class MotionStage {
 };
 
 template <FrontLink L, Services S>
-void MotionStage<L, S>::accept(const motion::MotionMessage& message) noexcept {
+void MotionStage<L, S>::accept(const motion::MotionMessage& message,
+                               motion::CycleNumber cycle) noexcept {
   switch (message.kind) {
     case motion::MessageKind::heard:
-      motions_.sender_heard(message.sender, bus_.status.beats);
+      motions_.sender_heard(message.sender, cycle);
       break;
     case motion::MessageKind::stop:
       motions_.stop_axis(message.axis, motion::StopCause::application);
       break;
     case motion::MessageKind::order: {
-      const motion::Outcome refusal = motions_.take(message.order, bus_.status.beats);
+      const motion::Outcome refusal = motions_.take(message.order, cycle);
       if (refusal == motion::Outcome::none) break;
       const motion::EndedOrder ended{.id = message.order.id, .outcome = refusal};
       front_.exchange().motion_ends.push({.axis = message.order.axis, .order = ended, .stop = {}});
@@ -97,7 +98,7 @@ void MotionStage<L, S>::run_beat(OutputMoment moment, bool stopping) noexcept {
     const bool exchanging = bus_.exchanging[axes_[i].node_index()];
     inputs_[i] = axes_[i].read(bus_.pdos, exchanging, motions_.reports()[i]);
   }
-  const auto reports = motions_.run(beat_, inputs_);
+  const auto reports = motions_.run(beat_, moment.cycle, inputs_);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (axes_[i].write(bus_.pdos.outputs(), reports[i], moment) || stopping) continue;
     motions_.stop_axis(static_cast<std::uint8_t>(i), motion::StopCause::limit);

@@ -62,7 +62,16 @@ TEST(Messages, EveryTypeHasTheShapeThatIsChecked) {
   reply.data = {1};
   reply.size = 1;
 
+  motion_command_t motion_command{};
+  motion_command.goals = {motion_goal_t{}, motion_goal_t{}};
+  motion_command.num_goals = 2;
+  motion_t motion{};
+  motion.axes = {axis_motion_t{}, axis_motion_t{}};
+  motion.num_axes = 2;
+
   expect_round_trip(a_command());
+  expect_round_trip(motion_command);
+  expect_round_trip(motion);
   expect_round_trip(layout);
   expect_round_trip(status);
   expect_round_trip(timing);

@@ -37,7 +37,8 @@ class Plant {
   }
 
   void step() {
-    const auto reports = motions.run(++beat, inputs);
+    ++beat;
+    const auto reports = motions.run(beat, beat, inputs);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       const bool powered =
           last[i].state != AxisState::unpowered && reports[i].state != AxisState::unpowered;

@@ -1,0 +1,25 @@
+#include "master/gateway/bridge.hpp"
+
+namespace takt {
+
+void Bridge::on_motion(Bytes data) {
+  const auto command = decode<motion_command_t>(data);
+  if (!command) return report_damaged(channels_.motion_command, command.error());
+  const Time now = clocks_.now();
+  if (waited(command->cycle, now)) return commands_.discard();
+  motions_.take(*command, context_at(now));
+}
+
+/// Plans what waits for the newest reports, and publishes them.
+void Bridge::serve_motions() {
+  if (!motions_.active()) return;
+  const Time now = clocks_.now();
+  for (motion::MotionEnd end; master_.take(end);) motions_.take(end, context_at(now));
+  const std::uint64_t published = motion_reports_.cycle;
+  master_.motions(motion_reports_);
+  if (motion_reports_.cycle == published) return;
+  motions_.observe(motion_reports_, context_at(now));
+  for (motion_t& part : motions_.messages()) publish(channels_.motion, part, now);
+}
+
+}  // namespace takt

@@ -1,0 +1,80 @@
+#include "master/gateway/motion/axis_motion_limits.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <string_view>
+
+namespace takt {
+namespace {
+
+/// A limit without unit is in counts, as the positions are then.
+bool is_rate_of(const std::string& unit, const std::string& position) {
+  return unit.empty() ? position.empty() : unit.starts_with(position + "/");
+}
+
+/// Takes the limit of the command, which must not exceed that of the file.
+std::expected<double, std::string> limit(double wanted, std::optional<double> of_file,
+                                         std::string_view name) {
+  if (!std::isfinite(wanted) || wanted < 0.0) {
+    return std::unexpected{
+        fmt::format("max_{} is {}: it must be above 0, or 0 for the limit of the "
+                    "network file",
+                    name, wanted)};
+  }
+  if (wanted == 0.0 && of_file) return *of_file;
+  if (wanted == 0.0) {
+    return std::unexpected{
+        fmt::format("there is no limit of {}: set max_{} in the command, or "
+                    "`limits: {{{}: ...}}` in the network file",
+                    name, name, name)};
+  }
+  if (of_file && wanted > *of_file) {
+    return std::unexpected{fmt::format("max_{} is {}, but `limits:` of the network file allow {}",
+                                       name, wanted, *of_file)};
+  }
+  return wanted;
+}
+
+/// Without a limit of jerk, the acceleration reaches its limit within this time, in s.
+constexpr double default_rise = 0.05;
+
+}  // namespace
+
+AxisMotionLimits::AxisMotionLimits(const BusPlan& plan) {
+  for (const MotionAxis& axis : motion_axes(plan)) axes_.push_back(limits_of(plan, axis));
+}
+
+AxisMotionLimits::Axis AxisMotionLimits::limits_of(const BusPlan& plan, const MotionAxis& axis) {
+  Axis found{.unit = plan.layout.signals[axis.target].unit};
+  for (const LimitLine& line : plan.limits.lines) {
+    if (line.node_index != axis.node_index || line.axis != axis.number + 1 || !line.high) continue;
+    if (line.kind == LimitKind::position && line.unit == found.unit) {
+      found.range = {.min = line.low.value_or(found.range.min), .max = *line.high};
+    }
+    if (!is_rate_of(line.unit, found.unit)) continue;
+    if (line.kind == LimitKind::velocity) found.velocity = line.high;
+    if (line.kind == LimitKind::acceleration) found.acceleration = line.high;
+    if (line.kind == LimitKind::jerk) found.jerk = line.high;
+  }
+  return found;
+}
+
+std::expected<motion::Limits, std::string> AxisMotionLimits::of(std::size_t axis,
+                                                                const motion_goal_t& goal) const {
+  const Axis& known = axes_[axis];
+  const auto velocity = limit(goal.max_velocity, known.velocity, "velocity");
+  if (!velocity) return std::unexpected{velocity.error()};
+  const auto acceleration = limit(goal.max_acceleration, known.acceleration, "acceleration");
+  if (!acceleration) return std::unexpected{acceleration.error()};
+  const bool free_jerk = goal.max_jerk == 0.0 && !known.jerk;
+  const auto jerk = free_jerk ? std::expected<double, std::string>{*acceleration / default_rise}
+                              : limit(goal.max_jerk, known.jerk, "jerk");
+  if (!jerk) return std::unexpected{jerk.error()};
+  return motion::Limits{.max_velocity = *velocity,
+                        .min_velocity = -*velocity,
+                        .max_acceleration = *acceleration,
+                        .min_acceleration = -*acceleration,
+                        .jerk = *jerk};
+}
+
+}  // namespace takt

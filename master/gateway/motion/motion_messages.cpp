@@ -1,0 +1,55 @@
+#include "master/gateway/motion/motion_messages.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "master/lcm/messages.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t axes_a_message = 16;  // 77 bytes each
+
+axis_motion_t to_message(const MotionAxis& axis, const motion::AxisReport& report,
+                         const ShownMotion& shown, double period) {
+  axis_motion_t message{};
+  message.axis = static_cast<std::int8_t>(axis.number + 1);
+  message.state = static_cast<std::int8_t>(report.state);
+  message.id = shown.id;
+  message.ended_id = shown.ended_id;
+  message.outcome = static_cast<std::int8_t>(shown.ended);
+  message.position = report.commanded.position;
+  message.velocity = report.commanded.velocity;
+  message.acceleration = report.commanded.acceleration;
+  message.actual_position = report.actual.position;
+  message.actual_velocity = report.actual.velocity;
+  message.following_error = report.following_error;
+  message.time_left = static_cast<double>(report.beats_left) * period;
+  return message;
+}
+
+}  // namespace
+
+std::vector<motion_t> motion_messages(const BusPlan& plan, const std::vector<MotionAxis>& axes,
+                                      const MotionSnapshot& snapshot,
+                                      const std::vector<ShownMotion>& shown) {
+  const double period = std::chrono::duration<double>{plan.cycle.period}.count();
+  std::vector<motion_t> messages;
+  for (std::size_t first = 0; first < axes.size(); first += axes_a_message) {
+    motion_t message{};
+    message.schema = message_schema;
+    message.cycle = static_cast<std::int64_t>(snapshot.cycle);
+    const std::size_t end = std::min(first + axes_a_message, axes.size());
+    for (std::size_t i = first; i < end; ++i) {
+      message.axes.push_back(to_message(axes[i], snapshot.axes[i], shown[i], period));
+      message.axes.back().node_id = plan.nodes[axes[i].node_index].id.value();
+    }
+    message.num_axes = static_cast<std::int32_t>(message.axes.size());
+    messages.push_back(std::move(message));
+  }
+  number_parts(messages);
+  return messages;
+}
+
+}  // namespace takt

@@ -1,0 +1,99 @@
+#include "master/gateway/motion/motion_text.hpp"
+
+namespace takt {
+namespace {
+
+std::string_view text_of(motion::Defect defect) noexcept {
+  using enum motion::Defect;
+  switch (defect) {
+    case not_finite:
+      return "a number of the command is infinite or NaN";
+    case velocity_limits:
+    case acceleration_limits:
+    case jerk_limit:
+      return "a limit is not above 0";
+    case target_velocity:
+      return "the velocity is above its limit";
+    case target_acceleration:
+    case velocity_before_target:
+      return "the target can't be reached within the limits";
+    case position_range:
+      return "the axis would leave its range of positions";
+  }
+  return "the motion is impossible";
+}
+
+}  // namespace
+
+std::string_view text(const motion::PlanRefusal& refusal) noexcept {
+  using enum motion::PlanFault;
+  switch (refusal.fault) {
+    case no_axis:
+      return "an axis is named twice";
+    case no_report:
+      return "the bus thread has not reported the state of the axes";
+    case busy:
+      return "another motion of the axis is about to begin";
+    case not_enabled:
+      return "the drive does not follow set-points: it must be in Operation enabled and in cyclic "
+             "synchronous position mode";
+    case stopping:
+      return "the axis is stopping, and must come to rest first";
+    case foreign:
+      return "the axis runs another motion";
+    case too_long:
+      return "the axis would need too long to reach the velocity of the jog";
+    case impossible:
+      return text_of(refusal.defect);
+  }
+  return "the motion is impossible";
+}
+
+std::string_view text(motion::Outcome outcome) noexcept {
+  using enum motion::Outcome;
+  switch (outcome) {
+    case not_powered:
+      return text(motion::PlanRefusal{.fault = motion::PlanFault::not_enabled});
+    case is_stopping:
+      return text(motion::PlanRefusal{.fault = motion::PlanFault::stopping});
+    case sender_was_silent:
+      return "the sender was silent for longer than the timeout";
+    case too_late:
+      return "taktd could not plan the motion in time";
+    case group_incomplete:
+      return "another axis of the group can't begin";
+    case other_start:
+      return "the axis is not where the motion begins";
+    default:
+      return "the motion is not valid";
+  }
+}
+
+std::string_view text(motion::StopCause cause) noexcept {
+  using enum motion::StopCause;
+  switch (cause) {
+    case none:
+      break;
+    case sender_silent:
+      return "its sender was silent for longer than the timeout";
+    case disabled:
+      return "the drive has left Operation enabled";
+    case fault:
+      return "the drive is in fault";
+    case node_lost:
+      return "the node is lost";
+    case following_error:
+      return "the following error is above its limit";
+    case end_of_range:
+      return "the end of the range of positions is near";
+    case limit:
+      return "a set-point was outside the limits of the network file";
+    case ordered_stop:
+      return "taktd stops";
+    case application:
+      return "its sender has stopped it";
+  }
+  return "for an unknown reason";
+}
+
+}  // namespace takt

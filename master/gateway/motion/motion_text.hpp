@@ -1,0 +1,16 @@
+#pragma once
+#include <string_view>
+
+#include "master/motion/beat/axis_report.hpp"
+#include "master/motion/planner/motion_planner.hpp"
+
+namespace takt {
+
+/// Why there is no motion, as the end of a sentence: "the axis is stopping".
+std::string_view text(const motion::PlanRefusal& refusal) noexcept;
+/// Why an order did not begin.
+std::string_view text(motion::Outcome outcome) noexcept;
+/// Why a group has stopped.
+std::string_view text(motion::StopCause cause) noexcept;
+
+}  // namespace takt

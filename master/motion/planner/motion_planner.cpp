@@ -1,0 +1,149 @@
+#include "master/motion/planner/motion_planner.hpp"
+
+#include <algorithm>
+
+#include "master/motion/beat/profile_player.hpp"
+#include "master/motion/beat/stop_profile.hpp"
+
+namespace takt::motion {
+namespace {
+
+State state_of(const MotionOrder& order, BeatNumber beat, double period) {
+  ProfilePlayer player{order.profile, order.from, order.ending};
+  return player.at(static_cast<double>(beat - order.begin) * period);
+}
+
+}  // namespace
+
+const MotionOrder* MotionPlanner::Axis::waiting(BeatNumber beat) const noexcept {
+  return !sent.empty() && sent.back().begin > beat ? &sent.back() : nullptr;
+}
+
+const MotionOrder* MotionPlanner::Axis::running() const noexcept {
+  const auto found = std::ranges::find(sent, report.running, &MotionOrder::id);
+  return found == sent.end() ? nullptr : &*found;
+}
+
+/// Orders that were sent before the one that runs can't be needed any more.
+void MotionPlanner::observe(BeatNumber beat, std::span<const AxisReport> reports) {
+  beat_ = beat;
+  for (std::size_t i = 0; i < axes_.size() && i < reports.size(); ++i) {
+    Axis& axis = axes_[i];
+    axis.report = reports[i];
+    const auto running = std::ranges::find(axis.sent, axis.report.running, &MotionOrder::id);
+    if (running != axis.sent.end()) axis.sent.erase(axis.sent.begin(), running);
+  }
+}
+
+/// The state that the axis will have in a beat after the newest report, before the orders that
+/// begin in it.
+std::expected<State, PlanFault> MotionPlanner::state_at(const Axis& axis, BeatNumber beat) const {
+  switch (axis.report.state) {
+    case AxisState::unpowered:
+      return std::unexpected{PlanFault::not_enabled};
+    case AxisState::stopping:
+      return std::unexpected{PlanFault::stopping};
+    case AxisState::standing:
+      return axis.report.commanded;
+    case AxisState::moving:
+      break;
+  }
+  const MotionOrder* running = axis.running();
+  if (running == nullptr) return std::unexpected{PlanFault::foreign};
+  return state_of(*running, beat, period_);
+}
+
+std::expected<BeatNumber, PlanRefusal> MotionPlanner::begin_of(std::span<const AxisGoal> goals,
+                                                               BeatNumber begin) const {
+  std::optional<BeatNumber> first;
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const std::uint8_t axis = goals[i].axis;
+    const auto earlier = goals.first(i);
+    const bool twice = std::ranges::find(earlier, axis, &AxisGoal::axis) != earlier.end();
+    if (axis >= axes_.size() || twice) {
+      return std::unexpected{PlanRefusal{.fault = PlanFault::no_axis, .axis = axis}};
+    }
+    const MotionOrder* waiting = axes_[axis].waiting(beat_);
+    if (waiting == nullptr) continue;
+    if (waiting->begin <= beat_ + 1) {
+      return std::unexpected{PlanRefusal{.fault = PlanFault::busy, .axis = axis}};
+    }
+    first = std::max(first.value_or(0), waiting->begin);
+  }
+  return first.value_or(begin);
+}
+
+std::expected<void, PlanRefusal> MotionPlanner::set_tasks(const GroupGoal& group,
+                                                          std::span<const AxisGoal> goals,
+                                                          BeatNumber begin) {
+  tasks_.clear();
+  for (const AxisGoal& goal : goals) {
+    const auto from = state_at(axes_[goal.axis], begin);
+    if (!from) return std::unexpected{PlanRefusal{.fault = from.error(), .axis = goal.axis}};
+    // A jog has no range here: it stops in time, see MotionOrder::latest_stop.
+    const PositionRange range = group.goal == Goal::position ? goal.range : PositionRange{};
+    tasks_.push_back({.from = *from, .to = goal.to, .limits = goal.limits, .range = range});
+  }
+  planned_.resize(tasks_.size());
+  const TrajectoryOptions options{.goal = group.goal, .synchronisation = group.synchronisation};
+  const auto planned = plan_trajectory(tasks_, options, planned_);
+  if (planned) return {};
+  const Refused& refused = planned.error();
+  return std::unexpected{PlanRefusal{
+      .fault = PlanFault::impossible, .axis = goals[refused.axis].axis, .defect = refused.defect}};
+}
+
+/// A motion to rest inside the range can be stopped inside it in each beat: no motion from the same
+/// state with the same limits brakes earlier than the stop.
+std::expected<void, PlanRefusal> MotionPlanner::set_orders(const GroupGoal& group,
+                                                           std::span<const AxisGoal> goals,
+                                                           BeatNumber begin) {
+  const bool is_jog = group.goal == Goal::velocity;
+  orders_.clear();
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const AxisGoal& goal = goals[i];
+    MotionOrder order{.id = id_ + 1,
+                      .axis = goal.axis,
+                      .group = goals.front().axis,
+                      .axes = static_cast<std::uint8_t>(goals.size()),
+                      .sender = group.sender,
+                      .ending = is_jog ? Ending::cruise : Ending::rest,
+                      .begin = begin,
+                      .from = tasks_[i].from,
+                      .profile = planned_[i].profile,
+                      .stop = goal.limits,
+                      .timeout = group.timeout,
+                      .max_following_error = goal.max_following_error};
+    if (is_jog) {
+      if (planned_[i].duration > static_cast<double>(longest_jog_start) * period_) {
+        return std::unexpected{PlanRefusal{.fault = PlanFault::too_long, .axis = goal.axis}};
+      }
+      const auto latest = beats_with_stop(order, goal.range, period_, order.latest_stop);
+      if (!latest) {
+        return std::unexpected{PlanRefusal{
+            .fault = PlanFault::impossible, .axis = goal.axis, .defect = Defect::position_range}};
+      }
+      order.latest_stop = *latest;
+    }
+    orders_.push_back(order);
+  }
+  return {};
+}
+
+std::expected<std::span<const MotionOrder>, PlanRefusal> MotionPlanner::plan(
+    const GroupGoal& group, std::span<const AxisGoal> goals, BeatNumber begin) {
+  if (beat_ == 0) return std::unexpected{PlanRefusal{.fault = PlanFault::no_report}};
+  const auto first = begin_of(goals, begin);
+  if (!first) return std::unexpected{first.error()};
+  if (const auto set = set_tasks(group, goals, *first); !set) return std::unexpected{set.error()};
+  if (const auto set = set_orders(group, goals, *first); !set) return std::unexpected{set.error()};
+  ++id_;
+  for (const MotionOrder& order : orders_) {
+    std::vector<MotionOrder>& sent = axes_[order.axis].sent;
+    if (sent.size() == Axis::most_sent) sent.erase(sent.begin() + 1);  // the first one may run
+    sent.push_back(order);
+  }
+  return orders_;
+}
+
+}  // namespace takt::motion

@@ -1,0 +1,102 @@
+#pragma once
+#include <cstdint>
+#include <expected>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "master/motion/beat/axis_report.hpp"
+#include "master/motion/beat/motion_order.hpp"
+#include "master/motion/trajectory.hpp"
+
+namespace takt::motion {
+
+/// What an application wants of one axis.
+struct AxisGoal {
+  std::uint8_t axis = 0;
+  /// The position of a move. Of a jog, only the velocity counts.
+  State to;
+  Limits limits;
+  PositionRange range{};
+  /// Distance between commanded and actual position above which the group stops.
+  double max_following_error = std::numeric_limits<double>::infinity();
+};
+
+/// What an application wants of a group of axes, which begin and stop together.
+struct GroupGoal {
+  Goal goal = Goal::position;  ///< velocity: a jog
+  Synchronisation synchronisation = Synchronisation::time;
+  std::uint8_t sender = 0;
+  CycleNumber timeout = 0;  ///< cycles for which the motion outlives the silence of its sender
+};
+
+/// Why there is no motion.
+enum class PlanFault : std::uint8_t {
+  no_axis,      ///< there is no such axis, or it is named twice
+  no_report,    ///< the bus thread has not reported yet
+  busy,         ///< another order of the axis is about to begin: plan again after the next report
+  not_enabled,  ///< the drive does not follow set-points
+  stopping,     ///< the axis must come to rest first
+  foreign,      ///< the axis runs a motion that this planner does not know
+  impossible,   ///< see `defect`
+  too_long,     ///< a jog takes too many beats to reach its velocity
+};
+
+struct PlanRefusal {
+  PlanFault fault{};
+  std::uint8_t axis = 0;
+  Defect defect{};  ///< of PlanFault::impossible
+};
+
+/// Plans motions from the states that the axes will have in a future beat. It knows these states
+/// from the newest reports and from the orders that it has planned before. One thread.
+class MotionPlanner {
+ public:
+  /// Longest acceleration of a jog in beats. It bounds the time that plan() takes.
+  static constexpr BeatNumber longest_jog_start = 20'000;
+
+  /// `period` is that of the beat in s.
+  MotionPlanner(std::size_t axes, double period) : period_{period}, axes_(axes) {}
+
+  /// Takes the reports of all axes in this beat.
+  void observe(BeatNumber beat, std::span<const AxisReport> reports);
+  BeatNumber beat() const noexcept { return beat_; }
+
+  /// Plans a motion that begins in `begin`, which must be later than the next beat. If an order of
+  /// one of the axes waits, the motion begins in its beat instead and replaces it. The orders have
+  /// the same new id. They are valid until the next call.
+  std::expected<std::span<const MotionOrder>, PlanRefusal> plan(const GroupGoal& group,
+                                                                std::span<const AxisGoal> goals,
+                                                                BeatNumber begin);
+
+ private:
+  struct Axis {
+    static constexpr std::size_t most_sent = 4;
+
+    /// The order that begins after the newest report; null if there is none.
+    const MotionOrder* waiting(BeatNumber beat) const noexcept;
+    const MotionOrder* running() const noexcept;
+
+    AxisReport report;
+    std::vector<MotionOrder> sent;  ///< the newest orders, at most `most_sent`
+  };
+
+  std::expected<State, PlanFault> state_at(const Axis& axis, BeatNumber beat) const;
+  std::expected<BeatNumber, PlanRefusal> begin_of(std::span<const AxisGoal> goals,
+                                                  BeatNumber begin) const;
+  std::expected<void, PlanRefusal> set_tasks(const GroupGoal& group,
+                                             std::span<const AxisGoal> goals, BeatNumber begin);
+  std::expected<void, PlanRefusal> set_orders(const GroupGoal& group,
+                                              std::span<const AxisGoal> goals, BeatNumber begin);
+
+  double period_;
+  BeatNumber beat_ = 0;
+  std::uint32_t id_ = 0;
+  std::vector<Axis> axes_;
+  std::vector<AxisTask> tasks_;
+  std::vector<PlannedAxis> planned_;
+  std::vector<MotionOrder> orders_;
+};
+
+}  // namespace takt::motion

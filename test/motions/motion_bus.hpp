@@ -1,0 +1,200 @@
+#pragma once
+#include <deque>
+#include <string>
+#include <takt/motion_command_t.hpp>
+#include <takt/motion_t.hpp>
+#include <utility>
+#include <vector>
+
+#include "eds_parser/network_file/load_network.hpp"
+#include "eds_parser/table/motion_axes.hpp"
+#include "master/attach.hpp"
+#include "master/gateway/bridge.hpp"
+#include "master/sim/bus/sim_port.hpp"
+#include "master/sim/device/device.hpp"
+
+namespace takt::test {
+
+/// LCM in memory: keeps the newest motion_t and all events, and delivers what an application sends.
+class MotionLcm final : public Transport {
+ public:
+  bool publish(const std::string& channel, std::span<const std::byte> data) override {
+    if (channel == "DEMO_MOTION") {
+      if (const auto found = decode<motion_t>(data)) motion = *found;
+    }
+    return true;
+  }
+  void subscribe(const std::string&) override {}
+  void serve(const MessageHandler& handler) override {
+    for (const auto& [channel, data] : std::exchange(waiting, {})) handler(channel, data);
+  }
+  void watch(std::vector<pollfd>&) const override {}
+  bool good() const override { return true; }
+  std::string url() const override { return {}; }
+
+  template <class T>
+  void send(const std::string& channel, const T& message) {
+    std::vector<std::byte> data(static_cast<std::size_t>(message.getEncodedSize()));
+    message.encode(data.data(), 0, message.getEncodedSize());
+    waiting.emplace_back(channel, std::move(data));
+  }
+
+  motion_t motion{};
+  std::deque<std::pair<std::string, std::vector<std::byte>>> waiting;
+};
+
+class WorldClocks final : public Clocks {
+ public:
+  explicit WorldClocks(const sim::World& world) : world_{world} {}
+  Time now() const noexcept override { return world_.now(); }
+  Time wall_offset() const noexcept override { return {}; }
+
+ private:
+  const sim::World& world_;
+};
+
+/// The demo of two axes in virtual time with its gateway, and an application that sends messages.
+class MotionBus {
+ public:
+  static constexpr std::int64_t session = 7;
+
+  explicit MotionBus(sim::Faults faults = {})
+      : network{load_network(TAKT_SOURCE_DIR "/share/demo/two_axes.yaml")},
+        axes{motion_axes(network.plan)},
+        world{network.devices,
+              {.seed = 3, .bitrate = network.plan.bitrate, .faults = std::move(faults)}},
+        port{world, {.sync = network.plan.cycle.sync_cob_id}},
+        master{network.plan},
+        clocks{world},
+        bridge{master, lcm, clocks, options(),
+               [this](const Notice& notice) { notices.push_back(notice); }} {
+    master.attach(port);
+    master.begin();
+  }
+
+  void cycle() {
+    master.cycle();
+    if (front_runs) bridge.serve();
+    if (each_cycle) each_cycle();
+  }
+  void run(int cycles) {
+    for (int i = 0; i < cycles; ++i) cycle();
+  }
+  template <class Condition>
+  bool run_until(Condition condition, int most = 5000) {
+    for (int i = 0; i < most; ++i) {
+      cycle();
+      if (condition()) return true;
+    }
+    return false;
+  }
+
+  /// Boots both drives, and leads them to Operation enabled by command_t of `instance`. The time to
+  /// live of the commands is the configured one, 500 cycles.
+  void enable(std::int64_t instance = 5) {
+    each_cycle = [this, instance] { send_enable(instance); };
+    ASSERT_TRUE(run_until([&] { return enabled(0) && enabled(1); }));
+    run(5);
+    each_cycle = {};
+  }
+  bool enabled(std::size_t axis) { return (value(axis, 0x6041).value_or(0) & 0x6F) == 0x27; }
+  /// Position of the simulated drive in rad.
+  double position(std::size_t axis) { return scale * static_cast<double>(*value(axis, 0x6064)); }
+  /// Target position that the simulated drive has received, in counts.
+  std::int64_t target(std::size_t axis) { return *value(axis, 0x607A); }
+
+  motion_command_t command(const std::string& kind, std::int32_t id, std::int64_t instance = 5) {
+    motion_command_t message{};
+    message.schema = message_schema;
+    message.session = session;
+    message.instance = instance;
+    message.sender = "test";
+    message.cycle = static_cast<std::int64_t>(bridge.status().bus.cycle);
+    message.id = id;
+    message.kind = kind;
+    return message;
+  }
+  static motion_goal_t goal(const std::string& node, double position) {
+    motion_goal_t goal{};
+    goal.node = node;
+    goal.position = position;
+    goal.max_velocity = 3.0;
+    goal.max_acceleration = 20.0;
+    goal.max_jerk = 400.0;
+    return goal;
+  }
+  void send(motion_command_t message) {
+    message.num_goals = static_cast<std::int32_t>(message.goals.size());
+    lcm.send(bridge.channels().motion_command, message);
+  }
+  void move_one(std::int32_t id, double shoulder, std::int64_t instance = 5) {
+    motion_command_t message = command("move", id, instance);
+    message.goals = {goal("shoulder", shoulder)};
+    send(message);
+  }
+  void move_both(std::int32_t id, double shoulder, double elbow) {
+    motion_command_t message = command("move", id);
+    message.goals = {goal("shoulder", shoulder), goal("elbow", elbow)};
+    send(message);
+  }
+  void keep_alive() { send(command("alive", 0)); }
+  /// What the newest motion_t says of an axis.
+  axis_motion_t axis(std::size_t i) const {
+    return i < lcm.motion.axes.size() ? lcm.motion.axes[i] : axis_motion_t{};
+  }
+  bool said(const std::string& kind, const std::string& part) const {
+    return std::ranges::any_of(notices, [&](const Notice& notice) {
+      return notice.kind == kind && notice.text.find(part) != std::string::npos;
+    });
+  }
+
+  static constexpr double scale = 6.283185307179586e-4;
+  LoadedNetwork network;
+  std::vector<MotionAxis> axes;
+  sim::World world;
+  sim::SimPort port;
+  MasterRun master;
+  MotionLcm lcm;
+  WorldClocks clocks;
+  std::vector<Notice> notices;
+  Bridge bridge;
+  std::function<void()> each_cycle;
+  bool front_runs = true;
+
+ private:
+  static BridgeOptions options() {
+    BridgeOptions made;
+    made.session = session;
+    return made;
+  }
+  std::optional<std::int64_t> value(std::size_t axis, std::uint16_t index) {
+    const NodeId node = network.plan.nodes[axes[axis].node_index].id;
+    return world.device(node)->objects().number({index, 0});
+  }
+  void send_enable(std::int64_t instance) {
+    command_t message{};
+    message.schema = message_schema;
+    message.session = session;
+    message.instance = instance;
+    message.sender = "test";
+    message.cycle = static_cast<std::int64_t>(bridge.status().bus.cycle);
+    const auto& signals = network.plan.layout.signals;
+    for (std::size_t i = network.plan.layout.inputs; i < signals.size(); ++i) {
+      for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+        if (signals[i].node_index != axes[axis].node_index) continue;
+        const std::int64_t word = *value(axis, 0x6041);
+        const std::int64_t next = (word & 0x4F) == 0x40   ? 0x06
+                                  : (word & 0x6F) == 0x21 ? 0x07
+                                                          : 0x0F;
+        const std::uint16_t object = signals[i].object.index;
+        if (object != 0x6040 && object != 0x6060) continue;
+        message.signals.push_back(static_cast<std::int32_t>(i));
+        message.values.push_back(object == 0x6040 ? next : 8);
+      }
+    }
+    message.num_values = static_cast<std::int32_t>(message.values.size());
+    if (message.cycle > 0) lcm.send(bridge.channels().command, message);
+  }
+};
+
+}  // namespace takt::test

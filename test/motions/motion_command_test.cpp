@@ -1,0 +1,245 @@
+// Motions over LCM, from the bytes of motion_command_t to the simulated drives.
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+
+#include "test/motions/motion_bus.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+using test::MotionBus;
+
+constexpr std::int8_t standing = 1;
+constexpr std::int8_t moving = 2;
+constexpr std::int8_t stopping = 3;
+constexpr std::int8_t done = 1;
+constexpr std::int8_t stopped = 2;
+constexpr std::int8_t refused = 4;
+
+TEST(MotionCommand, MovesTwoAxesThatArriveTogether) {
+  MotionBus bus;
+  bus.enable();
+  bus.move_both(11, 1.0, -0.4);
+  ASSERT_TRUE(
+      bus.run_until([&] { return !bus.lcm.motion.axes.empty() && bus.axis(0).id == 11; }, 20));
+  EXPECT_EQ(bus.axis(1).id, 11);
+  EXPECT_NEAR(bus.axis(0).time_left, bus.axis(1).time_left, 0.003);
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  ASSERT_TRUE(
+      bus.run_until([&] { return bus.axis(0).ended_id == 11 && bus.axis(1).ended_id == 11; }));
+  EXPECT_EQ(bus.axis(0).outcome, done);
+  bus.run(20);
+  EXPECT_NEAR(bus.position(0), 1.0, 1e-3);
+  EXPECT_NEAR(bus.position(1), -0.4, 1e-3);
+}
+
+/// The promise of the feature: an application at 50 Hz whose messages come up to 10 ms late, and
+/// which stalls for 300 ms now and then. The drive gets the set-point of each beat: differences of
+/// differences stay as small as the limit of acceleration and the rounding to counts.
+TEST(MotionCommand, JitterAndStallsOfTheApplicationDoNotReachTheDrive) {
+  MotionBus bus;
+  bus.enable();
+  std::mt19937_64 random{4};
+  Time next = bus.world.now();
+  std::int32_t id = 0;
+  std::int64_t before = bus.target(0);
+  std::int64_t step_before = 0;
+  std::int64_t sharpest = 0;
+  std::int64_t farthest = 0;
+  std::uint64_t moved = 0;
+  bus.each_cycle = [&] {
+    const std::int64_t target = bus.target(0);
+    const std::int64_t step = target - before;
+    sharpest = std::max(sharpest, std::abs(step - step_before));
+    farthest = std::max(farthest, std::abs(target));
+    moved += step != 0;
+    before = target;
+    step_before = step;
+    if (bus.world.now() < next) return;
+    const Time jitter{static_cast<std::int64_t>(random() % 10'000'000)};
+    next = bus.world.now() + (random() % 40 == 0 ? 300ms : 20ms) + jitter;
+    if (++id % 25 == 1) {
+      bus.move_one(id, std::uniform_real_distribution<double>{-2.0, 2.0}(random));
+    } else {
+      bus.keep_alive();
+    }
+  };
+  bus.run(100'000);
+  EXPECT_GT(moved, 50'000U);
+  EXPECT_GT(farthest, 1500) << "counts";
+  // 20 rad/s^2 are 0.13 counts in a beat squared; three roundings of half a count add two counts.
+  EXPECT_LE(sharpest, 2) << "counts";
+  EXPECT_TRUE(bus.enabled(0));
+  EXPECT_FALSE(bus.said("motion_refused", "")) << bus.notices.back().text;
+}
+
+TEST(MotionCommand, AnAxisStopsWhenItsApplicationHasDiedAndThenItsDriveIsDisabled) {
+  MotionBus bus;
+  bus.enable();
+  motion_command_t message = bus.command("move", 3);
+  message.goals = {MotionBus::goal("shoulder", 50.0)};
+  message.timeout_ms = 300;
+  bus.send(message);
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == moving; }, 20));
+  const Time began = bus.world.now();
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == stopping; }));
+  EXPECT_NEAR(static_cast<double>((bus.world.now() - began).count()), 300e6, 15e6);
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == standing; }));
+  EXPECT_EQ(bus.axis(0).outcome, stopped);
+  EXPECT_TRUE(bus.said("motion_stopped", "silent for longer than the timeout"));
+  ASSERT_TRUE(bus.run_until([&] { return !bus.enabled(0); }, 1000));
+}
+
+TEST(MotionCommand, AFrozenFrontThreadStopsTheAxesAndItsOldMessagesMoveNothing) {
+  MotionBus bus;
+  bus.enable();
+  bus.move_one(1, 50.0);
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == moving; }, 20));
+  bus.front_runs = false;  // SIGSTOP of the front thread; the application goes on for a while
+  bus.each_cycle = [&, left = 200]() mutable {
+    if (left-- > 0) bus.keep_alive();
+  };
+  bus.run(2000);
+  const double rest = bus.position(0);
+  bus.run(100);
+  EXPECT_EQ(bus.position(0), rest);
+  bus.move_one(2, 60.0);  // waits in the socket, and its sender dies
+  bus.run(2000);
+  bus.front_runs = true;
+  bus.run(1000);
+  EXPECT_NEAR(bus.position(0), rest, 1e-3);
+}
+
+/// SIGSTOP of the whole daemon: beats stand still, but the silence of the sender counts by the
+/// clock.
+TEST(MotionCommand, ADaemonThatWasStoppedForLongerThanTheTimeoutStopsTheAxisAtOnce) {
+  MotionBus bus{{{.kind = sim::FaultKind::stall_master, .at = 3s, .until = 3600ms}}};
+  bus.enable();
+  bus.run_until([&] { return bus.world.now() > 2500ms; });
+  bus.enable();
+  bus.move_one(1, 50.0);
+  bus.each_cycle = [&] {
+    if (bus.world.now() < 2950ms) bus.keep_alive();
+  };
+  ASSERT_TRUE(bus.run_until([&] { return bus.world.now() > 2990ms; }));
+  ASSERT_EQ(bus.axis(0).state, moving);
+  ASSERT_TRUE(bus.run_until([&] { return bus.world.now() > 3500ms; }));
+  bus.run(4);
+  EXPECT_NE(bus.axis(0).state, moving);
+}
+
+TEST(MotionCommand, AnotherProgramNeitherMovesNorStopsAHeldAxis) {
+  MotionBus bus;
+  bus.enable();
+  bus.move_one(1, 3.0);
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == moving; }, 20));
+  bus.move_one(2, -3.0, 99);
+  motion_command_t stop = bus.command("stop", 0, 99);
+  stop.goals = {MotionBus::goal("shoulder", 0.0)};
+  bus.send(stop);
+  bus.run(5);
+  EXPECT_EQ(bus.axis(0).state, moving);
+  EXPECT_EQ(bus.axis(0).id, 1);
+  EXPECT_TRUE(bus.said("command_refused", "belong to"));
+}
+
+TEST(MotionCommand, AJogRunsUntilItsDeadManIsSilent) {
+  MotionBus bus;
+  bus.enable();
+  motion_command_t jog = bus.command("jog", 4);
+  jog.timeout_ms = 100;
+  motion_goal_t goal = MotionBus::goal("elbow", 0.0);
+  goal.velocity = -2.0;
+  jog.goals = {goal};
+  bus.send(jog);
+  bus.each_cycle = [&] {
+    motion_command_t alive = bus.command("alive", 0);
+    alive.timeout_ms = 100;
+    bus.send(alive);
+  };
+  bus.run(1000);
+  EXPECT_NEAR(bus.axis(1).velocity, -2.0, 1e-9);
+  EXPECT_NEAR(bus.axis(1).actual_velocity, -2.0, 0.05);
+  bus.each_cycle = {};
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(1).state == stopping; }, 60));
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(1).state == standing; }));
+}
+
+TEST(MotionCommand, StopEndsTheMotionOfTheWholeGroup) {
+  MotionBus bus;
+  bus.enable();
+  bus.move_both(1, 40.0, 40.0);
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  bus.run(300);
+  motion_command_t stop = bus.command("stop", 0);
+  stop.goals = {MotionBus::goal("elbow", 0.0)};
+  bus.send(stop);
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == stopping; }, 5));
+  EXPECT_EQ(bus.axis(1).state, stopping);
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == standing; }));
+  bus.move_one(2, 10.0);
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == moving; }, 20));
+  EXPECT_TRUE(bus.enabled(0));
+}
+
+TEST(MotionCommand, RefusesWithTheReason) {
+  MotionBus bus;
+  bus.enable();
+  bus.move_one(1, 0.0);  // holds the node
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  bus.run(700);
+  const auto refusal = [&](auto change, const std::string& words) {
+    bus.notices.clear();
+    motion_command_t message = bus.command("move", 77);
+    message.goals = {MotionBus::goal("shoulder", 1.0)};
+    change(message);
+    bus.send(message);
+    bus.run(10);
+    EXPECT_TRUE(bus.said("motion_refused", words) || bus.said("command_refused", words))
+        << words << ": " << (bus.notices.empty() ? "nothing" : bus.notices.back().text);
+    EXPECT_EQ(bus.axis(0).state, standing) << words;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  using Command = motion_command_t;
+  refusal([](Command& m) { m.goals[0].node = "knee"; }, "'knee' has no axis 1");
+  refusal([](Command& m) { m.goals[0].axis = 3; }, "has no axis 3");
+  refusal([](Command& m) { m.goals.clear(); }, "it names no axis");
+  refusal([](Command& m) { m.kind = "fly"; }, "its kind is none of");
+  refusal([](Command& m) { m.synchronisation = "some"; }, "its synchronisation is none of");
+  refusal([](Command& m) { m.timeout_ms = 10'001; }, "its timeout of 10001 ms");
+  refusal([](Command& m) { m.goals[0].max_velocity = 41.0; },
+          "`limits:` of the network file allow 40");
+  refusal([](Command& m) { m.goals[0].max_acceleration = -1.0; }, "must be above 0");
+  refusal([&](Command& m) { m.goals[0].max_jerk = nan; }, "must be above 0");
+  refusal([&](Command& m) { m.goals[0].position = nan; }, "infinite or NaN");
+  refusal([&](Command& m) { m.goals[0].max_following_error = nan; }, "negative or NaN");
+  refusal([](Command& m) { m.goals[0].position = 100.5; }, "would leave its range of positions");
+  refusal([](Command& m) { m.goals.push_back(m.goals[0]); }, "named twice");
+  refusal([](Command& m) { m.session = 8; }, "another session");
+  refusal([](Command& m) { m.schema = 1; }, "schema");
+  refusal([](Command& m) { m.instance = 0; }, "instance 0");
+  refusal([](Command& m) { m.cycle = 0; }, "does not exist");
+  refusal([](Command& m) { m.cycle -= 600; }, "too old");
+  EXPECT_EQ(bus.axis(0).ended_id, 77);
+  EXPECT_EQ(bus.axis(0).outcome, refused);
+  EXPECT_NEAR(bus.position(0), 0.0, 1e-6);
+}
+
+TEST(MotionCommand, AFollowingErrorAboveItsLimitStopsTheGroup) {
+  MotionBus bus;
+  bus.enable();
+  motion_command_t message = bus.command("move", 5);
+  message.goals = {MotionBus::goal("shoulder", 40.0), MotionBus::goal("elbow", 40.0)};
+  message.goals[0].max_following_error = 1e-5;  // less than a count
+  bus.send(message);
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(1).state == stopping; }, 1000));
+  EXPECT_TRUE(bus.said("motion_stopped", "the following error is above its limit"));
+  EXPECT_TRUE(bus.said("motion_stopped", "because of shoulder"));
+}
+
+}  // namespace
+}  // namespace takt

@@ -1,0 +1,159 @@
+#include "master/rt/motion/driven_axis.hpp"
+
+#include <gtest/gtest.h>
+#include <vector>
+
+#include "test/unit/master/core/pdo/small_plan.hpp"
+
+namespace takt {
+namespace {
+
+using motion::AxisCondition;
+using motion::AxisReport;
+using motion::AxisState;
+
+/// One axis with a velocity offset (60B1) in RPDO2. A count is 0.01 rad, and 0.1 rad/s.
+BusPlan one_axis() {
+  BusPlan plan = test::axes({.nodes = 1, .fallback_cycles = 0});
+  for (Signal& signal : plan.layout.signals) {
+    if (signal.object.index != 0x6064 && signal.object.index != 0x607A) continue;
+    signal.scale = 0.01;
+    signal.unit = "rad";
+  }
+  Signal offset = test::make_signal(1_node, 0, {0x60B1, 0});
+  offset.type = DataType::integer32;
+  offset.bits = 32;
+  offset.output = true;
+  offset.row = 1;
+  offset.scale = 0.1;
+  offset.unit = "rad/s";
+  plan.layout.signals.push_back(offset);
+  test::add_pdo(plan, false, {.cob_id = CobId::base(0x301), .node = 1_node, .transmission = 1},
+                {{.signal = 4, .bit_offset = 0, .bits = 32, .sign_extend = true}});
+  return plan;
+}
+
+class Bench {
+ public:
+  Bench() : plan{one_axis()}, pdos{plan, events}, axis{motion_axes(plan).at(0), plan} {
+    pdos.inputs().set_reception(0, Reception::full);
+    pdos.outputs().open(0, points);
+  }
+  void hear(std::uint16_t statusword, std::int32_t position) {
+    ++cycle;
+    pdos.inputs().begin(cycle, Time{cycle * 2'000'000});
+    StampedFrame stamped{.frame = {}, .when = Time{cycle * 2'000'000 + 100'000}};
+    stamped.frame.id = CobId::base(0x181);
+    stamped.frame.length = 6;
+    for (unsigned i = 0; i < 2; ++i) {
+      stamped.frame.data[i] = static_cast<std::uint8_t>(statusword >> 8 * i);
+    }
+    for (unsigned i = 0; i < 4; ++i) {
+      stamped.frame.data[2 + i] = static_cast<std::uint8_t>(position >> 8 * i);
+    }
+    ASSERT_TRUE(pdos.inputs().receive(stamped));
+    pdos.inputs().close(stamped.when);
+  }
+  void hear_nothing() {
+    ++cycle;
+    pdos.inputs().begin(cycle, Time{cycle * 2'000'000});
+    pdos.inputs().close(Time{cycle * 2'000'000 + 1'000'000});
+  }
+  AxisCondition condition(bool exchanging = true) {
+    return axis.read(pdos, exchanging, last).condition;
+  }
+  bool write(AxisState state, motion::State commanded) {
+    last.state = state;
+    last.commanded = commanded;
+    return axis.write(pdos.outputs(), last, {.cycle = cycle, .now = Time{cycle * 2'000'000}});
+  }
+  std::int64_t target() const { return pdos.image().values[3]; }
+  std::int64_t offset() const { return pdos.image().values[4]; }
+
+  BusPlan plan;
+  EventQueue events;
+  PdoExchange pdos;
+  DrivenAxis axis;
+  AxisReport last;
+  std::vector<SetPoint> points = std::vector<SetPoint>(3);
+  std::uint64_t cycle = 0;
+};
+
+TEST(DrivenAxis, ReadsTheConditionFromTheStatusword) {
+  Bench bench;
+  bench.hear(0x0027, 0);
+  EXPECT_EQ(bench.condition(), AxisCondition::enabled);
+  bench.hear(0x0023, 0);
+  EXPECT_EQ(bench.condition(), AxisCondition::disabled);
+  bench.hear(0x0007, 0);
+  EXPECT_EQ(bench.condition(), AxisCondition::disabled) << "quick stop active";
+  bench.hear(0x0008, 0);
+  EXPECT_EQ(bench.condition(), AxisCondition::fault);
+  bench.hear(0x000F, 0);
+  EXPECT_EQ(bench.condition(), AxisCondition::fault) << "fault reaction active";
+  EXPECT_EQ(bench.condition(false), AxisCondition::lost);
+}
+
+TEST(DrivenAxis, OneMissingFrameIsNoLossButThreeAre) {
+  Bench bench;
+  bench.hear(0x0027, 100);
+  bench.last.commanded.position = 1.5;
+  bench.last.following_error = 0.5;
+  EXPECT_EQ(bench.condition(), AxisCondition::enabled);
+  bench.hear_nothing();
+  const motion::AxisInput input = bench.axis.read(bench.pdos, true, bench.last);
+  EXPECT_EQ(input.condition, AxisCondition::enabled);
+  EXPECT_EQ(input.actual.position, 1.0) << "the following error counts as unchanged";
+  bench.hear_nothing();
+  EXPECT_EQ(bench.condition(), AxisCondition::enabled);
+  bench.hear_nothing();
+  EXPECT_EQ(bench.condition(), AxisCondition::lost);
+  bench.hear(0x0027, 100);
+  EXPECT_EQ(bench.condition(), AxisCondition::enabled);
+}
+
+TEST(DrivenAxis, WritesPositionAndVelocityInCounts) {
+  Bench bench;
+  bench.hear(0x0027, 0);
+  ASSERT_TRUE(bench.write(AxisState::moving, {.position = -1.236, .velocity = 0.74}));
+  EXPECT_EQ(bench.target(), -124);
+  EXPECT_EQ(bench.offset(), 7);
+  EXPECT_FALSE(bench.axis.read(bench.pdos, true, bench.last).set_point.has_value());
+  ASSERT_TRUE(bench.write(AxisState::standing, {.position = -1.25}));
+  EXPECT_EQ(bench.target(), -125);
+  EXPECT_EQ(bench.offset(), 0);
+}
+
+TEST(DrivenAxis, APositionThatInteger32CannotHoldIsNotWritten) {
+  Bench bench;
+  bench.hear(0x0027, 0);
+  ASSERT_TRUE(bench.write(AxisState::moving, {.position = 1.0}));
+  EXPECT_FALSE(bench.write(AxisState::moving, {.position = 3e7}));
+  EXPECT_EQ(bench.target(), 100);
+}
+
+TEST(DrivenAxis, TheTargetFollowsTheActualPositionWhileTheDriveIsNotEnabled) {
+  Bench bench;
+  bench.hear(0x0027, 100);
+  ASSERT_TRUE(bench.write(AxisState::moving, {.position = 1.0}));
+  bench.hear(0x0008, 130);
+  bench.last.actual = bench.axis.read(bench.pdos, true, bench.last).actual;
+  ASSERT_TRUE(bench.write(AxisState::unpowered, {.position = 1.3}));
+  EXPECT_EQ(bench.target(), 130);
+}
+
+TEST(DrivenAxis, ASetPointOfAnApplicationIsReadAndNotOverwritten) {
+  Bench bench;
+  bench.hear(0x0027, 0);
+  bench.points[1] = {.value = 55, .generation = 1, .when = Time{2'000'000}};
+  bench.pdos.outputs().pack(bench.points, {.cycle = 1, .now = Time{2'000'000}});
+  const auto input = bench.axis.read(bench.pdos, true, bench.last);
+  ASSERT_TRUE(input.set_point.has_value());
+  EXPECT_DOUBLE_EQ(*input.set_point, 0.55);
+  ASSERT_TRUE(bench.write(AxisState::standing, {.position = 0.55}));
+  ASSERT_TRUE(bench.write(AxisState::unpowered, {.position = 0.0}));
+  EXPECT_EQ(bench.target(), 55);
+}
+
+}  // namespace
+}  // namespace takt
