@@ -34,7 +34,7 @@ class Reader {
   void announce(const DomainFiles& files, Severity severity, std::string_view rule,
                 const Parts&... what) {
     findings_.push_back(
-        {dcf_.string(), files.pos, severity, rule, joined(files.key, ": ", what...)});
+        {dcf_.string(), files.pos, severity, rule, concat(files.key, ": ", what...)});
   }
 
   bool is_for_boot(const DomainFiles& files) {

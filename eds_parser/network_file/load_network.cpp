@@ -44,7 +44,7 @@ std::string why_unreadable(const fs::path& path) {
 
 /// Returns for example `1 error` or `2 errors`.
 std::string counted(std::ptrdiff_t count, const std::string& what) {
-  return joined(count, " ", what, count == 1 ? "" : "s");
+  return concat(count, " ", what, count == 1 ? "" : "s");
 }
 
 /// If at least this number of listed objects have no section, the file is probably cut off and not
@@ -93,7 +93,7 @@ class Loader {
   }
   template <class... Parts>
   void add(Severity severity, SourcePos pos, std::string_view rule, const Parts&... parts) {
-    out_.findings.push_back({path_.string(), pos, severity, rule, joined(parts...)});
+    out_.findings.push_back({path_.string(), pos, severity, rule, concat(parts...)});
   }
 
   /// Lowers the default of `service_frames` until all frames fit on the bus. Keeps the default if
@@ -191,7 +191,7 @@ class Loader {
     if (path == nullptr || fs::file_size(*path, ignored) > limit) {
       error(file.pos, "no-file", "node `", node.name, "`: file `", *file, "` ",
             path == nullptr ? "not found beside the network file or in `dcf_path`"
-                            : joined("larger than ", limit, " bytes"));
+                            : concat("larger than ", limit, " bytes"));
       return std::nullopt;
     }
     std::ifstream in{*path, std::ios::binary};
@@ -268,13 +268,13 @@ class Loader {
          {},
          errors > 0 || listed_only >= torn_from ? Severity::warning : Severity::note,
          "device-file",
-         joined(counted(errors, "error"), " and ", counted(warnings, "warning"),
+         concat(counted(errors, "error"), " and ", counted(warnings, "warning"),
                 " in this device file",
                 listed_only < torn_from
                     ? ""
-                    : joined("; ", listed_only,
+                    : concat("; ", listed_only,
                              " objects that it lists have no section: is the file cut off?"),
-                "; `takt eds check ", id ? joined("--node ", id->value(), " ") : "", path.string(),
+                "; `takt eds check ", id ? concat("--node ", id->value(), " ") : "", path.string(),
                 "` lists them")});
   }
 

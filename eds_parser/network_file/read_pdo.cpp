@@ -154,7 +154,7 @@ void read_pdos(const KeyInput& in, std::vector<PdoSpec>& pdos) {
                         in.map.what(), " is written twice");
       continue;
     }
-    const std::string what = joined(is_tpdo ? "TPDO" : "RPDO", *number, " of ", in.map.what());
+    const std::string what = concat(is_tpdo ? "TPDO" : "RPDO", *number, " of ", in.map.what());
     PdoSpec& pdo = pdos.emplace_back();
     read_map(*pair.value, what, pdo_keys, pdo, in.report());
     pdo.number = static_cast<std::uint16_t>(*number);

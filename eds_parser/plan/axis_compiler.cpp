@@ -193,12 +193,12 @@ RawUnit unit_of(const NodeSource& source, std::uint8_t number, unsigned index) {
 
 std::string seconds_text(Time time) {
   const auto tenths = (time + std::chrono::milliseconds{99}) / std::chrono::milliseconds{100};
-  return joined(tenths / 10, ".", tenths % 10, " s");
+  return concat(tenths / 10, ".", tenths % 10, " s");
 }
 
 std::string axis_name(const NodePlan& node, const AxisPlan& axis) {
-  return joined("`", node.name, "`",
-                axis.number == 0 ? "" : joined(" (axis ", axis.number + 1, ")"));
+  return concat("`", node.name, "`",
+                axis.number == 0 ? "" : concat(" (axis ", axis.number + 1, ")"));
 }
 
 void report_guess(const NodePlan& node, const AxisPlan& axis, const NodeSpec& spec,
@@ -261,7 +261,7 @@ void judge_stop(const BusPlan& plan, const NetworkSpec& spec, NetworkReport& rep
           " to stop from its velocity limit (607F, 6080, `limits:`) along the ramp ", ramp,
           ":00; the ordered stop waits ", seconds_text(given),
           " and then disables the drive while it moves. ",
-          possible ? joined("Write `master: {stop_timeout: ", ms * 100, "}`, or a steeper ramp")
+          possible ? concat("Write `master: {stop_timeout: ", ms * 100, "}`, or a steeper ramp")
                    : "Write a steeper ramp",
           " (`sdo: [{index: 0x", ramp, ", value: ...}]`)");
     }

@@ -99,7 +99,7 @@ class CycleCompiler {
   void judge(const TimeBudget& wire) {
     if (!plan_.cycle.sync) return;
     const std::string frames =
-        joined(us(wire.inputs_wire), " us of SYNC and TPDOs and ", us(wire.outputs_wire),
+        concat(us(wire.inputs_wire), " us of SYNC and TPDOs and ", us(wire.outputs_wire),
                " us of RPDOs at ", plan_.bitrate / 1000, " kbit/s");
     if (!fits_period(plan_)) {
       report_.error(

@@ -73,7 +73,7 @@ std::string advice_for(const NodePdos& node, const Target& target, ObjectKey mod
   const ObjectKey display{static_cast<std::uint16_t>(mode.index + 1), 0};
   const bool is_hidden =
       node.node.dictionary->find(display) != nullptr && !is_received(node, display);
-  return joined(map, ", or write `sdo: [{index: ", hex(mode.index, 4), ", value: ", target.mode,
+  return concat(map, ", or write `sdo: [{index: ", hex(mode.index, 4), ", value: ", target.mode,
                 "}]` (", target.mode_name, ")",
                 is_hidden ? " and map " + hex(display.index, 4) + " into a TPDO" : "");
 }

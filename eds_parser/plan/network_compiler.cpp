@@ -176,7 +176,7 @@ class NetworkCompiler {
     }
     const Sourced<std::uint8_t>& master = spec_.master.node_id;
     if (*node.id != *master) return true;
-    return refuse("is the master's", master.given ? joined(" (line ", master.pos.line, ")")
+    return refuse("is the master's", master.given ? concat(" (line ", master.pos.line, ")")
                                                   : " by default: write `master: {node_id: ...}`");
   }
 
@@ -286,7 +286,7 @@ class NetworkCompiler {
     const std::uint32_t kbit = *spec_.master.baudrate_kbit;
     if (rates.empty() || std::ranges::find(rates, kbit) != rates.end()) return;
     std::string list;
-    for (const std::uint16_t rate : rates) list += joined(list.empty() ? "" : ", ", rate);
+    for (const std::uint16_t rate : rates) append_item(list, rate);
     report_.warning(node.spec->pos, "bit-rate", "node `", node.spec->name, "` supports ", list,
                     " kbit/s according to ", node.dictionary->file, ", but the bus runs at ", kbit);
   }

@@ -63,7 +63,7 @@ class ServiceIdCollector {
   }
 
   void enter(const NodeSource& node, const DeviceSdoServer& server, CobId id) {
-    const std::string channel = joined("the SDO channel ", server.index - 0x1200 + 1, " (",
+    const std::string channel = concat("the SDO channel ", server.index - 0x1200 + 1, " (",
                                        hex(server.index, 4), ") of node `", node.spec->name, "`");
     const bool certain = server.doubt.empty();
     const auto other = ids_.find(id);
@@ -97,7 +97,7 @@ class ServiceIdCollector {
   }
 
   static std::string in_channel_of(const NodeSource& node, const SdoChannel& channel) {
-    return joined("is in the SDO channel of node `", node.spec->name, "` (", channel.request, ", ",
+    return concat("is in the SDO channel of node `", node.spec->name, "` (", channel.request, ", ",
                   channel.answer, ")");
   }
 

@@ -1,31 +1,13 @@
 #pragma once
-#include <concepts>
 #include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "eds_parser/report/message.hpp"
 #include "eds_parser/report/source.hpp"
 
 namespace takt {
-
-/// Returns one part of a message as text. A text stays as it is, and a number is written in
-/// decimal.
-inline std::string_view message_part(std::string_view text) noexcept { return text; }
-inline std::string message_part(std::integral auto number) { return std::to_string(number); }
-template <class T>
-  requires requires(const T& value) { to_string(value); }
-std::string message_part(const T& value) {
-  return to_string(value);
-}
-
-/// Returns the parts as one text. Each part is a text, a number, or a value with a to_string().
-template <class... Parts>
-std::string joined(const Parts&... parts) {
-  std::string text;
-  ((text += message_part(parts)), ...);
-  return text;
-}
 
 /// Collects the findings of one network file, up to `max_findings`.
 class NetworkReport {
@@ -35,19 +17,19 @@ class NetworkReport {
   NetworkReport(std::string file, Findings& findings)
       : file_{std::move(file)}, findings_{findings} {}
 
-  // `parts` form the message, see joined().
+  // `parts` form the message, see concat().
   template <class... Parts>
   void error(SourcePos pos, std::string_view rule, const Parts&... parts) {
     ++errors_;
-    add(pos, Severity::error, rule, joined(parts...));
+    add(pos, Severity::error, rule, concat(parts...));
   }
   template <class... Parts>
   void warning(SourcePos pos, std::string_view rule, const Parts&... parts) {
-    add(pos, Severity::warning, rule, joined(parts...));
+    add(pos, Severity::warning, rule, concat(parts...));
   }
   template <class... Parts>
   void note(SourcePos pos, std::string_view rule, const Parts&... parts) {
-    add(pos, Severity::note, rule, joined(parts...));
+    add(pos, Severity::note, rule, concat(parts...));
   }
   const std::string& file() const noexcept { return file_; }
   /// Returns the number of errors so far. If it is higher after a part of the file was read, that

@@ -15,7 +15,7 @@ class ErrorControlSteps : BootPart {
     const Sourced<std::uint16_t>& wanted = spec.heartbeat_producer;
     if (context.producer_ms != 0 && steps.writable(producer)) {
       steps.integer(BootAction::write_if_differs, producer, context.producer_ms,
-                    joined("heartbeat every ", context.producer_ms, " ms"));
+                    concat("heartbeat every ", context.producer_ms, " ms"));
     } else if (wanted.given && *wanted == 0 && steps.writable(producer)) {
       steps.integer(BootAction::write_if_differs, producer, 0, "no heartbeat");
     } else if (wanted.given && *wanted != 0 && !steps.has(producer)) {
@@ -56,7 +56,7 @@ class ErrorControlSteps : BootPart {
       return;
     }
     steps.integer(BootAction::write_if_differs, key, value,
-                  joined("the device watches the master (node ", context.plan.master_id.value(),
+                  concat("the device watches the master (node ", context.plan.master_id.value(),
                          ") for ", context.master_consumer_ms, " ms"));
   }
 

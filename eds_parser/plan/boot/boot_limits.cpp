@@ -66,7 +66,7 @@ class LimitJudge {
     const std::string node = "node `" + spec_.name + "`";
     if (spec_.written(key) != nullptr) return "`sdo` of " + node + ": ";
     if (integer_of(sub.parameter_value) != value) return node + ": ";
-    return joined(node, ", ParameterValue in line ", sub.parameter_pos.line, " of ",
+    return concat(node, ", ParameterValue in line ", sub.parameter_pos.line, " of ",
                   dictionary_.file, ": ");
   }
 

@@ -63,20 +63,20 @@ class PdoBoot : BootPart {
   }
   std::string entry_text(std::size_t number) const {
     const EffectiveEntry& entry = pdo_.mapping[number - 1];
-    return joined(pdo_.label(), " entry ", number, ": ",
+    return concat(pdo_.label(), " entry ", number, ": ",
                   entry.dummy ? "gap" : label(dictionary, entry.object), ", ", entry.bits, " bits");
   }
   std::string count_text() const {
     if (pdo_.mpdo == Mpdo::sam) return "by source address (SAM)";
     if (pdo_.mpdo == Mpdo::dam) return "by destination address (DAM)";
-    return joined(pdo_.mapping.size(), pdo_.mapping.size() == 1 ? " object" : " objects");
+    return concat(pdo_.mapping.size(), pdo_.mapping.size() == 1 ? " object" : " objects");
   }
   std::uint32_t cob_id_mask() const { return pdo_.rtr ? 0xFFFF'FFFF : all_but_rtr; }
   std::string type_text() const {
-    const std::string text = joined(pdo_.label(), " type ", pdo_.transmission);
+    const std::string text = concat(pdo_.label(), " type ", pdo_.transmission);
     if (pdo_.transmission == 0) return text + ": after SYNC, on change";
     if (pdo_.transmission == 1) return text + ": every SYNC";
-    if (pdo_.synchronous()) return joined(text, ": every ", pdo_.transmission, " SYNCs");
+    if (pdo_.synchronous()) return concat(text, ": every ", pdo_.transmission, " SYNCs");
     if (pdo_.transmission == 252) return text + ": on remote request, sampled at SYNC";
     if (pdo_.transmission == 253) return text + ": on remote request";
     return text + ": by event";
@@ -84,7 +84,7 @@ class PdoBoot : BootPart {
 
   std::string unit_text() const {
     const std::uint32_t us = pdo_.inhibit_unit_us;
-    return us % 1000 == 0 ? joined(us / 1000, " ms") : joined(us, " us");
+    return us % 1000 == 0 ? concat(us / 1000, " ms") : concat(us, " us");
   }
 
   void compare_communication() {
@@ -149,10 +149,10 @@ class PdoBoot : BootPart {
       steps.integer(action, communication(sub), value, pdo_.label() + " " + text).optional = true;
     };
     step(pdo_.has_inhibit, 3, pdo_.inhibit_time,
-         joined("inhibit time ", pdo_.inhibit_time, " x ", unit_text()));
+         concat("inhibit time ", pdo_.inhibit_time, " x ", unit_text()));
     step(pdo_.has_event_timer, 5, pdo_.event_timer,
-         joined(pdo_.is_tpdo ? "event timer " : "deadline ", pdo_.event_timer, " ms"));
-    step(pdo_.has_sync_start, 6, pdo_.sync_start, joined("SYNC start value ", pdo_.sync_start));
+         concat(pdo_.is_tpdo ? "event timer " : "deadline ", pdo_.event_timer, " ms"));
+    step(pdo_.has_sync_start, 6, pdo_.sync_start, concat("SYNC start value ", pdo_.sync_start));
   }
 
   void read_back() {

@@ -78,7 +78,7 @@ class ProgramSteps : BootPart {
   void download() {
     BootStep& step =
         steps.bytes(BootAction::download_program, data, spec.program,
-                    joined("program ", *spec.software_file, ", ", spec.program.size(), " bytes"));
+                    concat("program ", *spec.software_file, ", ", spec.program.size(), " bytes"));
     step.letter = 'I';
     step.timeout = segment_time;
   }

@@ -76,7 +76,7 @@ std::string BootSteps::eds_note(ObjectKey object) const {
   const SubObject* sub = dictionary_.find(object);
   if (sub == nullptr) return dictionary_.file + " does not have " + to_string(object);
   std::string note =
-      joined(dictionary_.file, " line ", sub->pos.line, ": ", label(dictionary_, object), ", ",
+      concat(dictionary_.file, " line ", sub->pos.line, ": ", label(dictionary_, object), ", ",
              name(sub->type), ", ", access_name(sub->access));
   if (!sub->default_text.empty()) note += ", default " + sub->default_text;
   const ObjectLimits limits{*sub};

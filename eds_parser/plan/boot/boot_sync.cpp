@@ -23,12 +23,12 @@ class SyncSteps : BootPart {
     sync_counter();
     if (steps.writable({0x1006, 0}) && takes({0x1006, 0}, period, {}, "")) {
       steps.integer(BootAction::write_if_differs, {0x1006, 0}, period,
-                    joined("SYNC period ", period, " us"));
+                    concat("SYNC period ", period, " us"));
     }
     make_sync();
     if (master.sync_window_us.given && steps.writable({0x1007, 0})) {
       steps.integer(BootAction::write_if_differs, {0x1007, 0}, *master.sync_window_us,
-                    joined("synchronous window ", *master.sync_window_us, " us"));
+                    concat("synchronous window ", *master.sync_window_us, " us"));
     }
   }
 
@@ -52,7 +52,7 @@ class SyncSteps : BootPart {
                             ": the device may report each SYNC with a counter as a length error");
     }
     const std::string purpose =
-        overflow == 0 ? "SYNC without counter" : joined("SYNC counter 1..", overflow);
+        overflow == 0 ? "SYNC without counter" : concat("SYNC counter 1..", overflow);
     steps.integer(BootAction::compare, key, overflow, purpose, 1);
     const std::size_t skip = steps.skip_if_same("SYNC counter needs no change");
     if (steps.writable({0x1006, 0})) {

@@ -87,7 +87,7 @@ class ValueSteps : BootPart {
       const SubObject* sub = dictionary.find(files.key);
       const bool refused = sub == nullptr || (sub->flags & refuse_write_on_download) != 0;
       if (refused || spec.written(files.key)) continue;
-      std::string purpose = joined("DCF: ", label(dictionary, files.key), " = file ",
+      std::string purpose = concat("DCF: ", label(dictionary, files.key), " = file ",
                                    files.download, ", ", files.content.size(), " bytes");
       if (files.content.size() <= longest_compared && steps.readable(files.key)) {
         write(files.key, files.content, std::move(purpose));
@@ -125,7 +125,7 @@ class ValueSteps : BootPart {
       set_already_.insert(value);
       if (!steps.writable(exponent)) continue;
       steps.integer(BootAction::write_if_differs, exponent, period->exponent,
-                    joined(text, " (x 10^", period->exponent, " s)"), 1);
+                    concat(text, " (x 10^", period->exponent, " s)"), 1);
       set_already_.insert(exponent);
     }
   }
@@ -221,7 +221,7 @@ class ValueSteps : BootPart {
     const Object* object = dictionary.find(sdo.object.index);
     std::string hint = without_0x(dictionary, sdo.object.index);
     if (object != nullptr && !object->subs.empty()) {
-      hint = joined("; ", hex(object->index), " ", object->name, " has sub-index ",
+      hint = concat("; ", hex(object->index), " ", object->name, " has sub-index ",
                     object->subs.front().sub, "..", object->subs.back().sub);
     }
     report.error(sdo.pos, "no-such-object", "`sdo` of node `", spec.name, "`: object ", sdo.object,
@@ -272,14 +272,14 @@ class ValueSteps : BootPart {
   /// Returns a range as text: `-128..127, or 0x80..0xFF as bits`.
   static std::string range_text(DataType type, std::int64_t low, std::int64_t high) {
     const unsigned bits = bit_width(type);
-    if (!is_signed(type) || bits >= 63) return joined(low, "..", high);
+    if (!is_signed(type) || bits >= 63) return concat(low, "..", high);
     const auto bits_text = [bits](std::int64_t value) {
       std::array<char, 20> text{};
       std::snprintf(text.data(), text.size(), "0x%0*llX", static_cast<int>((bits + 3) / 4),
                     static_cast<long long>(value));
       return std::string{text.data()};
     };
-    return joined(low, "..", -low - 1, ", or ", bits_text(-low), "..", bits_text(high), " as bits");
+    return concat(low, "..", -low - 1, ", or ", bits_text(-low), "..", bits_text(high), " as bits");
   }
 
   /// Returns true if the object can hold the value. A bit pattern of the width of the type

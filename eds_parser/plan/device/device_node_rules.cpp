@@ -43,7 +43,7 @@ class NodeJudge {
     const HeartbeatRule& rule = data_.heartbeat;
     const std::uint32_t kept = rule.kept(ms);
     if (kept == ms) return;
-    const std::string text = joined(what, " is ", ms, " ms; ", data_.name, " counts in steps of ",
+    const std::string text = concat(what, " is ", ms, " ms; ", data_.name, " counts in steps of ",
                                     rule.multiple_of_ms, " ms and rounds this time down to ", kept);
     if (kept == 0) {
       report_.error(pos, "device-data", text, ", which means off", data_.cite(rule.fact));

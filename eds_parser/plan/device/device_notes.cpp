@@ -10,8 +10,8 @@ using namespace std::chrono_literals;
 std::string numbers_text(const PdoRule& rule) {
   const auto& [low, high] = rule.numbers;
   const std::string_view kind = rule.is_tpdo ? "TPDO" : "RPDO";
-  if (low == high) return joined(kind, low);
-  return high >= 512 ? joined(kind, "s") : joined(kind, low, "..", high);
+  if (low == high) return concat(kind, low);
+  return high >= 512 ? concat(kind, "s") : concat(kind, low, "..", high);
 }
 
 std::string rule_text(const PdoRule& rule) {
@@ -33,21 +33,21 @@ std::string rule_text(const PdoRule& rule) {
 std::string list_of(const std::vector<NumberRange>& ranges) {
   std::string text;
   for (const NumberRange& range : ranges) {
-    text += joined(text.empty() ? "" : ", ", range.low);
-    if (range.high != range.low) text += joined("..", range.high);
+    append_item(text, range.low);
+    if (range.high != range.low) text += concat("..", range.high);
   }
   return text;
 }
 
 std::string time_text(std::uint64_t us) {
-  return us % 1000 == 0 ? joined(us / 1000, " ms") : joined(us, " us");
+  return us % 1000 == 0 ? concat(us / 1000, " ms") : concat(us, " us");
 }
 
 std::vector<std::string> device_notes(const NodePdos& node) {
   std::vector<std::string> notes;
   if (node.node.data == nullptr) return notes;
   const DeviceData& data = *node.node.data;
-  const auto add = [&](const auto&... parts) { notes.push_back(joined(parts...)); };
+  const auto add = [&](const auto&... parts) { notes.push_back(concat(parts...)); };
   if (data.node_ids.fact.pos != SourcePos{}) add("node ids ", list_of({data.node_ids.ids}));
   if (data.heartbeat.multiple_of_ms != 1) {
     add("heartbeat times in steps of ", data.heartbeat.multiple_of_ms, " ms, rounded down");

@@ -118,7 +118,7 @@ class Judge {
       return !other.is_tpdo && other.number == pdo.number && other.is_used();
     };
     if (std::ranges::any_of(node_.pdos, asks)) return;
-    const std::string rpdo = joined("RPDO", pdo.number);
+    const std::string rpdo = concat("RPDO", pdo.number);
     report_.warning(pos_of(pdo, &PdoSpec::transmission, 2), "device-data", label(pdo),
                     " of transmission type ", pdo.transmission, " is sent only as the answer to ",
                     rpdo, ", which is off, so the device never sends it. Switch ", rpdo, " on",

@@ -46,10 +46,10 @@ void AxisLimits::ask_for_turn(const Sourced<double>& modulo) {
   if (of_drive == length) return;
   const ObjectKey key = object(0x607B);
   const std::string text =
-      joined("`modulo` of ", owner(), " is ", std::llround(length), " counts of ",
+      concat("`modulo` of ", owner(), " is ", std::llround(length), " counts of ",
              table_.signal(positions_[0]).name, ", but ", of_drive > 0 ? "" : "nothing sets ", key,
              " (position range limit)",
-             of_drive > 0 ? joined(" wraps after ", std::llround(of_drive)) : "",
+             of_drive > 0 ? concat(" wraps after ", std::llround(of_drive)) : "",
              ": a drive that doesn't wrap at `modulo` moves back a whole turn at once");
   if (node_.dictionary->find({key.index, 2}) == nullptr) {
     return report_.note(modulo.pos, "limits", text, "; the device file does not have this object");
@@ -129,7 +129,7 @@ void AxisLimits::warn_of_late_start(const AxisLimitsSpec& limits) {
   if (tpdo == nullptr || !comes_by_event_alone(*tpdo)) return;
   for (const auto* limit : {&limits.step, &limits.velocity, &limits.acceleration}) {
     if (!limit->given) continue;
-    const std::string name = joined("TPDO", tpdo->number);
+    const std::string name = concat("TPDO", tpdo->number);
     return report_.warning(
         limit->pos, "limits", "limits of ", owner(), " hold its set-points back until ",
         object(0x6064), " has arrived once, but ", name, " sends it only by event (transmission ",

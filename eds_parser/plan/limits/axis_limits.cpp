@@ -53,7 +53,7 @@ std::vector<SignalIndex> AxisLimits::outputs(std::initializer_list<ObjectKey> ke
 
 std::string AxisLimits::owner() const {
   const std::string node = "node `" + node_.spec->name + "`";
-  return axis_ == 1 ? node : joined("axis ", axis_, " of ", node);
+  return axis_ == 1 ? node : concat("axis ", axis_, " of ", node);
 }
 
 void AxisLimits::compile(const AxisLimitsSpec& limits) {

@@ -156,7 +156,7 @@ class CobIdAssigner {
       return take(user, id);
     }
     const std::string text =
-        joined(user, " has COB-ID ", was, " in ", user.file(), ", which ",
+        concat(user, " has COB-ID ", was, " in ", user.file(), ", which ",
                other == nullptr ? service : "is used by " + to_string(*other), "; takt uses ", id);
     const bool cut =
         other != nullptr && other->node != user.node && other->pdo->is_tpdo != pdo.is_tpdo;

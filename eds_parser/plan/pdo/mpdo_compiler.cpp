@@ -72,7 +72,7 @@ class DispatchingList {
     const std::uint32_t high = 1U << 24 | std::uint32_t{object.index} << 8 | object.sub;
     const ObjectKey place = free_.front();
     free_.erase(free_.begin());
-    return joined("write one under `sdo:`, `{index: ", hex(place.index), ", sub_index: ", place.sub,
+    return concat("write one under `sdo:`, `{index: ", hex(place.index), ", sub_index: ", place.sub,
                   ", value: ", hex(high, 8), hex(low, 8).substr(2), "}`");
   }
 

@@ -54,7 +54,7 @@ class PdoCompiler {
     for (const std::string& pdo : unmapped_ | std::views::take(most_named) | std::views::drop(1)) {
       list += ", " + pdo;
     }
-    if (unmapped_.size() > most_named) list += joined(", ... (", unmapped_.size(), " in all)");
+    if (unmapped_.size() > most_named) list += concat(", ... (", unmapped_.size(), " in all)");
     report_.note(node_.spec->pos, "pdo-left-out", list, " of node `", node_.spec->name,
                  "`: valid in ", node_.dictionary->file,
                  ", but without mapped objects; not part of the image");
