@@ -1,10 +1,26 @@
 #pragma once
-
-namespace CLI {
-class App;
-}
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
 
 namespace takt {
+
+/// A verb of the tool, and the options that its arguments fill.
+template <class Options>
+struct AddedCommand {
+  CLI::App& verb;
+  Options& options;
+};
+
+/// Adds a verb that calls `run` with its options and keeps the exit code.
+template <class Options>
+AddedCommand<Options> add_command(CLI::App& app, int& exit_code, const std::string& name,
+                                  const std::string& what, int (*run)(const Options&)) {
+  auto* verb = app.add_subcommand(name, what);
+  const auto options = std::make_shared<Options>();
+  verb->callback([options, run, &exit_code] { exit_code = run(*options); });
+  return {*verb, *options};
+}
 
 /// Adds one verb of the tool to the command line. If the user chooses the verb, it runs and sets
 /// the exit code (share/doc/command_line.md).

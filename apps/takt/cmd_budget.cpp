@@ -4,7 +4,6 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <memory>
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/duration.hpp"
@@ -131,30 +130,29 @@ int run(const BudgetArguments& options) {
 }  // namespace
 
 void add_budget(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<BudgetArguments>();
-  auto* verb = app.add_subcommand("budget", "tells whether the frames of a network fit its bus");
-  verb->add_option("NET", options->file, "network file")->required();
-  verb->add_option("--what-if", options->what_if,
-                   "compute with period=1ms, bitrate=500, arm.tpdo2=10 ... instead")
+  auto [verb, options] = add_command<BudgetArguments>(
+      app, exit_code, "budget", "tells whether the frames of a network fit its bus", run);
+  verb.add_option("NET", options.file, "network file")->required();
+  verb.add_option("--what-if", options.what_if,
+                  "compute with period=1ms, bitrate=500, arm.tpdo2=10 ... instead")
       ->delimiter(',');
-  verb->add_option("--device-time", options->device_time,
-                   "time from SYNC until a device has its TPDO ready for the bus")
+  verb.add_option("--device-time", options.device_time,
+                  "time from SYNC until a device has its TPDO ready for the bus")
       ->type_name("TIME")
       ->capture_default_str();
-  verb->add_option("--errors", options->errors,
-                   "assume one error on the wire in each interval of this length")
+  verb.add_option("--errors", options.errors,
+                  "assume one error on the wire in each interval of this length")
       ->type_name("TIME");
-  verb->add_flag("--timeline", options->timeline, "also print a picture of one cycle");
-  verb->add_option("--svg", options->svg, "write that picture as an SVG file")->type_name("FILE");
-  verb->add_flag("--json", options->json, "print one JSON document");
-  verb->footer(
+  verb.add_flag("--timeline", options.timeline, "also print a picture of one cycle");
+  verb.add_option("--svg", options.svg, "write that picture as an SVG file")->type_name("FILE");
+  verb.add_flag("--json", options.json, "print one JSON document");
+  verb.footer(
       "takt assumes worst bit stuffing, worst order, and every frame as often as it may come.\n"
       "Exit code 1: a frame can be too late. takt then also prints the cheapest changes that\n"
       "help.\n\n"
       "Examples:\n"
       "  takt budget lift.yaml --timeline\n"
       "  takt budget lift.yaml --what-if period=1ms,bitrate=500");
-  verb->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
 }  // namespace takt

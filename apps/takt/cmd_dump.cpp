@@ -269,23 +269,22 @@ int run(const DumpOptions& options) {
 }  // namespace
 
 void add_dump(CLI::App& app, int& exit_code) {
-  const auto options = std::make_shared<DumpOptions>();
-  CLI::App* dump = app.add_subcommand("dump", "prints CAN frames with their CANopen meaning");
-  dump->add_option("files", options->files,
-                   "network file (.yaml), recording (.log, .trc, .asc; - for stdin)")
+  auto [dump, options] = add_command<DumpOptions>(
+      app, exit_code, "dump", "prints CAN frames with their CANopen meaning", run);
+  dump.add_option("files", options.files,
+                  "network file (.yaml), recording (.log, .trc, .asc; - for stdin)")
       ->type_name("[NET.yaml] [FILE]");
-  add_bus(*dump, options->bus, "can0, vcan0, unix:PATH")->type_name("BUS");
-  add_number(*dump, "-n,--count", options->count, "end after this number of frames");
-  dump->add_flag("--json", options->json, "print one JSON object per frame");
-  dump->add_option("--only", options->only, "print only these services, for example SDO,EMCY")
+  add_bus(dump, options.bus, "can0, vcan0, unix:PATH")->type_name("BUS");
+  add_number(dump, "-n,--count", options.count, "end after this number of frames");
+  dump.add_flag("--json", options.json, "print one JSON object per frame");
+  dump.add_option("--only", options.only, "print only these services, for example SDO,EMCY")
       ->delimiter(',')
       ->transform([](std::string text) { return in_capitals(std::move(text)); })
       ->check(service_trouble)
       ->type_name("SERVICE,...");
-  dump->add_option("--node", options->node, "print only frames of this node, by id or name")
+  dump.add_option("--node", options.node, "print only frames of this node, by id or name")
       ->type_name("NODE");
-  dump->footer(example);
-  dump->callback([options, &exit_code] { exit_code = run(*options); });
+  dump.footer(example);
 }
 
 }  // namespace takt

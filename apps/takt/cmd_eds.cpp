@@ -65,6 +65,8 @@ int print_rules() {
 }
 
 int check_files(const CheckOptions& options) {
+  if (options.rules) return print_rules();
+  if (options.files.empty()) throw CLI::RequiredError{"FILE"};
   bool any_error = false;
   std::vector<JudgedFile> judged;
   for (const auto& path : options.files) {
@@ -85,25 +87,23 @@ int check_files(const CheckOptions& options) {
 }
 
 void add_show(CLI::App& eds, int& exit_code) {
-  auto options = std::make_shared<ShowOptions>();
-  auto* command = eds.add_subcommand("show", "prints the object dictionary and the PDOs of a file");
-  command->add_option("FILE", options->file, "EDS or DCF")->required();
-  add_node_id(*command, options->node, "node id that replaces $NODEID");
-  command->add_flag("--json", options->json, "print one JSON document");
-  command->footer("Example:\n  takt eds show --node 5 share/eds/takt_drive402.eds");
-  command->callback([options, &exit_code] { exit_code = show(*options); });
+  auto [command, options] = add_command<ShowOptions>(
+      eds, exit_code, "show", "prints the object dictionary and the PDOs of a file", show);
+  command.add_option("FILE", options.file, "EDS or DCF")->required();
+  add_node_id(command, options.node, "node id that replaces $NODEID");
+  command.add_flag("--json", options.json, "print one JSON document");
+  command.footer("Example:\n  takt eds show --node 5 share/eds/takt_drive402.eds");
 }
 
 void add_check(CLI::App& eds, int& exit_code) {
-  auto options = std::make_shared<CheckOptions>();
-  auto* command = eds.add_subcommand("check", "lists the mistakes in files");
-  auto* rules = command->add_flag("--rules", options->rules, "list the rules, with examples");
-  auto* files = command->add_option("FILE", options->files, "EDS or DCF");
-  files->excludes(rules);
-  add_node_id(*command, options->node, "node id that replaces $NODEID");
-  command->add_flag("--quiet", options->quiet, "leave out notes");
-  command->add_flag("--json", options->json, "print one JSON document")->excludes(rules);
-  command->footer(
+  auto [command, options] = add_command<CheckOptions>(eds, exit_code, "check",
+                                                      "lists the mistakes in files", check_files);
+  auto* rules = command.add_flag("--rules", options.rules, "list the rules, with examples");
+  command.add_option("FILE", options.files, "EDS or DCF")->excludes(rules);
+  add_node_id(command, options.node, "node id that replaces $NODEID");
+  command.add_flag("--quiet", options.quiet, "leave out notes");
+  command.add_flag("--json", options.json, "print one JSON document")->excludes(rules);
+  command.footer(
       "Findings are written as file:line:column: severity: message [rule].\n"
       "  error    the device would refuse it, or takt would not do what the author meant\n"
       "  warning  the file deviates from the standard, but can be read in only one way\n"
@@ -111,10 +111,6 @@ void add_check(CLI::App& eds, int& exit_code) {
       "The exit code is 1 if there is an error.\n\n"
       "Example:\n"
       "  takt eds check share/eds/*.eds");
-  command->callback([options, &exit_code] {
-    if (!options->rules && options->files.empty()) throw CLI::RequiredError{"FILE"};
-    exit_code = options->rules ? print_rules() : check_files(*options);
-  });
 }
 
 }  // namespace

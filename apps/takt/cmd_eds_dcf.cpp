@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <memory>
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/failure.hpp"
@@ -49,23 +48,22 @@ int run(const EdsDcfOptions& options) {
 }  // namespace
 
 void add_eds_dcf(CLI::App& eds, int& exit_code) {
-  auto options = std::make_shared<EdsDcfOptions>();
-  auto* command = eds.add_subcommand("dcf", "writes the DCF of one device");
-  command->add_option("FILE", options->file, "EDS or DCF to start from")->required();
-  add_node_id(*command, options->node, "node id of the device");
-  add_number(*command, "--bitrate", options->bitrate, "bit rate of the network, kbit/s")
+  auto [command, options] =
+      add_command<EdsDcfOptions>(eds, exit_code, "dcf", "writes the DCF of one device", run);
+  command.add_option("FILE", options.file, "EDS or DCF to start from")->required();
+  add_node_id(command, options.node, "node id of the device");
+  add_number(command, "--bitrate", options.bitrate, "bit rate of the network, kbit/s")
       ->check(CLI::Range(1U, 1000U));
-  command->add_option("--name", options->name, "name of the device in the network");
-  command->add_option("--set", options->values,
-                      "set OBJECT=VALUE; VALUE as in an EDS, for a DOMAIN @FILE");
-  command->add_option("-o,--output", options->out, "output file for the DCF; - for stdout")
+  command.add_option("--name", options.name, "name of the device in the network");
+  command.add_option("--set", options.values,
+                     "set OBJECT=VALUE; VALUE as in an EDS, for a DOMAIN @FILE");
+  command.add_option("-o,--output", options.out, "output file for the DCF; - for stdout")
       ->required();
-  command->footer(
+  command.footer(
       "The text of FILE stays the same byte for byte, except for the values that are set and for\n"
       "PDOs that FILE only counts (CompactPDO): the DCF lists the enabled ones. A value that the\n"
       "device would refuse is an error; takt then writes no file.\n\n"
       "Example:\n  takt eds dcf drive.eds --node 5 --set 6081:00=1000 --set 1017=100 -o axis.dcf");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
 }  // namespace takt

@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <memory>
 #include <optional>
 
 #include "apps/command_line/commands.hpp"
@@ -58,18 +57,18 @@ int run(const EdsFixOptions& options) {
 }  // namespace
 
 void add_eds_fix(CLI::App& eds, int& exit_code) {
-  auto options = std::make_shared<EdsFixOptions>();
-  auto* command = eds.add_subcommand("fix", "mends mistakes that can be read in only one way");
-  command->add_option("FILE", options->file, "EDS or DCF")->required();
-  command->add_option("-o,--output", options->out,
-                      "mended file; - for stdout; without -o takt only shows changes");
-  command->add_flag("--quiet", options->quiet, "leave out notes about the remaining findings");
+  auto [command, options] = add_command<EdsFixOptions>(
+      eds, exit_code, "fix", "mends mistakes that can be read in only one way", run);
+  command.add_option("FILE", options.file, "EDS or DCF")->required();
+  command.add_option("-o,--output", options.out,
+                     "mended file; - for stdout; without -o takt only shows changes");
+  command.add_flag("--quiet", options.quiet, "leave out notes about the remaining findings");
   std::string rules;
   for (const std::string_view rule : fixable_rules) {
     rules += (rules.empty() ? "" : rules.size() - rules.rfind('\n') > 75 ? ",\n" : ", ");
     rules += rule;
   }
-  command->footer(
+  command.footer(
       "The difference goes to stdout in the form of diff -u, for `patch --binary`. (For a file in\n"
       "UTF-16, or with CR alone as line ends, the difference is only for reading.) The remaining\n"
       "findings go to stderr in the form of `takt eds check`. No object and no value changes into\n"
@@ -78,7 +77,6 @@ void add_eds_fix(CLI::App& eds, int& exit_code) {
       rules +
       ",\nand misspellings of the keys ParameterName and DataType.\n\n"
       "Example:\n  takt eds fix drive.eds -o drive_fixed.eds");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
 }  // namespace takt

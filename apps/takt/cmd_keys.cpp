@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <memory>
 #include <string>
 
 #include "apps/command_line/commands.hpp"
@@ -40,16 +39,15 @@ void add_keys(CLI::App& app, int& exit_code) {
       "Programs make these envelopes with the first key of the file in TAKT_KEYS or --keys.\n\n"
       "Example:\n"
       "  takt keys new lift.keys && export TAKT_KEYS=$PWD/lift.keys");
-  auto options = std::make_shared<KeysOptions>();
-  auto* fresh = verb->add_subcommand("new", "makes a file with one new random key, mode 0600");
-  fresh->add_option("FILE", options->file, "key file to make; the file must not exist yet")
+  auto [fresh, options] = add_command<KeysOptions>(
+      *verb, exit_code, "new", "makes a file with one new random key, mode 0600", make);
+  fresh.add_option("FILE", options.file, "key file to make; the file must not exist yet")
       ->required();
-  fresh->add_option("--name", options->name, "name of the key")->capture_default_str();
-  fresh->callback([options, &exit_code] { exit_code = make(*options); });
-  auto* look = verb->add_subcommand(
-      "check", "checks permissions and contents, and prints the names of the keys");
-  look->add_option("FILE", options->file, "the key file")->required();
-  look->callback([options, &exit_code] { exit_code = check(*options); });
+  fresh.add_option("--name", options.name, "name of the key")->capture_default_str();
+  auto [look, known] = add_command<KeysOptions>(
+      *verb, exit_code, "check",
+      "checks permissions and contents, and prints the names of the keys", check);
+  look.add_option("FILE", known.file, "the key file")->required();
 }
 
 }  // namespace takt

@@ -142,21 +142,20 @@ int print(const PlanOptions& options) {
 }  // namespace
 
 void add_plan(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<PlanOptions>();
-  auto* command =
-      app.add_subcommand("plan", "prints everything that taktd will do with a network file");
-  command->add_option("NET", options->file, "network file (YAML, also a bus.yml)")->required();
-  command->add_option("--node", options->node, "print only this node, by name or id");
-  command->add_flag("--json", options->json, "print one JSON document");
+  auto [command, options] = add_command<PlanOptions>(
+      app, exit_code, "plan", "prints everything that taktd will do with a network file", print);
+  command.add_option("NET", options.file, "network file (YAML, also a bus.yml)")->required();
+  command.add_option("--node", options.node, "print only this node, by name or id");
+  command.add_flag("--json", options.json, "print one JSON document");
   auto* other =
-      command->add_option("--diff", options->other, "print what changes from NET to this file")
+      command.add_option("--diff", options.other, "print what changes from NET to this file")
           ->type_name("OTHER");
   command
-      ->add_flag("--diff-devices", options->devices,
-                 "print what the device data change, before and after")
+      .add_flag("--diff-devices", options.devices,
+                "print what the device data change, before and after")
       ->excludes(other);
-  command->add_flag("--quiet", options->quiet, "leave out notes");
-  command->footer(
+  command.add_flag("--quiet", options.quiet, "leave out notes");
+  command.footer(
       "The plan goes to stdout, findings go to stderr. Exit code 2: the file is invalid.\n"
       "Each boot step shows its first frame; `..` is a byte that depends on the device. If takt\n"
       "writes only where the answer differs, the value follows, in --json also as a frame.\n"
@@ -167,7 +166,6 @@ void add_plan(CLI::App& app, int& exit_code) {
       "  takt plan share/demo/two_axes.yaml --node shoulder\n"
       "  takt plan lift.yaml --diff lift_new.yaml\n"
       "  takt plan share/demo/lenze8400.yaml --diff-devices");
-  command->callback([options, &exit_code] { exit_code = print(*options); });
 }
 
 }  // namespace takt

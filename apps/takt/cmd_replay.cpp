@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fmt/format.h>
-#include <memory>
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/failure.hpp"
@@ -79,15 +78,14 @@ int run(const ReplayOptions& options) {
 }  // namespace
 
 void add_replay(CLI::App& app, int& exit_code) {
-  const auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command = app.add_subcommand(
-      "replay", "runs a recording of the black box again and compares the decisions");
-  command->add_option("FILE", options->file, "recording of `taktd --black-box`")->required();
-  command->add_option("--network", options->network,
-                      "network file to use instead of that of the recording");
-  command->add_flag("--quiet", options->quiet, "print only the result");
-  command->footer(help);
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  auto [command, options] = add_command<ReplayOptions>(
+      app, exit_code, "replay",
+      "runs a recording of the black box again and compares the decisions", run);
+  command.add_option("FILE", options.file, "recording of `taktd --black-box`")->required();
+  command.add_option("--network", options.network,
+                     "network file to use instead of that of the recording");
+  command.add_flag("--quiet", options.quiet, "print only the result");
+  command.footer(help);
 }
 
 }  // namespace takt

@@ -99,17 +99,17 @@ int run(const AuditArguments& arguments) {
 }  // namespace
 
 void add_audit(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<AuditArguments>();
-  auto* command = app.add_subcommand(
-      "audit", "tells what devices do if the master, the cable or the bus fails");
-  command->add_option("NET", arguments->network, "network file (YAML, also a bus.yml)")->required();
-  add_bus(*command, arguments->bus, "ask the devices on this bus directly; stop the daemon first")
+  auto [command, arguments] = add_command<AuditArguments>(
+      app, exit_code, "audit", "tells what devices do if the master, the cable or the bus fails",
+      run);
+  command.add_option("NET", arguments.network, "network file (YAML, also a bus.yml)")->required();
+  add_bus(command, arguments.bus, "ask the devices on this bus directly; stop the daemon first")
       ->type_name("IFACE");
-  command->add_flag("--live", arguments->through_daemon, "ask the devices through the daemon");
-  add_number(*command, "--timeout", arguments->timeout_ms, "longest wait for each answer, ms")
+  command.add_flag("--live", arguments.through_daemon, "ask the devices through the daemon");
+  add_number(command, "--timeout", arguments.timeout_ms, "longest wait for each answer, ms")
       ->check(CLI::Range(1, 60'000));
-  add_live_options(*command, arguments->live);
-  command->footer(
+  add_live_options(command, arguments.live);
+  command.footer(
       "The audit reads the EDS files and what the boot plan writes: heartbeat consumer (1016),\n"
       "life guarding (100C, 100D), error behaviour (1029), abort connection of drives (6007,\n"
       "605A, 605E), error values of outputs (6206, 6443 ...), deadlines of RPDOs and SYNC. With\n"
@@ -117,7 +117,6 @@ void add_audit(CLI::App& app, int& exit_code) {
       "keeps its last set-points.\n\n"
       "Example:\n"
       "  takt audit share/demo/two_axes.yaml");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace takt

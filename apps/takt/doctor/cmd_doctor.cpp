@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <unistd.h>
@@ -99,28 +98,27 @@ int run(const DoctorOptions& options) {
 }  // namespace doctor
 
 void add_doctor(CLI::App& app, int& exit_code) {
-  auto* verb = app.add_subcommand(
-      "doctor", "checks whether this machine is fit for a bus, and names remedies");
-  verb->footer(
+  auto [verb, options] = add_command<doctor::DoctorOptions>(
+      app, exit_code, "doctor", "checks whether this machine is fit for a bus, and names remedies",
+      doctor::run);
+  verb.footer(
       "Each line is good, a hint or BAD (exit code 1). The command below a line mends the fault;\n"
       "run that command as root. takt doctor itself changes nothing.\n"
       "Examples:\n"
       "  takt doctor\n"
       "  takt doctor --bus can0 --bitrate 500");
-  auto options = std::make_shared<doctor::DoctorOptions>();
-  add_bus(*verb, options->bus, "CAN interface: can0, vcan0")->type_name("IFACE");
-  add_number(*verb, "--bitrate", options->bitrate_kbit,
+  add_bus(verb, options.bus, "CAN interface: can0, vcan0")->type_name("IFACE");
+  add_number(verb, "--bitrate", options.bitrate_kbit,
              "bit rate that the interface must have, kbit/s")
       ->check(CLI::Range(10, 1000))
       ->type_name("KBIT");
-  add_number(*verb, "--priority", options->priority, "priority of the bus thread")
+  add_number(verb, "--priority", options.priority, "priority of the bus thread")
       ->check(CLI::Range(1, 99))
       ->type_name("N");
-  verb->add_option("--lcm-url", options->lcm_url,
-                   "LCM URL to check; default: LCM_DEFAULT_URL, else LCM's own")
+  verb.add_option("--lcm-url", options.lcm_url,
+                  "LCM URL to check; default: LCM_DEFAULT_URL, else LCM's own")
       ->type_name("URL");
-  verb->add_flag("--json", options->json, "print one JSON document");
-  verb->callback([options, &exit_code] { exit_code = doctor::run(*options); });
+  verb.add_flag("--json", options.json, "print one JSON document");
 }
 
 }  // namespace takt

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apps/command_line/commands.hpp"
@@ -147,21 +146,19 @@ int run(const ImportOptions& options) {
 }  // namespace
 
 void add_import(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<ImportOptions>();
-  auto* command =
-      app.add_subcommand("import", "tells how takt reads a bus.yml; converts a nodelist.cpj");
+  auto [command, options] = add_command<ImportOptions>(
+      app, exit_code, "import", "tells how takt reads a bus.yml; converts a nodelist.cpj", run);
   command
-      ->add_option("FILE", options->file,
-                   "bus.yml of dcfgen or ros2_canopen, or nodelist.cpj of CiA 306-3")
+      .add_option("FILE", options.file,
+                  "bus.yml of dcfgen or ros2_canopen, or nodelist.cpj of CiA 306-3")
       ->required();
-  command->add_option("-o,--output", options->out, "network file to write from a nodelist.cpj");
-  add_number(*command, "--network", options->network,
-             "network of a nodelist.cpj: 2 for [Topology2]")
+  command.add_option("-o,--output", options.out, "network file to write from a nodelist.cpj");
+  add_number(command, "--network", options.network, "network of a nodelist.cpj: 2 for [Topology2]")
       ->check(CLI::Range(1U, 99U))
       ->capture_default_str();
-  command->add_flag("--json", options->json, "print one JSON document");
-  command->add_flag("--brief", options->brief, "leave out keys that takt uses unchanged");
-  command->footer(
+  command.add_flag("--json", options.json, "print one JSON document");
+  command.add_flag("--brief", options.brief, "leave out keys that takt uses unchanged");
+  command.footer(
       "A bus.yml needs no conversion: taktd and all commands read it as it is. A nodelist.cpj\n"
       "with its DCFs becomes a network file (-o): nodes, names, device files, bit rate. takt\n"
       "reports each key as used, ignored (with the reason), suspicious (used, but hardly what\n"
@@ -170,7 +167,6 @@ void add_import(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  takt import bus.yml --brief\n"
       "  takt import nodelist.cpj -o lift.yaml");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
 }  // namespace takt

@@ -2,7 +2,6 @@
 #include <charconv>
 #include <fstream>
 #include <iostream>
-#include <memory>
 
 #include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
@@ -107,29 +106,29 @@ int run(const LearnArguments& options) {
 }  // namespace learn
 
 void add_learn(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<learn::LearnArguments>();
-  auto* command =
-      app.add_subcommand("learn", "makes a network file from a recorded boot of another master");
+  auto [command, options] = add_command<learn::LearnArguments>(
+      app, exit_code, "learn", "makes a network file from a recorded boot of another master",
+      learn::run);
   command
-      ->add_option("LOG", options->log,
-                   "recording of candump (-L or plain), .trc or .asc; - for stdin")
+      .add_option("LOG", options.log,
+                  "recording of candump (-L or plain), .trc or .asc; - for stdin")
       ->required();
-  command->add_option("-o,--output", options->out, "network file to write; - for stdout")
+  command.add_option("-o,--output", options.out, "network file to write; - for stdout")
       ->type_name("NET.yaml")
       ->required();
-  command->add_option("--eds", options->files,
-                      "EDS or DCF, matched by its identity; 5=FILE assigns it to node 5");
+  command.add_option("--eds", options.files,
+                     "EDS or DCF, matched by its identity; 5=FILE assigns it to node 5");
   command
-      ->add_option("--eds-dir", options->folders,
-                   "folder with EDS and DCF files; takt searches subfolders, too")
+      .add_option("--eds-dir", options.folders,
+                  "folder with EDS and DCF files; takt searches subfolders, too")
       ->type_name("DIR");
-  add_bus(*command, options->interface, "use only this interface of the recording");
-  add_number(*command, "--bitrate", options->bitrate_kbit,
+  add_bus(command, options.interface, "use only this interface of the recording");
+  add_number(command, "--bitrate", options.bitrate_kbit,
              "bit rate, kbit/s; a recording does not contain it")
       ->check(CLI::Range(10U, 1000U))
       ->capture_default_str();
-  command->add_flag("--quiet", options->quiet, "leave out notes");
-  command->footer(
+  command.add_flag("--quiet", options.quiet, "leave out notes");
+  command.footer(
       "Start the recording before the other master resets the devices:\n"
       "  candump -L can0 > boot.log\n"
       "The network file contains nodes, SDO writes in their order, PDOs, SYNC, heartbeats and\n"
@@ -139,7 +138,6 @@ void add_learn(CLI::App& app, int& exit_code) {
       "Example:\n"
       "  takt learn boot.log --eds-dir vendor/ --bitrate 500 -o machine.yaml\n"
       "  takt plan machine.yaml");
-  command->callback([options, &exit_code] { exit_code = learn::run(*options); });
 }
 
 }  // namespace takt

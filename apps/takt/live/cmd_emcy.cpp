@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -137,17 +136,15 @@ int run(const EmcyOptions& options) {
 }  // namespace
 
 void add_emcy(CLI::App& app, int& exit_code) {
-  auto* verb =
-      app.add_subcommand("emcy", "prints the EMCYs that nodes have sent, with their meaning");
-  verb->footer(
+  auto [verb, options] = add_command<EmcyOptions>(
+      app, exit_code, "emcy", "prints the EMCYs that nodes have sent, with their meaning", run);
+  verb.footer(
       "Examples:\n  takt emcy                 the newest 32 EMCYs of each node\n"
       "  takt emcy shoulder --json\n  takt emcy --follow        also those that arrive later");
-  auto options = std::make_shared<EmcyOptions>();
-  verb->add_option("NODE", options->node, "node id or name; default: all nodes");
-  verb->add_flag("-f,--follow", options->follow,
-                 "continue with the EMCYs that arrive, until interrupted");
-  add_live_options(*verb, options->live);
-  verb->callback([options, &exit_code] { exit_code = run(*options); });
+  verb.add_option("NODE", options.node, "node id or name; default: all nodes");
+  verb.add_flag("-f,--follow", options.follow,
+                "continue with the EMCYs that arrive, until interrupted");
+  add_live_options(verb, options.live);
 }
 
 }  // namespace takt

@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
-#include <memory>
 
 #include "apps/command_line/commands.hpp"
 #include "apps/takt/live/daemon_client.hpp"
@@ -22,16 +21,14 @@ int run(const LiveOptions& options) {
 }  // namespace
 
 void add_record(CLI::App& app, int& exit_code) {
-  auto* verb =
-      app.add_subcommand("record", "makes the daemon write a recording of its last seconds");
-  verb->footer(
+  auto [verb, options] = add_command<LiveOptions>(
+      app, exit_code, "record", "makes the daemon write a recording of its last seconds", run);
+  verb.footer(
       "The daemon needs --black-box, or `black_box:` in the network file. takt record prints the\n"
       "path of the recording, which is on the machine of taktd.\n\n"
       "Example:\n"
       "  takt replay $(takt record)");
-  auto options = std::make_shared<LiveOptions>();
-  add_live_options(*verb, *options);
-  verb->callback([options, &exit_code] { exit_code = run(*options); });
+  add_live_options(verb, options);
 }
 
 }  // namespace takt

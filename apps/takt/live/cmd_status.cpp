@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apps/command_line/commands.hpp"
@@ -120,15 +119,14 @@ int run(const StatusOptions& all) {
 }  // namespace
 
 void add_status(CLI::App& app, int& exit_code) {
-  auto* verb = app.add_subcommand(
-      "status", "prints the state of the running daemon, of its bus and its nodes");
-  verb->footer(
+  auto [verb, options] = add_command<StatusOptions>(
+      app, exit_code, "status", "prints the state of the running daemon, of its bus and its nodes",
+      run);
+  verb.footer(
       "Examples:\n  takt status\n  takt status --pdos\n  takt status --json --bus-name lift");
-  auto options = std::make_shared<StatusOptions>();
-  verb->add_flag("--pdos", options->pdos,
-                 "also print each PDO: age, count, missing, late, wrong length");
-  add_live_options(*verb, options->live);
-  verb->callback([options, &exit_code] { exit_code = run(*options); });
+  verb.add_flag("--pdos", options.pdos,
+                "also print each PDO: age, count, missing, late, wrong length");
+  add_live_options(verb, options.live);
 }
 
 }  // namespace takt

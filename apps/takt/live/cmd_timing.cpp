@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apps/command_line/commands.hpp"
@@ -96,8 +95,9 @@ int run(const TimingOptions& options) {
 }  // namespace
 
 void add_timing(CLI::App& app, int& exit_code) {
-  auto* verb = app.add_subcommand("timing", "shows how punctual the cycle of a running daemon is");
-  verb->footer(
+  auto [verb, options] = add_command<TimingOptions>(
+      app, exit_code, "timing", "shows how punctual the cycle of a running daemon is", run);
+  verb.footer(
       "The table covers the last second: how late SYNC was sent, how long after SYNC the last\n"
       "synchronous PDO and the image came, the image was handed to LCM, and this program\n"
       "received it (on the daemon's machine), and how old set-points were when they were sent.\n"
@@ -105,10 +105,8 @@ void add_timing(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  takt timing\n"
       "  takt timing --follow --json > night.jsonl");
-  auto options = std::make_shared<TimingOptions>();
-  verb->add_flag("-f,--follow", options->follow, "print each second, until interrupted");
-  add_live_options(*verb, options->live);
-  verb->callback([options, &exit_code] { exit_code = run(*options); });
+  verb.add_flag("-f,--follow", options.follow, "print each second, until interrupted");
+  add_live_options(verb, options.live);
 }
 
 }  // namespace takt

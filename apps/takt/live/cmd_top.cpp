@@ -3,7 +3,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <memory>
 #include <unistd.h>
 
 #include "apps/command_line/commands.hpp"
@@ -91,15 +90,14 @@ int run(const TopArguments& arguments) {
 }  // namespace
 
 void add_top(CLI::App& app, int& exit_code) {
-  auto* verb = app.add_subcommand("top", "shows a live view of a running daemon");
-  verb->footer(
+  auto [verb, arguments] = add_command<TopArguments>(app, exit_code, "top",
+                                                     "shows a live view of a running daemon", run);
+  verb.footer(
       "Keys: q quits, arrows scroll the values.\nExamples:\n  takt top\n"
       "  takt top --once            prints the view once, for scripts\n"
       "  takt top --bus-name lift");
-  auto arguments = std::make_shared<TopArguments>();
-  add_bus_choice(*verb, arguments->live);
-  verb->add_flag("--once", arguments->once, "print the view once and end");
-  verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  add_bus_choice(verb, arguments.live);
+  verb.add_flag("--once", arguments.once, "print the view once and end");
 }
 
 }  // namespace takt

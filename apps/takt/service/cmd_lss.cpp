@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <array>
-#include <memory>
 #include <string>
 
 #include "apps/command_line/bus_option.hpp"
@@ -42,30 +41,23 @@ void add_identity(CLI::App& verb, LssOptions& options, Takes takes) {
   verb.add_flag("--alone", options.alone, "the only device on the bus, whatever its address");
 }
 
-/// A verb and its options.
-struct Verb {
-  CLI::App* app;
-  std::shared_ptr<LssOptions> options;
-};
-
 /// Adds the verbs of `takt lss`.
 class Verbs {
  public:
   Verbs(CLI::App& lss, int& exit_code) : lss_{lss}, exit_code_{exit_code} {}
 
-  Verb add(const char* name, const char* text, Takes takes, Run run) {
-    const auto options = std::make_shared<LssOptions>();
-    auto* verb = lss_.add_subcommand(name, text);
-    if (takes != Takes::nothing) add_identity(*verb, *options, takes);
-    add_bus(*verb, options->access.bus, "use can0 or unix:PATH directly, not a daemon")
+  AddedCommand<LssOptions> add(const char* name, const char* text, Takes takes, Run run) {
+    const auto added = add_command<LssOptions>(lss_, exit_code_, name, text, run);
+    auto& [verb, options] = added;
+    if (takes != Takes::nothing) add_identity(verb, options, takes);
+    add_bus(verb, options.access.bus, "use can0 or unix:PATH directly, not a daemon")
         ->type_name("IFACE");
-    add_number(*verb, "--timeout", options->access.timeout_ms,
+    add_number(verb, "--timeout", options.access.timeout_ms,
                "wait per answer, ms; default 100 in scans, 5000 to store, else 1000")
         ->check(CLI::Range(1, 60000))
         ->type_name("MS");
-    add_live_options(*verb, options->access.live);
-    verb->callback([options, run, &exit_code = exit_code_] { exit_code = run(*options); });
-    return {verb, options};
+    add_live_options(verb, options.access.live);
+    return added;
   }
 
  private:
@@ -76,7 +68,7 @@ class Verbs {
 void add_searches(Verbs& verbs) {
   const auto [find, options] =
       verbs.add("find", "lists the devices without node id (fastscan)", Takes::numbers, lss_find);
-  find->add_flag("--first", options->first, "end after the first device");
+  find.add_flag("--first", options.first, "end after the first device");
   verbs.add("scan", "lists all devices of a product, also those with a node id", Takes::ranges,
             lss_scan);
   verbs.add("unconfigured", "tests for a missing node id", Takes::nothing, lss_unconfigured);
@@ -87,21 +79,21 @@ void add_searches(Verbs& verbs) {
 void add_settings(Verbs& verbs) {
   const auto [id_verb, id] =
       verbs.add("set-id", "gives one device a node id", Takes::one_device, lss_set_id);
-  add_number(*id_verb, "ID", id->node_id, "1..127; 255 removes the node id")
+  add_number(id_verb, "ID", id.node_id, "1..127; 255 removes the node id")
       ->required()
       ->check([](const std::string& text) {
         const auto value = parse_unsigned(text);
         const bool good = value && ((*value >= 1 && *value <= 127) || *value == 255);
         return good ? "" : "'" + text + "' is not a node id 1..127, or 255 for none";
       });
-  id_verb->add_flag("--store", id->store, "let the device store the node id");
+  id_verb.add_flag("--store", id.store, "let the device store the node id");
 
   const auto [rate_verb, rate] =
       verbs.add("set-bitrate", "configures another bit rate", Takes::one_device, lss_set_bitrate);
-  add_number(*rate_verb, "KBIT", rate->kbit, "1000, 800, 500, 250, 125, 50, 20, 10")->required();
-  rate_verb->add_flag("--all", rate->all, "configure every device of the bus");
-  rate_verb->add_flag("--store", rate->store, "let the devices store the bit rate");
-  add_number(*rate_verb, "--activate", rate->delay_ms,
+  add_number(rate_verb, "KBIT", rate.kbit, "1000, 800, 500, 250, 125, 50, 20, 10")->required();
+  rate_verb.add_flag("--all", rate.all, "configure every device of the bus");
+  rate_verb.add_flag("--store", rate.store, "let the devices store the bit rate");
+  add_number(rate_verb, "--activate", rate.delay_ms,
              "switch bus and interface now; the bus is silent for twice this, ms")
       ->check(CLI::Range(100, 60000))
       ->type_name("MS");
@@ -109,7 +101,7 @@ void add_settings(Verbs& verbs) {
   verbs.add("store", "lets one device store its settings", Takes::one_device, lss_store);
   const auto [switch_verb, options] =
       verbs.add("switch", "switches all devices", Takes::nothing, lss_switch);
-  switch_verb->add_option("STATE", options->state, "config or waiting")
+  switch_verb.add_option("STATE", options.state, "config or waiting")
       ->required()
       ->check(one_of({"config", "waiting"}));
 }

@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <map>
-#include <memory>
 #include <string>
 
 #include "apps/command_line/bus_option.hpp"
@@ -62,21 +61,20 @@ int run(const NmtOptions& options) {
 }  // namespace
 
 void add_nmt(CLI::App& app, int& exit_code) {
-  auto* verb = app.add_subcommand("nmt", "starts, stops and resets nodes");
-  verb->footer(
+  auto [verb, options] =
+      add_command<NmtOptions>(app, exit_code, "nmt", "starts, stops and resets nodes", run);
+  verb.footer(
       "Before stop and preop the daemon stops the enabled axes in order; the command lasts until\n"
       "then. A reset is sent at once. With --bus every command is sent at once.\n\n"
       "Examples:\n  takt nmt reset 5\n  takt nmt preop all --bus-name lift\n"
       "  takt nmt start 5 --bus can0      needs no daemon");
-  auto options = std::make_shared<NmtOptions>();
-  verb->add_option("COMMAND", options->command, "start, stop, preop, reset, reset-comm")
+  verb.add_option("COMMAND", options.command, "start, stop, preop, reset, reset-comm")
       ->required()
       ->check(one_of({"start", "stop", "preop", "reset", "reset-comm"}));
-  verb->add_option("NODE", options->node, "node id (also the master's), name, or all")->required();
-  add_bus(*verb, options->bus, "work directly on can0 or unix:PATH, without a daemon")
+  verb.add_option("NODE", options.node, "node id (also the master's), name, or all")->required();
+  add_bus(verb, options.bus, "work directly on can0 or unix:PATH, without a daemon")
       ->type_name("IFACE");
-  add_live_options(*verb, options->live);
-  verb->callback([options, &exit_code] { exit_code = run(*options); });
+  add_live_options(verb, options.live);
 }
 
 }  // namespace takt

@@ -2,7 +2,6 @@
 #include <chrono>
 #include <cstdio>
 #include <fmt/format.h>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apps/command_line/bus_option.hpp"
@@ -159,25 +158,24 @@ int run(const ScanOptions& options) {
 }  // namespace
 
 void add_scan(CLI::App& app, int& exit_code) {
-  auto* verb =
-      app.add_subcommand("scan", "lists the devices on a bus: node, state, identity, device file");
-  verb->footer(
+  auto [verb, options] = add_command<ScanOptions>(
+      app, exit_code, "scan", "lists the devices on a bus: node, state, identity, device file",
+      run);
+  verb.footer(
       "takt scan reads 0x1000, 0x1018 and 0x1008 of all node ids and listens to heartbeats. The\n"
       "command changes nothing.\n"
       "Examples:\n  takt scan --bus can0\n  takt scan --bus can0 --eds-dir vendor/ --json");
-  auto options = std::make_shared<ScanOptions>();
-  add_bus(*verb, options->bus, "can0, vcan0, unix:PATH")->required()->type_name("IFACE");
-  verb->add_option("--eds-dir", options->folders,
-                   "folder with EDS and DCF files to match with the devices")
+  add_bus(verb, options.bus, "can0, vcan0, unix:PATH")->required()->type_name("IFACE");
+  verb.add_option("--eds-dir", options.folders,
+                  "folder with EDS and DCF files to match with the devices")
       ->type_name("DIR");
-  add_number(*verb, "--timeout", options->timeout_ms, "longest silence of a node, ms")
+  add_number(verb, "--timeout", options.timeout_ms, "longest silence of a node, ms")
       ->check(CLI::Range(1, 60000))
       ->type_name("MS");
-  add_number(*verb, "--listen", options->listen_ms, "shortest time to listen to heartbeats, ms")
+  add_number(verb, "--listen", options.listen_ms, "shortest time to listen to heartbeats, ms")
       ->check(CLI::Range(0, 600000))
       ->type_name("MS");
-  verb->add_flag("--json", options->json, "print one JSON document");
-  verb->callback([options, &exit_code] { exit_code = run(*options); });
+  verb.add_flag("--json", options.json, "print one JSON document");
 }
 
 }  // namespace takt

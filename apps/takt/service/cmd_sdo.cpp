@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <functional>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -213,20 +212,21 @@ int download_file(const SdoOptions& options) {
   return 0;
 }
 
-CLI::App* add_verb(CLI::App& sdo, const char* name, const char* text,
-                   const std::shared_ptr<SdoOptions>& options) {
-  auto* verb = sdo.add_subcommand(name, text);
-  verb->add_option("NODE", options->node, "node id or name")->required();
-  verb->add_option("OBJ", options->object, "object 6041 or 1018:1; index and sub-index in hex")
+AddedCommand<SdoOptions> add_verb(CLI::App& sdo, int& exit_code, const char* name, const char* text,
+                                  int (*run)(const SdoOptions&)) {
+  const auto added = add_command<SdoOptions>(sdo, exit_code, name, text, run);
+  auto& [verb, options] = added;
+  verb.add_option("NODE", options.node, "node id or name")->required();
+  verb.add_option("OBJ", options.object, "object 6041 or 1018:1; index and sub-index in hex")
       ->required();
-  add_bus(*verb, options->bus, "work directly on can0 or unix:PATH, without a daemon")
+  add_bus(verb, options.bus, "work directly on can0 or unix:PATH, without a daemon")
       ->type_name("IFACE");
-  add_number(*verb, "--timeout", options->timeout_ms,
+  add_number(verb, "--timeout", options.timeout_ms,
              "longest silence of the device, ms (`sdo_timeout_ms` of the node; 1000 with --bus)")
       ->check(CLI::Range(1, 60000))
       ->type_name("MS");
-  add_live_options(*verb, options->live);
-  return verb;
+  add_live_options(verb, options.live);
+  return added;
 }
 
 }  // namespace
@@ -240,28 +240,24 @@ void add_sdo(CLI::App& app, int& exit_code) {
       "  takt sdo download 5 1F50:1 firmware.bin --timeout 10000\n"
       "Files have at most 16 MiB; Ctrl-C aborts a transfer on the bus.\n"
       "Types: bool, i8..i64, u8..u64, f32, f64, string, hex.");
-  auto options = std::make_shared<SdoOptions>();
-  auto* reading = add_verb(*sdo, "read", "prints one value", options);
-  reading->add_option("TYPE", options->type, "u16, i32, f32, string, hex ...");
-  reading->callback([options, &exit_code] { exit_code = read(*options); });
-  auto* writing = add_verb(*sdo, "write", "writes one value", options);
-  writing->add_option("TYPE", options->type, "u16, i32, f32, string, hex ...")->required();
-  writing->add_option("VALUE", options->value, "decimal, 0x hex, or text")->required();
-  writing->callback([options, &exit_code] { exit_code = write(*options); });
-  auto* uploading = add_verb(*sdo, "upload", "reads an object of the device into a file", options);
-  uploading->add_option("FILE", options->file)->required();
+  auto [reading, what] = add_verb(*sdo, exit_code, "read", "prints one value", read);
+  reading.add_option("TYPE", what.type, "u16, i32, f32, string, hex ...");
+  auto [writing, value] = add_verb(*sdo, exit_code, "write", "writes one value", write);
+  writing.add_option("TYPE", value.type, "u16, i32, f32, string, hex ...")->required();
+  writing.add_option("VALUE", value.value, "decimal, 0x hex, or text")->required();
+  auto [uploading, target] =
+      add_verb(*sdo, exit_code, "upload", "reads an object of the device into a file", upload_file);
+  uploading.add_option("FILE", target.file)->required();
   uploading
-      ->add_option("--limit", options->limit,
-                   "most bytes, as 64K or 2M; takt aborts a longer transfer (16M)")
+      .add_option("--limit", target.limit,
+                  "most bytes, as 64K or 2M; takt aborts a longer transfer (16M)")
       ->transform(CLI::AsSizeValue(false))
       ->transform(CLI::Validator{[](std::string& text) { return octal_trouble(text); }, ""})
       ->check(CLI::Range(std::size_t{1}, most_file_bytes))
       ->type_name("BYTES");
-  uploading->callback([options, &exit_code] { exit_code = upload_file(*options); });
-  auto* downloading =
-      add_verb(*sdo, "download", "writes a file to an object of the device", options);
-  downloading->add_option("FILE", options->file)->required();
-  downloading->callback([options, &exit_code] { exit_code = download_file(*options); });
+  auto [downloading, source] = add_verb(*sdo, exit_code, "download",
+                                        "writes a file to an object of the device", download_file);
+  downloading.add_option("FILE", source.file)->required();
 }
 
 }  // namespace takt

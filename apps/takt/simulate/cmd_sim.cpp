@@ -85,20 +85,17 @@ int run(const SimArguments& arguments) {
 }  // namespace
 
 void add_sim(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<SimArguments>();
-  auto* command = app.add_subcommand("sim", "simulates devices on a CAN interface in real time");
-  command->add_option("NET.yaml", arguments->network, "network file")->required();
-  add_bus(*command, arguments->bus, "vcan0, can0 or unix:PATH");
-  command->add_option("--only", arguments->only, "simulate only these nodes, by name or number")
+  auto [command, arguments] = add_command<SimArguments>(
+      app, exit_code, "sim", "simulates devices on a CAN interface in real time", run);
+  command.add_option("NET.yaml", arguments.network, "network file")->required();
+  add_bus(command, arguments.bus, "vcan0, can0 or unix:PATH");
+  command.add_option("--only", arguments.only, "simulate only these nodes, by name or number")
       ->delimiter(',');
-  command->add_option("--for", arguments->run_for, "end after this time; default: run until SIGINT")
+  command.add_option("--for", arguments.run_for, "end after this time; default: run until SIGINT")
       ->check(duration_trouble);
-  command->add_option("--faults", arguments->faults,
-                      "file that lists faults and their times (YAML)");
-  add_number(*command, "--seed", arguments->seed, "seed of the random parts")
-      ->capture_default_str();
-  command->footer("Example:\n  takt sim lift.yaml --bus vcan0 --only shoulder,elbow");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command.add_option("--faults", arguments.faults, "file that lists faults and their times (YAML)");
+  add_number(command, "--seed", arguments.seed, "seed of the random parts")->capture_default_str();
+  command.footer("Example:\n  takt sim lift.yaml --bus vcan0 --only shoulder,elbow");
 }
 
 }  // namespace takt

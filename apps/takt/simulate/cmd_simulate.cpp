@@ -22,10 +22,10 @@ struct SimulateArguments {
   bool json = false;
 };
 
-int run(SimulateArguments& arguments) {
+int run(const SimulateArguments& arguments) {
   const LoadedNetwork network = load_network(arguments.network);
   if (print_findings(network.findings)) return 2;
-  SimulationOptions& options = arguments.simulation;
+  SimulationOptions options = arguments.simulation;
   if (!arguments.faults.empty()) {
     FaultFile file = read_fault_file(arguments.faults, network.plan, options.applications);
     if (print_findings(file.findings)) return 2;
@@ -53,29 +53,28 @@ int run(SimulateArguments& arguments) {
 }  // namespace
 
 void add_simulate(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<SimulateArguments>();
-  auto* command = app.add_subcommand("simulate", "runs the master and its devices in virtual time");
-  command->add_option("NET.yaml", arguments->network, "network file")->required();
-  command->add_option("--for", arguments->run_for, "simulated time until the ordered stop")
+  auto [command, arguments] = add_command<SimulateArguments>(
+      app, exit_code, "simulate", "runs the master and its devices in virtual time", run);
+  command.add_option("NET.yaml", arguments.network, "network file")->required();
+  command.add_option("--for", arguments.run_for, "simulated time until the ordered stop")
       ->check(duration_trouble)
       ->capture_default_str();
-  add_number(*command, "--seed", arguments->simulation.seed, "seed; equal seeds give equal runs")
+  add_number(command, "--seed", arguments.simulation.seed, "seed; equal seeds give equal runs")
       ->capture_default_str();
-  command->add_option("--faults", arguments->faults,
-                      "file that lists faults and their times (YAML)");
-  auto* move = command->add_flag("--move", arguments->simulation.move,
-                                 "move all CiA 402 axes with a built-in sine, without application");
-  add_number(*command, "--applications", arguments->simulation.applications,
+  command.add_option("--faults", arguments.faults, "file that lists faults and their times (YAML)");
+  auto* move = command.add_flag("--move", arguments.simulation.move,
+                                "move all CiA 402 axes with a built-in sine, without application");
+  add_number(command, "--applications", arguments.simulation.applications,
              "run the whole taktd, and this many programs that move the axes")
       ->check(CLI::Range(std::size_t{1}, most_applications))
       ->excludes(move);
-  command->add_option("--jitter", arguments->jitter, "how late the simulated master's thread wakes")
+  command.add_option("--jitter", arguments.jitter, "how late the simulated master's thread wakes")
       ->check(duration_trouble)
       ->capture_default_str();
-  command->add_option("--candump", arguments->simulation.candump, "write all frames to this file");
-  command->add_flag("--json", arguments->json,
-                    "print one JSON document, which is equal for equal seeds");
-  command->footer(
+  command.add_option("--candump", arguments.simulation.candump, "write all frames to this file");
+  command.add_flag("--json", arguments.json,
+                   "print one JSON document, which is equal for equal seeds");
+  command.footer(
       "Faults: a list under `faults:`, each {kind, node, at, for ...}. Kinds: loss, duplicate,\n"
       "error_frames (probability), delay (time), babble (cob_id, data, time), power_off, drift\n"
       "(ppm), mute_sdo (object), slow_sdo (time), refuse_object and refuse_write (object,\n"
@@ -91,7 +90,6 @@ void add_simulate(CLI::App& app, int& exit_code) {
       "  takt simulate share/demo/two_axes.yaml --for 100s --move\n"
       "  takt simulate share/demo/two_axes.yaml --applications 2 --faults crash.yaml\n"
       "  takt simulate lift.yaml --for 1h --seed 7 --faults bad_day.yaml --json");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace takt

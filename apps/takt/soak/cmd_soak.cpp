@@ -65,10 +65,10 @@ void announce(const SoakArguments& arguments, const SoakReport& report) {
             << std::endl;
 }
 
-int run(SoakArguments& arguments) {
+int run(const SoakArguments& arguments) {
   const LoadedNetwork network = load_network(arguments.network);
   if (print_findings(network.findings)) return 2;
-  SoakPlan& plan = arguments.plan;
+  SoakPlan plan = arguments.plan;
   plan.run.duration = *parse_duration(arguments.run_for);
   if (!parse_seeds(arguments.seeds, plan)) {
     throw Failure{"--seeds " + arguments.seeds + " is not a seed like 17 or a range like 1..200",
@@ -114,32 +114,31 @@ int run(SoakArguments& arguments) {
 }  // namespace soak
 
 void add_soak(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<soak::SoakArguments>();
-  auto* command = app.add_subcommand(
-      "soak", "runs random fault sequences in virtual time and checks invariants");
-  command->add_option("NET.yaml", arguments->network, "network file")->required();
-  command->add_option("--seeds,--seed", arguments->seeds, "one run for each seed: 17 or 1..200")
+  auto [command, arguments] = add_command<soak::SoakArguments>(
+      app, exit_code, "soak", "runs random fault sequences in virtual time and checks invariants",
+      soak::run);
+  command.add_option("NET.yaml", arguments.network, "network file")->required();
+  command.add_option("--seeds,--seed", arguments.seeds, "one run for each seed: 17 or 1..200")
       ->capture_default_str();
-  command->add_option("--for", arguments->run_for, "time in which faults happen in each run")
+  command.add_option("--for", arguments.run_for, "time in which faults happen in each run")
       ->check(duration_trouble)
       ->capture_default_str();
   command
-      ->add_option("--part", arguments->part,
-                   "run the bus part or the front thread part of each seed, or both")
+      .add_option("--part", arguments.part,
+                  "run the bus part or the front thread part of each seed, or both")
       ->check(one_of({"bus", "front", "both"}))
       ->capture_default_str();
   command
-      ->add_option("--hours", arguments->hours,
-                   "run as many seeds as give this number of hours on the bus")
+      .add_option("--hours", arguments.hours,
+                  "run as many seeds as give this number of hours on the bus")
       ->check(CLI::PositiveNumber);
-  add_number(*command, "--jobs", arguments->plan.jobs, "number of processes")
+  add_number(command, "--jobs", arguments.plan.jobs, "number of processes")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
-  command->add_option("--candump", arguments->plan.run.candump,
-                      "write all frames of one seed (front thread part: FILE.front)");
-  command->add_flag("--verbose", arguments->plan.run.verbose,
-                    "print faults and events of one seed");
-  command->footer(
+  command.add_option("--candump", arguments.plan.run.candump,
+                     "write all frames of one seed (front thread part: FILE.front)");
+  command.add_flag("--verbose", arguments.plan.run.verbose, "print faults and events of one seed");
+  command.footer(
       "The bus part has lost, late, doubled and broken frames, babbling nodes, arbitrary frames,\n"
       "devices that disappear, appear, reset during their boot, are exchanged or stop answering,\n"
       "EMCY and boot-up storms, bus-off, a stalled master, silent applications, requests at any\n"
@@ -156,7 +155,6 @@ void add_soak(CLI::App& app, int& exit_code) {
       "Example:\n"
       "  takt soak share/demo/two_axes.yaml --hours 24 --jobs 2\n"
       "  takt soak share/demo/two_axes.yaml --seed 17 --part front --verbose");
-  command->callback([arguments, &exit_code] { exit_code = soak::run(*arguments); });
 }
 
 }  // namespace takt

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <fstream>
 #include <iostream>
-#include <memory>
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/duration.hpp"
@@ -97,15 +96,15 @@ int run(const TrajectoryArguments& options) {
 }  // namespace
 
 void add_trajectory(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<TrajectoryArguments>();
-  auto* verb = app.add_subcommand("trajectory", "plans trajectories without a bus");
-  verb->add_option("FILE", options->file, "requests, one JSON object a line; - is stdin")
+  auto [verb, options] = add_command<TrajectoryArguments>(app, exit_code, "trajectory",
+                                                          "plans trajectories without a bus", run);
+  verb.add_option("FILE", options.file, "requests, one JSON object a line; - is stdin")
       ->capture_default_str();
-  verb->add_option("--sample", options->sample, "also print the states at this interval")
+  verb.add_option("--sample", options.sample, "also print the states at this interval")
       ->type_name("TIME");
-  verb->add_option("--plot", options->plot, "draw the first trajectory as an SVG file")
+  verb.add_option("--plot", options.plot, "draw the first trajectory as an SVG file")
       ->type_name("FILE");
-  verb->footer(
+  verb.footer(
       "Prints one JSON object for each request, in the same order. Units are those of the\n"
       "request, times are in seconds. Exit code 1: a request has no solution, and its `error`\n"
       "is a sentence. Exit code 2: a line can't be read.\n\n"
@@ -113,7 +112,6 @@ void add_trajectory(CLI::App& app, int& exit_code) {
       "  echo '{\"from\":{\"position\":[0]},\"to\":{\"position\":[1]},\"limits\":"
       "{\"velocity\":[1],\\\n"
       "    \"acceleration\":[5],\"jerk\":[50]}}' | takt trajectory --plot move.svg");
-  verb->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
 }  // namespace takt
