@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "eds_parser/report/suggest.hpp"
 

@@ -1,5 +1,4 @@
 #include <csignal>
-#include <cstdint>
 #include <fmt/format.h>
 #include <memory>
 #include <sched.h>

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <fmt/format.h>
-#include <string>
 
 #include "master/lcm/printable_text.hpp"
 

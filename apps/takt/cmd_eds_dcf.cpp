@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <iostream>
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/failure.hpp"

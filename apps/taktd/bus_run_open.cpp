@@ -1,7 +1,6 @@
 // Member functions of BusRun that open everything and look for another master before the first
 // frame is sent.
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <iterator>

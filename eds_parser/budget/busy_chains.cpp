@@ -1,7 +1,5 @@
 #include "eds_parser/budget/busy_chains.hpp"
 
-#include <algorithm>
-
 namespace takt {
 namespace {
 

@@ -1,6 +1,5 @@
 #include "eds_parser/budget/cycle_frames.hpp"
 
-#include <algorithm>
 #include <numeric>
 
 #include "eds_parser/budget/service_traffic.hpp"

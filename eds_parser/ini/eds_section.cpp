@@ -1,7 +1,6 @@
 #include "eds_parser/ini/eds_section.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 
 #include "eds_parser/ini/eds_lists.hpp"

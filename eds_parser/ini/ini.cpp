@@ -5,7 +5,6 @@
 #include <bit>
 #include <cstring>
 
-#include "eds_parser/report/text.hpp"
 #include "eds_parser/table/ids.hpp"
 
 namespace takt {

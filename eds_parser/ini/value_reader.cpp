@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "eds_parser/ini/fitted_number.hpp"
-#include "eds_parser/ini/number.hpp"
 #include "eds_parser/report/text.hpp"
 
 namespace takt {

@@ -1,7 +1,6 @@
 #include "eds_parser/network_file/read_devices.hpp"
 
 #include "eds_parser/dictionary/pdo_description.hpp"
-#include "eds_parser/network_file/key_table.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
 
 namespace takt {

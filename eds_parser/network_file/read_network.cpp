@@ -1,7 +1,6 @@
 #include "eds_parser/network_file/read_network.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <set>
 #include <utility>
 

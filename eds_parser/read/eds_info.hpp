@@ -1,6 +1,5 @@
 #pragma once
 #include <functional>
-#include <span>
 
 #include "eds_parser/dictionary/object_dictionary.hpp"
 #include "eds_parser/ini/ini.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <tuple>
 
 #include "eds_parser/ini/eds_lists.hpp"
 #include "eds_parser/ini/number.hpp"

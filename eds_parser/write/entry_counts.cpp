@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <set>
-#include <string_view>
 
 #include "eds_parser/ini/eds_lists.hpp"
 #include "eds_parser/ini/eds_section.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <string>
-#include <vector>
 
 #include "eds_parser/ini/eds_lists.hpp"
 #include "eds_parser/ini/number.hpp"

@@ -1,6 +1,5 @@
 #include "master/black_box/replay.hpp"
 
-#include <fmt/format.h>
 #include <memory>
 
 #include "master/black_box/difference_text.hpp"

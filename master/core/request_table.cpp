@@ -1,7 +1,5 @@
 #include "master/core/request_table.hpp"
 
-#include <algorithm>
-
 namespace takt {
 namespace {
 

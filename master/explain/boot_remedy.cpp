@@ -1,7 +1,6 @@
 #include "master/explain/boot_remedy.hpp"
 
 #include <fmt/format.h>
-#include <string>
 
 #include "master/core/request.hpp"
 #include "master/explain/boot_report.hpp"

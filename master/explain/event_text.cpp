@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <string>
 
 #include "eds_parser/table/pdo_table.hpp"
 #include "master/core/command_limit.hpp"

@@ -1,7 +1,6 @@
 #include "master/gateway/bridge.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <fmt/format.h>
 #include <utility>
 

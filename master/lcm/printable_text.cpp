@@ -1,7 +1,6 @@
 #include "master/lcm/printable_text.hpp"
 
 #include <cstddef>
-#include <cstdint>
 
 namespace takt {
 namespace {

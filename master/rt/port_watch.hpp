@@ -1,6 +1,5 @@
 #pragma once
 #include <cstddef>
-#include <cstdint>
 
 #include "master/core/event_queue.hpp"
 #include "master/rt/port.hpp"

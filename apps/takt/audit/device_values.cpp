@@ -1,7 +1,6 @@
 #include "apps/takt/audit/device_values.hpp"
 
 #include <fmt/format.h>
-#include <span>
 
 namespace takt {
 namespace {

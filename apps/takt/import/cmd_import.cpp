@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
-#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "apps/command_line/commands.hpp"

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "apps/takt/learn/learned_bus.hpp"

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cstdio>
 #include <fmt/format.h>
-#include <optional>
 #include <unistd.h>
 
 #include "master/lcm/channel_names.hpp"

@@ -1,6 +1,4 @@
 #pragma once
-#include <cstdint>
-#include <string_view>
 #include <takt/histogram_t.hpp>
 
 #include "eds_parser/table/time.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <termios.h>

@@ -1,7 +1,5 @@
 #pragma once
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "apps/takt/simulate/program/program_faults.hpp"
 #include "eds_parser/report/source.hpp"

@@ -1,7 +1,6 @@
 #include "apps/taktd/process/stop_signal.hpp"
 
 #include <array>
-#include <atomic>
 
 namespace takt {
 namespace {

@@ -1,7 +1,6 @@
 #include "eds_parser/plan/pdo/cob_ids.hpp"
 
 #include <algorithm>
-#include <map>
 
 namespace takt {
 namespace {

@@ -1,5 +1,4 @@
 #pragma once
-#include <optional>
 #include <vector>
 
 #include "eds_parser/dictionary/pdo_description.hpp"

@@ -5,7 +5,6 @@
 #include <set>
 #include <sstream>
 #include <utility>
-#include <vector>
 
 #include "eds_parser/print/plan/plan_names.hpp"
 #include "eds_parser/print/plan/plan_sections.hpp"

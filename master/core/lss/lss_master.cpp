@@ -1,7 +1,6 @@
 #include "master/core/lss/lss_master.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "eds_parser/table/waits.hpp"
 

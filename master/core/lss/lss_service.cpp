@@ -1,6 +1,5 @@
 #include "master/core/lss/lss_service.hpp"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 

@@ -1,7 +1,6 @@
 #include "master/core/network/axis_stop.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace takt {
 namespace {

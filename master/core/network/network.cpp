@@ -1,7 +1,5 @@
 #include "master/core/network/network.hpp"
 
-#include <algorithm>
-
 #include "master/wire/heartbeat.hpp"
 #include "master/wire/nmt.hpp"
 

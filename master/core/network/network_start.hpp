@@ -1,6 +1,5 @@
 #pragma once
 #include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include "eds_parser/table/bus_plan.hpp"

@@ -1,7 +1,6 @@
 #include "master/core/node/node_session.hpp"
 
 #include <algorithm>
-#include <utility>
 
 // This file contains the start of the session and the evaluation of the frames of the node.
 

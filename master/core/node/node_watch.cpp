@@ -1,7 +1,5 @@
 #include "master/core/node/node_watch.hpp"
 
-#include <utility>
-
 namespace takt {
 
 NodeWatch::Sign NodeWatch::on_heartbeat(NmtState state, Time now, NodeStatus& status) noexcept {

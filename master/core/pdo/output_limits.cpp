@@ -1,6 +1,5 @@
 #include "master/core/pdo/output_limits.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 

@@ -1,7 +1,5 @@
 #include "master/core/pdo/pdo_outputs.hpp"
 
-#include <algorithm>
-
 namespace takt {
 
 PdoOutputs::PdoOutputs(const BusPlan& plan, WorkingImage& image, const PdoInputs& inputs,

@@ -1,7 +1,6 @@
 #include "master/core/sdo/sdo_client.hpp"
 
 #include <cassert>
-#include <utility>
 
 #include "eds_parser/table/waits.hpp"
 #include "master/wire/sdo_abort.hpp"

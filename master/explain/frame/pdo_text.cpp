@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <string_view>
 
 #include "master/explain/frame/frame_value_text.hpp"
 #include "master/explain/frame/service_texts.hpp"

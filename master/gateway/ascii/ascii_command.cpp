@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <span>
 
 #include "master/core/request.hpp"
 #include "master/gateway/ascii/ascii_words.hpp"

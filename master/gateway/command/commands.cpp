@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
-#include <utility>
 
 #include "master/core/set_point.hpp"
 #include "master/lcm/messages.hpp"

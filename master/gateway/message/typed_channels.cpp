@@ -1,7 +1,6 @@
 #include "master/gateway/message/typed_channels.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <chrono>
 #include <cmath>

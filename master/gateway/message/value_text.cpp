@@ -9,7 +9,6 @@
 #include <system_error>
 #include <utility>
 
-#include "eds_parser/table/data_type.hpp"
 #include "eds_parser/table/raw_number.hpp"
 #include "master/lcm/messages.hpp"
 #include "master/wire/bytes.hpp"

@@ -1,7 +1,6 @@
 #include "master/lcm/envelope/checked_transport.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "master/lcm/channel_names.hpp"

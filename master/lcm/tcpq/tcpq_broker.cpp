@@ -1,7 +1,6 @@
 #include "master/lcm/tcpq/tcpq_broker.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <sys/socket.h>
 #include <utility>
 

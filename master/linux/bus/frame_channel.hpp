@@ -6,7 +6,6 @@
 #include <span>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 #include "master/linux/bus_error.hpp"
 #include "master/linux/can/socket_can.hpp"

@@ -1,6 +1,5 @@
 #include "master/rt/beat/beat.hpp"
 
-#include <algorithm>
 #include <chrono>
 
 namespace takt {

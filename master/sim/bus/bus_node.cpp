@@ -1,7 +1,5 @@
 #include "master/sim/bus/bus_node.hpp"
 
-#include <algorithm>
-
 #include "master/sim/bus/frame_bits.hpp"
 
 namespace takt::sim {

@@ -1,7 +1,6 @@
 #include "master/sim/bus/fault_schedule.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace takt::sim {
 

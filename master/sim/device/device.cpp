@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <tuple>
-#include <utility>
 
 #include "master/sim/dictionary/cob_rules.hpp"
 

@@ -1,4 +1,3 @@
-#include <initializer_list>
 
 #include "master/sim/device/device.hpp"
 #include "master/sim/dictionary/cob_rules.hpp"

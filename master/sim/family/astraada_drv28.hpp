@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 
 #include "master/sim/family/drv28_parameters.hpp"
 #include "master/sim/family/ramp.hpp"

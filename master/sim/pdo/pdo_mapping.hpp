@@ -1,6 +1,5 @@
 #pragma once
 #include <array>
-#include <cstddef>
 #include <cstdint>
 
 #include "master/sim/dictionary/abort.hpp"

@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <vector>
 
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/time.hpp"

@@ -1,7 +1,5 @@
 #pragma once
-#include <array>
 #include <cstdint>
-#include <optional>
 #include <utility>
 
 #include "eds_parser/table/time.hpp"

@@ -3,7 +3,6 @@
 #include <deque>
 #include <functional>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "apps/takt/simulate/program/stage.hpp"

@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/sim/bus/world.hpp"
