@@ -4,10 +4,6 @@
 
 namespace takt {
 
-std::string pdo_name(const PdoDescription& pdo) {
-  return concat(pdo.is_tpdo ? "TPDO" : "RPDO", pdo.number);
-}
-
 std::string section_name(ObjectKey key) {
   return concat(hex(key.index).substr(2), "sub", hex(key.sub, 1).substr(2));
 }

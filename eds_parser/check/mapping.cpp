@@ -116,7 +116,7 @@ void check_mapping(const ObjectDictionary& dictionary, const PdoDescription& pdo
   if (pdo.bits <= 64) return;
   report.add(pdo.mapping_count ? error : note,
              EntryCheck{dictionary, pdo, pdo.mapping.back(), report}.pos(), "pdo-too-long",
-             pdo_name(pdo), ": the mapped objects need ", pdo.bits, " bits, a PDO has 64",
+             pdo.label(), ": the mapped objects need ", pdo.bits, " bits, a PDO has 64",
              pdo.mapping_count ? "" : "; sub 0 does not say how many objects are active");
 }
 

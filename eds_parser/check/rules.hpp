@@ -16,8 +16,6 @@ void check_pdos(const ObjectDictionary& dictionary, Report& report);
 void check_mapping(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report);
 void check_cob_ids(const ObjectDictionary& dictionary, Report& report);
 
-/// Returns the name of a PDO, such as "TPDO2".
-std::string pdo_name(const PdoDescription& pdo);
 /// Returns the name of the section of an object, such as "1A00sub2".
 std::string section_name(ObjectKey key);
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "eds_parser/dictionary/object_dictionary.hpp"
+#include "eds_parser/table/pdo_number.hpp"
 
 namespace takt {
 
@@ -21,11 +22,8 @@ struct MappedObject {
 
 /// A PDO as the values of the file configure it; for a DCF these are its ParameterValues.
 /// Directions are those of the device: the device sends a TPDO.
-struct PdoDescription {
-  std::uint16_t number = 1;  ///< 1..512
-  bool is_tpdo = false;
-  /// The value of sub-index 1 with its flags. It is empty if the file has no value, or if the value
-  /// needs an unknown node-ID.
+struct PdoDescription : PdoNumber {
+  /// Sub 1 with its flags; empty if there is no value or the node-ID is unknown.
   std::optional<std::uint32_t> cob_id_raw;
   /// The number that is added to an unknown node-ID, as in `$NODEID+0x180`. Empty if the COB-ID is
   /// absolute or the node-ID is known.
@@ -46,27 +44,7 @@ struct PdoDescription {
     if (!cob_id_raw) return std::nullopt;
     return *cob_id_raw & (extended ? 0x1FFF'FFFFU : 0x7FFU);
   }
-  std::uint16_t communication_index() const noexcept {
-    return static_cast<std::uint16_t>((is_tpdo ? 0x1800 : 0x1400) + number - 1);
-  }
-  std::uint16_t mapping_index() const noexcept {
-    return static_cast<std::uint16_t>(communication_index() + 0x200);
-  }
 };
-
-/// Returns true for the communication record of an RPDO or TPDO.
-constexpr bool is_pdo_communication(std::uint16_t index) noexcept {
-  return (index & 0xFE00) == 0x1400 || (index & 0xFE00) == 0x1800;
-}
-
-/// Returns true for the mapping record of an RPDO or TPDO.
-constexpr bool is_pdo_mapping(std::uint16_t index) noexcept {
-  return (index & 0xFE00) == 0x1600 || (index & 0xFE00) == 0x1A00;
-}
-
-constexpr bool is_pdo_parameter(std::uint16_t index) noexcept {
-  return is_pdo_communication(index) || is_pdo_mapping(index);
-}
 
 /// Returns the first mapping record whose number of entries is writable, or nullptr if every
 /// mapping is fixed.

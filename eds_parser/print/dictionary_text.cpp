@@ -201,8 +201,8 @@ std::string place_text(const MappedObject& entry) {
 }
 
 void print_pdo(std::ostream& out, const PdoDescription& pdo) {
-  const auto label = (pdo.is_tpdo ? "TPDO" : "RPDO") + std::to_string(pdo.number);
-  out << "  " << left(label, 8) << left(cob_id_text(pdo), 11) << (pdo.valid ? "on   " : "off  ");
+  out << "  " << left(pdo.label(), 8) << left(cob_id_text(pdo), 11)
+      << (pdo.valid ? "on   " : "off  ");
   if (pdo.transmission_type) {
     out << "type " << left(std::to_string(*pdo.transmission_type), 4)
         << left(transmission_name(*pdo.transmission_type, pdo.is_tpdo), 22);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "eds_parser/table/pdo_number.hpp"
 #include "master/explain/boot_remedy.hpp"
 #include "master/explain/report_text.hpp"
 #include "master/wire/bytes.hpp"
@@ -9,12 +10,7 @@
 namespace takt {
 namespace {
 
-bool is_mapping_entry(ObjectKey object) noexcept {
-  return (object.index >= 0x1600 && object.index <= 0x17FF) ||
-         (object.index >= 0x1A00 && object.index <= 0x1BFF);
-}
-
-/// Returns "TPDO2" for a communication or mapping object, and "the PDO" for other objects.
+/// "TPDO2" for a communication or mapping object, "the PDO" for other objects.
 std::string pdo_name(ObjectKey object) {
   const unsigned area = object.index & 0xFE00U;
   const unsigned number = (object.index & 0x1FFU) + 1;
@@ -26,7 +22,7 @@ std::string pdo_name(ObjectKey object) {
 /// Returns the object that a mapping entry maps, for example "6077:00". For other objects, returns
 /// the written object itself.
 std::string mapped_object(const BootStep& step) {
-  if (!is_mapping_entry(step.object) || step.object.sub == 0 || step.value.size() != 4) {
+  if (!is_pdo_mapping(step.object.index) || step.object.sub == 0 || step.value.size() != 4) {
     return to_string(step.object);
   }
   const auto entry = load_le<std::uint32_t>(std::span{step.value});
@@ -188,7 +184,7 @@ std::string against_state(const NodePlan& node, const BootFailure& failure) {
 std::string against_refusal(const NodePlan& node, const BootStep& step,
                             const BootFailure& failure) {
   const std::string object = to_string(failure.object);
-  if (failure.downloading && is_mapping_entry(step.object)) {
+  if (failure.downloading && is_pdo_mapping(step.object.index)) {
     return against_refused_mapping(node, step, failure);
   }
   switch (failure.abort_code) {

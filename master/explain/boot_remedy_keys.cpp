@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
+#include "eds_parser/table/pdo_number.hpp"
 #include "master/explain/boot_remedy.hpp"
 
 namespace takt {
@@ -38,10 +39,6 @@ constexpr std::array settings{
     Setting{0x1029, "error_behavior", "drop this key"},
 };
 
-constexpr bool is_communication(std::uint16_t index) noexcept {
-  return (index >= 0x1400 && index <= 0x15FF) || (index >= 0x1800 && index <= 0x19FF);
-}
-
 std::string_view pdo_key(ObjectKey object) noexcept {
   constexpr std::string_view keys[] = {"", "cob_id", "transmission", "inhibit_time",
                                        "", "",       "sync_start"};
@@ -71,7 +68,7 @@ std::string against_refused_pdo(ObjectKey object) {
 
 std::string against_refused_setting(const NodePlan& node, const BootFailure& failure) {
   if (!failure.downloading) return {};
-  if (is_communication(failure.object.index)) return against_refused_pdo(failure.object);
+  if (is_pdo_communication(failure.object.index)) return against_refused_pdo(failure.object);
   const auto found = std::ranges::find(settings, failure.object.index, &Setting::index);
   if (found == settings.end()) return {};
   return fmt::format(

@@ -2,8 +2,6 @@
 
 #include <set>
 
-#include "eds_parser/dictionary/pdo_description.hpp"
-
 namespace takt::learn {
 namespace {
 
@@ -27,8 +25,8 @@ std::optional<std::vector<std::uint32_t>> entries(const LearnedValues& values, s
   return list;
 }
 
-LearnedPdo pdo_of(const LearnedValues& values, std::uint16_t number, bool is_tpdo) {
-  LearnedPdo pdo{.number = number, .is_tpdo = is_tpdo};
+LearnedPdo pdo_of(const LearnedValues& values, PdoNumber number) {
+  LearnedPdo pdo{number};
   const std::uint16_t communication = pdo.communication_index();
   pdo.cob_id = at<std::uint32_t>(values, {communication, 1});
   pdo.transmission = at<std::uint8_t>(values, {communication, 2});
@@ -45,9 +43,7 @@ LearnedPdo pdo_of(const LearnedValues& values, std::uint16_t number, bool is_tpd
 }  // namespace
 
 std::optional<CobId> LearnedPdo::identifier() const noexcept {
-  if (!cob_id) return {};
-  const bool extended = (*cob_id & 0x2000'0000U) != 0;
-  return extended ? CobId::extended(*cob_id & 0x1FFF'FFFFU) : CobId::base(*cob_id & 0x7FFU);
+  return cob_id ? std::optional{CobId::of_object(*cob_id)} : std::nullopt;
 }
 
 std::vector<LearnedPdo> learned_pdos(const LearnedValues& values) {
@@ -58,7 +54,7 @@ std::vector<LearnedPdo> learned_pdos(const LearnedValues& values) {
     seen.emplace(index >= 0x1800, static_cast<std::uint16_t>((index & 0x1FFU) + 1));
   }
   std::vector<LearnedPdo> pdos;
-  for (const auto& [is_tpdo, number] : seen) pdos.push_back(pdo_of(values, number, is_tpdo));
+  for (const auto& [is_tpdo, number] : seen) pdos.push_back(pdo_of(values, {number, is_tpdo}));
   return pdos;
 }
 

@@ -4,13 +4,12 @@
 #include <vector>
 
 #include "apps/takt/learn/learned_bus.hpp"
+#include "eds_parser/table/pdo_number.hpp"
 
 namespace takt::learn {
 
 /// A PDO as a recorded boot left it. A parameter is empty if the recording does not show it.
-struct LearnedPdo {
-  std::uint16_t number = 1;
-  bool is_tpdo = false;
+struct LearnedPdo : PdoNumber {
   std::optional<std::uint32_t> cob_id{};  ///< value of sub-index 1 with its flags
   std::optional<std::uint8_t> transmission{};
   std::optional<std::uint16_t> inhibit_time{};  ///< multiples of 100 us
@@ -18,12 +17,6 @@ struct LearnedPdo {
   std::optional<std::uint8_t> sync_start{};
   std::optional<std::uint8_t> count{};                  ///< sub-index 0 of the mapping
   std::optional<std::vector<std::uint32_t>> mapping{};  ///< the first `count` entries; never empty
-  std::uint16_t communication_index() const noexcept {
-    return static_cast<std::uint16_t>((is_tpdo ? 0x1800 : 0x1400) + number - 1);
-  }
-  std::uint16_t mapping_index() const noexcept {
-    return static_cast<std::uint16_t>(communication_index() + 0x200);
-  }
   bool enabled() const noexcept { return !cob_id || (*cob_id & 0x8000'0000U) == 0; }
   std::optional<CobId> identifier() const noexcept;
 };

@@ -5,6 +5,7 @@
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/dictionary/profile_of.hpp"
 #include "eds_parser/specification/device_data.hpp"
+#include "eds_parser/table/pdo_number.hpp"
 
 namespace takt {
 namespace {
@@ -15,12 +16,6 @@ std::string model_of(const NodeSource& node) {
   if (profile == 401) return "io401";
   if (profile == 402) return "drive402";
   return profile == 406 ? "encoder406" : "plain";
-}
-
-bool is_pdo_cob_id(ObjectKey key) {
-  const bool communication =
-      (key.index >= 0x1400 && key.index <= 0x15FF) || (key.index >= 0x1800 && key.index <= 0x19FF);
-  return communication && key.sub == 1;
 }
 
 /// Widens the limits of an object so that the device accepts the values of its own file.

@@ -10,7 +10,7 @@
 #include "eds_parser/specification/network_spec.hpp"
 #include "eds_parser/table/data_type.hpp"
 #include "eds_parser/table/firmware.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/pdo_number.hpp"
 
 namespace takt {
 
@@ -54,9 +54,7 @@ enum class PdoUse : std::uint8_t {
 enum class CobIdOrigin : std::uint8_t { network_file, device_file, automatic };
 
 /// A PDO as it will be on the bus: the settings of the device file, overlaid by the network file.
-struct EffectivePdo {
-  std::uint16_t number = 1;
-  bool is_tpdo = false;
+struct EffectivePdo : PdoNumber {
   PdoUse use = PdoUse::exchanged;
   bool named = false;          ///< The network file mentions the PDO.
   bool fixed_mapping = false;  ///< The mapping of the device can be compared but not written.
@@ -86,12 +84,6 @@ struct EffectivePdo {
   SourcePos pos;         ///< place of the PDO in the network file, or of its node
   SourcePos cob_id_pos;  ///< place of `cob_id`, or the same as `pos`
 
-  std::uint16_t communication_index() const noexcept {
-    return static_cast<std::uint16_t>((is_tpdo ? 0x1800 : 0x1400) + number - 1);
-  }
-  std::uint16_t mapping_index() const noexcept {
-    return static_cast<std::uint16_t>(communication_index() + 0x200);
-  }
   std::uint8_t bytes() const noexcept { return static_cast<std::uint8_t>((bits + 7) / 8); }
   bool synchronous() const noexcept { return transmission <= 240; }
   /// Returns true if another device or the master sends the frames of this PDO.
@@ -109,8 +101,7 @@ struct EffectivePdo {
     if (mpdo == Mpdo::sam) return 0xFE;
     return mpdo == Mpdo::dam ? 0xFF : static_cast<std::int64_t>(mapping.size());
   }
-  /// Returns the name for messages: `TPDO2`.
-  std::string label() const { return (is_tpdo ? "TPDO" : "RPDO") + std::to_string(number); }
+  using PdoNumber::label;
   /// Returns the name with that of the node: "TPDO2 of node `arm`".
   std::string label(const NodeSpec& node) const { return label() + " of node `" + node.name + "`"; }
 };

@@ -19,7 +19,7 @@ void report_missing_pdos(const NodeSource& node, bool is_tpdo,
       return device.is_tpdo == is_tpdo && device.number == spec.number;
     };
     if (std::ranges::any_of(devices, same) || !*spec.enabled) continue;
-    const auto index = static_cast<std::uint16_t>((is_tpdo ? 0x1800 : 0x1400) + spec.number - 1);
+    const std::uint16_t index = PdoNumber{spec.number, is_tpdo}.communication_index();
     report.error(spec.pos, "no-such-pdo", node.dictionary->file, " has no ", kind, spec.number,
                  " (", hex(index), ")",
                  count == 0 ? ", and no " + kind + " at all"

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/pdo_number.hpp"
 
 namespace takt {
 
@@ -33,9 +33,7 @@ class CobIdMemory {
   static constexpr std::uint32_t no_rtr = 0x4000'0000;       // bit 30: no RTR allowed
 
   static bool is_cob_id(ObjectKey object) noexcept {
-    if (object == ObjectKey{0x1014, 0}) return true;
-    return object.sub == 1 && ((object.index >= 0x1400 && object.index <= 0x15FF) ||
-                               (object.index >= 0x1800 && object.index <= 0x19FF));
+    return object == ObjectKey{0x1014, 0} || is_pdo_cob_id(object);
   }
 
   std::optional<ObjectKey> object_;

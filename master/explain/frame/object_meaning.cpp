@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
+#include "eds_parser/table/pdo_number.hpp"
 #include "master/explain/frame/service_texts.hpp"
 #include "master/wire/bytes.hpp"
 
@@ -10,12 +11,6 @@ namespace {
 constexpr std::uint32_t bit_31 = 0x8000'0000;
 constexpr std::uint32_t bit_30 = 0x4000'0000;
 constexpr std::uint32_t bit_29 = 0x2000'0000;
-
-bool is_rpdo(std::uint16_t index) { return index >= 0x1400 && index <= 0x15FF; }
-bool is_tpdo(std::uint16_t index) { return index >= 0x1800 && index <= 0x19FF; }
-bool is_mapping(std::uint16_t index) {
-  return (index >= 0x1600 && index <= 0x17FF) || (index >= 0x1A00 && index <= 0x1BFF);
-}
 
 std::string identifier(std::uint32_t raw) {
   return (raw & bit_29) != 0 ? fmt::format("0x{:08X}", raw & 0x1FFF'FFFF)
@@ -60,11 +55,9 @@ std::string_view program_control(unsigned value) {
 
 std::string of_32_bits(const FrameNames& names, unsigned node, ObjectKey key, std::uint32_t raw) {
   const bool is_channel = key.index >= 0x1200 && key.index <= 0x12FF;
-  if (is_tpdo(key.index) && key.sub == 1) return pdo_cob_id(raw, true);
-  if ((is_rpdo(key.index) && key.sub == 1) || (is_channel && (key.sub == 1 || key.sub == 2))) {
-    return pdo_cob_id(raw, false);
-  }
-  if (is_mapping(key.index) && key.sub != 0) return mapping_entry(names, node, raw);
+  if (is_pdo_cob_id(key)) return pdo_cob_id(raw, key.index >= 0x1800);
+  if (is_channel && (key.sub == 1 || key.sub == 2)) return pdo_cob_id(raw, false);
+  if (is_pdo_mapping(key.index) && key.sub != 0) return mapping_entry(names, node, raw);
   switch (key.index) {
     case 0x1005:
       return identifier(raw) + ((raw & bit_30) != 0 ? ", produces SYNC" : "");
@@ -92,10 +85,9 @@ std::string object_meaning(const FrameNames& names, unsigned node, ObjectKey key
                            std::span<const std::uint8_t> bytes) {
   if (bytes.size() == 4) return of_32_bits(names, node, key, load_le<std::uint32_t>(bytes));
   if (bytes.size() != 1) return {};
-  const bool is_pdo = is_rpdo(key.index) || is_tpdo(key.index);
-  if (is_pdo && key.sub == 2) return transmission(bytes[0]);
-  if (is_mapping(key.index) && key.sub == 0 && bytes[0] == 0xFE) return "SAM-MPDO";
-  if (is_mapping(key.index) && key.sub == 0 && bytes[0] == 0xFF) return "DAM-MPDO";
+  if (is_pdo_communication(key.index) && key.sub == 2) return transmission(bytes[0]);
+  if (is_pdo_mapping(key.index) && key.sub == 0 && bytes[0] == 0xFE) return "SAM-MPDO";
+  if (is_pdo_mapping(key.index) && key.sub == 0 && bytes[0] == 0xFF) return "DAM-MPDO";
   if (key.index == 0x1F82 && key.sub != 0) return nmt_request(names, key.sub, bytes[0]);
   if (key.index == 0x1F51 && key.sub != 0) return std::string{program_control(bytes[0])};
   return {};

@@ -1,3 +1,4 @@
+#include "eds_parser/table/pdo_number.hpp"
 #include "master/sim/device/device.hpp"
 
 // The changes that LSS makes to a device.
@@ -9,9 +10,7 @@ namespace {
 bool holds_cob_id(ObjectKey key) noexcept {
   if (key.index == 0x1014) return key.sub == 0;
   if (key.index >= 0x1200 && key.index <= 0x127F) return key.sub == 1 || key.sub == 2;
-  const bool pdo =
-      (key.index >= 0x1400 && key.index <= 0x15FF) || (key.index >= 0x1800 && key.index <= 0x19FF);
-  return pdo && key.sub == 1;
+  return is_pdo_cob_id(key);
 }
 
 /// Identifiers of the predefined connection set follow the node-ID; others do not change. CiA 301,

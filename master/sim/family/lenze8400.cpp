@@ -1,5 +1,6 @@
 #include "master/sim/family/lenze8400.hpp"
 
+#include "eds_parser/table/pdo_number.hpp"
 #include "master/sim/dictionary/cob_rules.hpp"
 #include "master/sim/family/echo.hpp"
 
@@ -23,8 +24,7 @@ constexpr Firmware obeys_itself{{16, 0, 0}};
 
 bool is_cob_id(ObjectKey key) noexcept {
   if (key.index == 0x1201) return key.sub == 1 || key.sub == 2;
-  return key.sub == 1 && ((key.index >= 0x1400 && key.index <= 0x15FF) ||
-                          (key.index >= 0x1800 && key.index <= 0x19FF));
+  return is_pdo_cob_id(key);
 }
 
 }  // namespace

@@ -1,24 +1,25 @@
 #include "master/sim/pdo/pdo_record.hpp"
 
+#include "eds_parser/table/pdo_number.hpp"
+
 namespace takt::sim {
 namespace {
 
-constexpr std::uint16_t first_index(PdoDirection direction) noexcept {
-  return direction == PdoDirection::receive ? 0x1400 : 0x1800;
+constexpr std::uint16_t communication_index(PdoDirection direction, std::uint16_t number) noexcept {
+  return PdoNumber{number, direction == PdoDirection::transmit}.communication_index();
 }
 
 }  // namespace
 
 bool PdoRecord::exists(const ObjectStore& store, PdoDirection direction, std::uint16_t number) {
-  const auto index = static_cast<std::uint16_t>(first_index(direction) + number - 1);
-  const Object* cob = store.find({index, 1});
+  const Object* cob = store.find({communication_index(direction, number), 1});
   return cob != nullptr && cob->width == 4;
 }
 
 PdoRecord::PdoRecord(ObjectStore& store, PdoDirection direction, std::uint16_t number)
     : store_{store},
       number_{number},
-      communication_{static_cast<std::uint16_t>(first_index(direction) + number - 1)},
+      communication_{communication_index(direction, number)},
       cob_{store.find({communication_, 1})},
       type_{store.find({communication_, 2})},
       inhibit_{direction == PdoDirection::transmit ? store.find({communication_, 3}) : nullptr},
