@@ -55,6 +55,17 @@ struct ImageLayout {
   std::uint64_t hash = 0;  ///< covers names, objects, types, units and order; image_t repeats it
 
   std::size_t outputs() const noexcept { return signals.size() - inputs; }
+  /// Returns std::nullopt if no PDO of the node carries the object in this direction.
+  std::optional<SignalIndex> find(std::size_t node_index, ObjectKey object,
+                                  bool output) const noexcept {
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+      const Signal& signal = signals[i];
+      if (signal.node_index == node_index && signal.object == object && signal.output == output) {
+        return static_cast<SignalIndex>(i);
+      }
+    }
+    return std::nullopt;
+  }
 };
 
 }  // namespace takt

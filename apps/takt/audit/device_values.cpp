@@ -17,23 +17,16 @@ bool is_writable(const DeviceObject& object) {
 
 }  // namespace
 
-std::uint64_t number_of(std::span<const std::byte> bytes) noexcept {
-  std::uint64_t number = 0;
-  for (std::size_t i = 0; i < bytes.size() && i < sizeof number; ++i) {
-    number |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
-  }
-  return number;
-}
-
 DeviceValues::DeviceValues(const NodePlan& node, const DeviceTable& device) {
   for (const DeviceObject& object : device.objects) {
-    values_[object.key] = number_of(object.value);
+    values_[object.key] = from_little_endian(object.value);
     if (is_writable(object)) writable_[object.key] = {object.low_limit, object.high_limit};
   }
   if (!node.boot) return;
   for (const BootStep& step : node.boot_plan.steps) {
     const auto known = values_.find(step.object);
-    if (writes(step.action) && known != values_.end()) known->second = number_of(step.value);
+    if (writes(step.action) && known != values_.end())
+      known->second = from_little_endian(step.value);
   }
 }
 
@@ -50,7 +43,7 @@ std::optional<int> DeviceValues::option(std::uint16_t index) const {
 }
 
 void DeviceValues::answered(ObjectKey key, std::span<const std::byte> bytes) {
-  const std::uint64_t value = number_of(bytes);
+  const std::uint64_t value = from_little_endian(bytes);
   const auto known = values_.find(key);
   if (known != values_.end() && known->second != value) {
     note(fmt::format("{} is {} in the device, but {} by network file and EDS", to_string(key),

@@ -9,11 +9,9 @@
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/device_table.hpp"
+#include "eds_parser/table/little_endian.hpp"
 
 namespace takt {
-
-/// Returns the number whose bytes are sent with the lowest first. Only the first eight bytes count.
-std::uint64_t number_of(std::span<const std::byte> bytes) noexcept;
 
 /// Values of the objects of a device after its boot: the power-on values of the EDS, overwritten by
 /// the values that the boot plan writes. A value that the device itself has answered takes

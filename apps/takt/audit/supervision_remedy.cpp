@@ -99,7 +99,7 @@ class Adviser {
   /// value.
   bool is_overwritten(std::uint8_t sub) const {
     return std::ranges::any_of(node_.boot_plan.steps, [&](const BootStep& step) {
-      const std::uint64_t value = number_of(step.value);
+      const std::uint64_t value = from_little_endian(step.value);
       const bool of_master =
           ((value >> 16) & 0xFF) == plan_.master_id.value() && (value & 0xFFFF) != 0;
       return step.object == ObjectKey{0x1016, sub} && !of_master &&

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "apps/takt/learn/learned_pdos.hpp"
-#include "apps/takt/learn/sdo_value_text.hpp"
+#include "eds_parser/table/little_endian.hpp"
 
 namespace takt::learn {
 namespace {
@@ -23,7 +23,7 @@ const LearnedBoot* fullest(const std::vector<LearnedBoot>& boots) {
 
 std::optional<std::uint64_t> LearnedValue::number() const noexcept {
   if (last.empty() || last.size() > 8) return {};
-  return little_endian(last);
+  return from_little_endian(std::as_bytes(std::span{last}));
 }
 
 std::optional<std::uint64_t> LearnedValues::number(ObjectKey key) const noexcept {

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/table/raw_number.hpp"
+
 namespace takt::learn {
 namespace {
 
@@ -36,12 +39,6 @@ std::optional<std::string> real_text(double value) {
 
 }  // namespace
 
-std::uint64_t little_endian(std::span<const std::uint8_t> bytes) noexcept {
-  std::uint64_t value = 0;
-  for (std::size_t i = bytes.size(); i-- > 0;) value = value << 8U | bytes[i];
-  return value;
-}
-
 bool is_longer_than(std::span<const std::uint8_t> bytes, DataType type) {
   const std::size_t size = byte_width(type);
   if (is_bytes(type) || bytes.size() <= size) return false;
@@ -55,7 +52,7 @@ bool is_longer_than(std::span<const std::uint8_t> bytes, DataType type) {
 std::optional<std::string> sdo_value_text(std::span<const std::uint8_t> bytes, DataType type) {
   if (is_bytes(type)) return quoted(bytes);
   if (bytes.empty() || bytes.size() > 8 || is_longer_than(bytes, type)) return {};
-  const std::uint64_t raw = little_endian(bytes);
+  const std::uint64_t raw = from_little_endian(std::as_bytes(bytes));
   if (type == DataType::real32) {
     return real_text(std::bit_cast<float>(static_cast<std::uint32_t>(raw)));
   }
@@ -63,10 +60,7 @@ std::optional<std::string> sdo_value_text(std::span<const std::uint8_t> bytes, D
   if (type == DataType::boolean && raw > 1) return {};
   const unsigned bits = bit_width(type);
   const std::uint64_t cut = bits == 64 ? raw : raw & ((std::uint64_t{1} << bits) - 1);
-  if (is_signed(type)) {
-    const unsigned unused = 64 - bits;
-    return std::to_string(static_cast<std::int64_t>(cut << unused) >> unused);
-  }
+  if (is_signed(type)) return std::to_string(sign_extended(cut, bits));
   if (cut > static_cast<std::uint64_t>(INT64_MAX)) return {};
   return std::to_string(cut);
 }

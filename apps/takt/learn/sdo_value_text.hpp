@@ -8,10 +8,6 @@
 
 namespace takt::learn {
 
-/// Returns the number whose bytes are sent with the lowest first. The number has at most eight
-/// bytes.
-std::uint64_t little_endian(std::span<const std::uint8_t> bytes) noexcept;
-
 /// Returns the bytes of an object as a value in a network file. Text and raw bytes are quoted.
 /// Returns std::nullopt if a network file can't hold the value: text or raw bytes that are empty,
 /// not ASCII or longer than 4096 bytes, a number that does not have 1 to 8 bytes or is longer than

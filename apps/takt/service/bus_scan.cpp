@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "master/wire/bytes.hpp"
 #include "master/wire/heartbeat.hpp"
 
 namespace takt {
@@ -10,14 +11,6 @@ namespace {
 constexpr std::array<ObjectKey, 6> identity_objects{
     {{0x1000, 0}, {0x1018, 1}, {0x1018, 2}, {0x1018, 3}, {0x1018, 4}, {0x1008, 0}}};
 constexpr std::size_t name_step = 5;
-
-std::uint32_t number(std::span<const std::byte> bytes) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < std::min<std::size_t>(bytes.size(), 4); ++i) {
-    value |= std::to_integer<std::uint32_t>(bytes[i]) << (8 * i);
-  }
-  return value;
-}
 
 std::string text(std::span<const std::byte> bytes) {
   std::string value;
@@ -82,9 +75,9 @@ void BusScan::take(Dialogue& dialogue, const SdoResult& result) {
   if (result.fault != SdoFault::none) return;  // the node does not have the object
   const auto bytes = std::span{dialogue.buffer}.first(result.size);
   if (step == 0) {
-    node.device_type = number(bytes);
+    node.device_type = load_le<std::uint32_t>(bytes);
   } else if (step < name_step) {
-    node.identity[step - 1] = number(bytes);
+    node.identity[step - 1] = load_le<std::uint32_t>(bytes);
   } else {
     node.name = text(bytes);
   }

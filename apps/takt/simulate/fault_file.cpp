@@ -12,6 +12,7 @@
 #include "apps/command_line/live_arguments.hpp"
 #include "eds_parser/ini/number.hpp"
 #include "eds_parser/report/suggest.hpp"
+#include "eds_parser/table/little_endian.hpp"
 
 namespace takt {
 namespace {
@@ -31,12 +32,6 @@ std::vector<std::string_view> kinds() {
   }
   for (const std::string_view program : program_fault_names()) all.push_back(program);
   return all;
-}
-
-std::vector<std::byte> little_endian(std::uint64_t value) {
-  std::vector<std::byte> bytes;
-  for (unsigned i = 0; i < 8; ++i) bytes.push_back(std::byte(value >> (8 * i) & 0xFF));
-  return bytes;
 }
 
 std::optional<std::uint64_t> integer(const std::string& text) {
@@ -185,7 +180,7 @@ class Reader {
   /// Reads a value of an object: a number, or else a text.
   static void read_value(sim::Fault& fault, const std::string& text) {
     if (const auto number = integer(text)) {
-      fault.value = little_endian(*number);
+      fault.value = little_endian(static_cast<std::int64_t>(*number), 8);
     } else {
       const auto bytes = std::as_bytes(std::span{text});
       fault.value.assign(bytes.begin(), bytes.end());

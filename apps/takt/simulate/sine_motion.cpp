@@ -12,17 +12,6 @@ constexpr double amplitude_si = 0.5;         // in the unit of the position, if 
 constexpr double amplitude_counts = 5000.0;  // for a position without a unit
 constexpr std::int64_t cyclic_position = 8;
 
-std::optional<SignalIndex> find(const ImageLayout& layout, NodeId node, std::uint16_t index,
-                                bool output) {
-  for (std::size_t i = 0; i < layout.signals.size(); ++i) {
-    const Signal& signal = layout.signals[i];
-    if (signal.node == node && signal.object == ObjectKey{index, 0} && signal.output == output) {
-      return static_cast<SignalIndex>(i);
-    }
-  }
-  return std::nullopt;
-}
-
 double amplitude_of(const Signal& position) {
   return position.unit.empty() || position.scale == 0 ? amplitude_counts
                                                       : std::abs(amplitude_si / position.scale);
@@ -43,18 +32,18 @@ SineMotion::SineMotion(const BusPlan& plan) {
 }
 
 void SineMotion::find_axes(const BusPlan& plan) {
-  for (const NodePlan& node : plan.nodes) {
-    if (!node.cia402) continue;
-    const auto controlword = find(plan.layout, node.id, 0x6040, true);
-    const auto statusword = find(plan.layout, node.id, 0x6041, false);
-    const auto target = find(plan.layout, node.id, 0x607A, true);
-    const auto actual = find(plan.layout, node.id, 0x6064, false);
+  for (std::size_t node = 0; node < plan.nodes.size(); ++node) {
+    if (!plan.nodes[node].cia402) continue;
+    const auto controlword = plan.layout.find(node, {0x6040, 0}, true);
+    const auto statusword = plan.layout.find(node, {0x6041, 0}, false);
+    const auto target = plan.layout.find(node, {0x607A, 0}, true);
+    const auto actual = plan.layout.find(node, {0x6064, 0}, false);
     if (!controlword || !statusword || !target || !actual) continue;
     Axis axis{.controlword = *controlword,
               .statusword = *statusword,
               .target = *target,
               .actual = *actual,
-              .mode = find(plan.layout, node.id, 0x6060, true),
+              .mode = plan.layout.find(node, {0x6060, 0}, true),
               .amplitude = amplitude_of(plan.layout.signals[*target])};
     axis.sequence.set_goal(DriveGoal::enabled);
     axes_.push_back(axis);

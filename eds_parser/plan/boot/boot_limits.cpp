@@ -5,6 +5,7 @@
 #include "eds_parser/plan/boot/boot_sections.hpp"
 #include "eds_parser/plan/pdo/mapping_compiler.hpp"
 #include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/table/raw_number.hpp"
 
 namespace takt {
 namespace {
@@ -27,9 +28,8 @@ bool writes(const BootStep& step) {
 std::optional<std::int64_t> number_of(std::span<const std::byte> bytes, DataType type) {
   if (is_real(type) || is_bytes(type) || bytes.empty() || bytes.size() > 8) return {};
   const std::uint64_t number = from_little_endian(bytes);
-  const unsigned unused = 64 - 8 * static_cast<unsigned>(bytes.size());
   if (!is_signed(type)) return static_cast<std::int64_t>(number);
-  return static_cast<std::int64_t>(number << unused) >> unused;
+  return sign_extended(number, 8 * static_cast<unsigned>(bytes.size()));
 }
 
 class LimitJudge {

@@ -36,11 +36,11 @@ ObjectKey AxisLimits::object(std::uint16_t index, std::uint8_t sub) const {
 }
 
 std::optional<SignalIndex> AxisLimits::output(std::uint16_t index, std::uint8_t sub) const {
-  return table_.find(node_index_, object(index, sub), true);
+  return plan_.layout.find(node_index_, object(index, sub), true);
 }
 
 std::optional<SignalIndex> AxisLimits::input(std::uint16_t index) const {
-  return table_.find(node_index_, object(index), false);
+  return plan_.layout.find(node_index_, object(index), false);
 }
 
 std::vector<SignalIndex> AxisLimits::outputs(std::initializer_list<ObjectKey> keys) const {

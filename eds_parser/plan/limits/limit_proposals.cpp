@@ -55,7 +55,7 @@ class Proposal {
   }
 
   void position() {
-    const auto signal = table_.find(line_.node_index, object(0x607A), true);
+    const auto signal = plan_.layout.find(line_.node_index, object(0x607A), true);
     const auto low = configured_object(node_, object(0x607D, 1));
     const auto high = configured_object(node_, object(0x607D, 2));
     if (!signal || table_.signal(*signal).unit.empty()) return words("give positions a unit first");

@@ -18,16 +18,6 @@ double number_of(const Signal& signal, std::int64_t raw) {
 
 }  // namespace
 
-std::optional<SignalIndex> LimitTable::find(std::size_t node_index, ObjectKey object,
-                                            bool output) const {
-  const auto& signals = plan_.layout.signals;
-  const auto found = std::ranges::find_if(signals, [&](const Signal& signal) {
-    return signal.node_index == node_index && signal.object == object && signal.output == output;
-  });
-  if (found == signals.end()) return std::nullopt;
-  return static_cast<SignalIndex>(found - signals.begin());
-}
-
 OutputLimit& LimitTable::row(SignalIndex signal) {
   auto& rows = plan_.limits.outputs;
   const auto found = std::ranges::find(rows, signal, &OutputLimit::signal);

@@ -19,8 +19,6 @@ class LimitTable {
  public:
   LimitTable(BusPlan& plan, NetworkReport& report) : plan_{plan}, report_{report} {}
 
-  /// Returns std::nullopt if no PDO of the node carries the object in this direction.
-  std::optional<SignalIndex> find(std::size_t node_index, ObjectKey object, bool output) const;
   const Signal& signal(SignalIndex index) const { return plan_.layout.signals[index]; }
   OutputLimit& row(SignalIndex signal);
   /// Narrows the permitted values of an output. `pos` is the place of the limit in the file.

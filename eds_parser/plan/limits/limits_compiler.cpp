@@ -142,7 +142,7 @@ class LimitsCompiler {
   }
 
   void object(std::size_t node_index, const ObjectLimitSpec& limit) {
-    const auto signal = table_.find(node_index, limit.object, true);
+    const auto signal = plan_.layout.find(node_index, limit.object, true);
     if (!signal) {
       if (!every_output_is_mapped(nodes_[node_index])) return;
       report_.error(limit.pos, "limits", "`limits` of node `", plan_.nodes[node_index].name,

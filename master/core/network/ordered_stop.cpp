@@ -10,24 +10,12 @@ constexpr std::uint16_t axis_step = 0x800;  // index distance between two axes o
 constexpr std::uint16_t axes_per_node = 8;
 constexpr std::uint32_t fallback_cycles = 2;  // long enough for each device to receive the fallback
 
-std::optional<SignalIndex> find(const ImageLayout& layout, std::uint8_t node_index,
-                                std::uint16_t index, bool output) {
-  for (std::size_t i = 0; i < layout.signals.size(); ++i) {
-    const Signal& signal = layout.signals[i];
-    if (signal.node_index == node_index && signal.object == ObjectKey{index, 0} &&
-        signal.output == output) {
-      return static_cast<SignalIndex>(i);
-    }
-  }
-  return std::nullopt;
-}
-
 /// Returns std::nullopt if the device has no such axis, or if the master has no means to command
 /// it.
 std::optional<StopAxis> axis_of(const BusPlan& plan, std::uint8_t node_index, std::uint8_t number) {
   const auto at = [&](std::uint16_t base, bool output) {
     const auto index = static_cast<std::uint16_t>(base + number * axis_step);
-    return find(plan.layout, node_index, index, output);
+    return plan.layout.find(node_index, {index, 0}, output);
   };
   StopAxis axis{.node_index = node_index,
                 .number = number,

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "eds_parser/table/little_endian.hpp"
 #include "master/sim/bus/hosted_device.hpp"
 #include "master/sim/bus/world.hpp"
 
@@ -19,7 +20,7 @@ void override_value(HostedDevice& hosted, const Fault& fault, bool begins) {
   if (object->is_bytes()) {
     object->bytes = object->power_on_bytes = object->factory_bytes = fault.value;
   } else {
-    object->set(to_number(fault.value));
+    object->set(from_little_endian(fault.value));
     object->power_on = object->factory = object->value;
   }
 }

@@ -1,4 +1,4 @@
-
+#include "eds_parser/table/little_endian.hpp"
 #include "master/sim/device/device.hpp"
 #include "master/sim/dictionary/cob_rules.hpp"
 
@@ -55,7 +55,7 @@ Abort Device::write(ObjectKey key, Time now, std::span<const std::byte> data) no
     if (program) program_.data_written(now);
     return Abort::none;
   }
-  const std::uint64_t raw = to_number(data);
+  const std::uint64_t raw = from_little_endian(data);
   if (ParameterStorage::owns(key)) return storage_.execute(key, raw);
   model_->advance(now);
   const Abort unfit = check_write(object, raw);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "eds_parser/table/little_endian.hpp"
+
 namespace takt::sim {
 namespace {
 
@@ -26,7 +28,7 @@ Object make_object(const DeviceObject& entry) {
   if (object.is_bytes()) {
     object.bytes = object.power_on_bytes = object.factory_bytes = entry.value;
   } else {
-    object.set(to_number(entry.value));
+    object.set(from_little_endian(entry.value));
     object.power_on = object.factory = object.value;
   }
   return object;
@@ -52,14 +54,6 @@ Abort check_limits(const Object& object, std::uint64_t raw) noexcept {
 }
 
 }  // namespace
-
-std::uint64_t to_number(std::span<const std::byte> data) noexcept {
-  std::uint64_t number = 0;
-  for (std::size_t i = 0; i < std::min<std::size_t>(data.size(), 8); ++i) {
-    number |= std::to_integer<std::uint64_t>(data[i]) << (8 * i);
-  }
-  return number;
-}
 
 ObjectStore::ObjectStore(const DeviceTable& table) {
   objects_.reserve(table.objects.size());
@@ -110,7 +104,7 @@ Abort ObjectStore::may_write(ObjectKey key, std::span<const std::byte> data) con
   if (object->is_bytes()) return data.size() > bytes_limit ? Abort::too_long : Abort::none;
   if (data.size() > object->width) return Abort::too_long;
   if (data.size() < object->width) return Abort::too_short;
-  return check_limits(*object, to_number(data));
+  return check_limits(*object, from_little_endian(data));
 }
 
 void ObjectStore::reset(std::uint16_t first, std::uint16_t last) noexcept {

@@ -77,7 +77,4 @@ class ObjectStore {
   std::vector<std::uint32_t> slots_;  ///< hash table of positions + 1; the size is a power of two
 };
 
-/// Converts at most eight little-endian bytes to a number.
-std::uint64_t to_number(std::span<const std::byte> data) noexcept;
-
 }  // namespace takt::sim

@@ -1,5 +1,7 @@
 #include "master/sim/dictionary/program_memory.hpp"
 
+#include "eds_parser/table/little_endian.hpp"
+
 namespace takt::sim {
 namespace {
 
@@ -56,12 +58,8 @@ void ProgramMemory::on_time(Time now) noexcept {
   busy_until_ = never;
   set_flash(loaded_ && !has_program() ? no_valid_program : std::uint8_t{0});
   if (!loaded_ || !has_program()) return;
-  std::uint32_t version = 0;
-  const Object& data = *store_.find({0x1F50, 1});
-  for (std::size_t i = 0; i < version_bytes; ++i) {
-    version |= std::to_integer<std::uint32_t>(data.bytes[i]) << (8 * i);
-  }
-  set_version(version);
+  const std::span data{store_.find({0x1F50, 1})->bytes};
+  set_version(static_cast<std::uint32_t>(from_little_endian(data.first(version_bytes))));
 }
 
 void ProgramMemory::set_flash(std::uint8_t status) noexcept {

@@ -1,5 +1,7 @@
 #include "master/sim/pdo/multiplexed_pdos.hpp"
 
+#include "master/wire/bytes.hpp"
+
 namespace takt::sim {
 namespace {
 
@@ -76,8 +78,7 @@ bool MultiplexedPdos::on_frame(const PdoRecord& rpdo, const Frame& frame,
     return false;
   }
   emcy.clear(too_short, number);
-  std::uint32_t data = 0;
-  for (unsigned i = 0; i < 4; ++i) data |= std::uint32_t{frame.data[4 + i]} << (8 * i);
+  const auto data = load_le<std::uint32_t>(std::span{frame.data}.subspan(4));
   const bool by_destination = (frame.data[0] & destination) != 0;
   if (rpdo.multiplex() == Multiplex::source) return !by_destination && dispatch(frame, data);
   const unsigned address = frame.data[0] & 0x7F;

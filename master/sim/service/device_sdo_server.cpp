@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "master/wire/bytes.hpp"
+
 namespace takt::sim {
 namespace {
 
@@ -10,12 +12,6 @@ constexpr Time session_limit = std::chrono::seconds{1};
 constexpr Time block_patience = std::chrono::milliseconds{700};  // within a sub-block
 constexpr std::size_t buffer_limit = 1 << 20;
 constexpr std::uint8_t toggle_bit = 0x10;
-
-std::uint32_t word(const Frame& frame) noexcept {
-  std::uint32_t value = 0;
-  for (unsigned i = 0; i < 4; ++i) value |= std::uint32_t{frame.data[4 + i]} << (8 * i);
-  return value;
-}
 
 std::span<const std::byte> bytes_from(const Frame& frame, std::size_t first,
                                       std::size_t count) noexcept {
@@ -143,11 +139,7 @@ void SdoServer::start_download(const Frame& frame, Time now, Transmitter& out) n
 }
 
 void SdoServer::start_segmented_download(const Frame& frame, Time now, Transmitter& out) noexcept {
-  size_known_ = (frame.data[0] & 0x01) != 0;
-  size_ = size_known_ ? word(frame) : 0;
-  std::size_t width = 0;
-  Abort refused = dictionary_->width(key_, width);
-  if (refused == Abort::none && size_known_) refused = check_size(size_);
+  const Abort refused = take_size(frame, (frame.data[0] & 0x01) != 0);
   if (refused != Abort::none) return abort(refused, now, out);
   state_ = State::downloading;
   toggle_ = false;
@@ -156,13 +148,17 @@ void SdoServer::start_segmented_download(const Frame& frame, Time now, Transmitt
   confirm(0x60, now, out);
 }
 
-Abort SdoServer::check_size(std::size_t size) const noexcept {
+/// Takes the size of a download, if the client reports it. Returns the reason to refuse the
+/// download.
+Abort SdoServer::take_size(const Frame& frame, bool reported) noexcept {
+  size_known_ = reported;
+  size_ = reported ? load_le<std::uint32_t>(std::span{frame.data}.subspan(4)) : 0;
   std::size_t width = 0;
   const Abort refused = dictionary_->width(key_, width);
-  if (refused != Abort::none) return refused;
-  if (width == 0) return size > buffer_limit ? Abort::memory : Abort::none;
-  if (size > width) return Abort::too_long;
-  return size < width ? Abort::too_short : Abort::none;
+  if (refused != Abort::none || !reported) return refused;
+  if (width == 0) return size_ > buffer_limit ? Abort::memory : Abort::none;
+  if (size_ > width) return Abort::too_long;
+  return size_ < width ? Abort::too_short : Abort::none;
 }
 
 void SdoServer::download_segment(const Frame& frame, Time now, Transmitter& out) noexcept {
@@ -189,11 +185,7 @@ void SdoServer::finish_download(Time now, Transmitter& out) noexcept {
 }
 
 void SdoServer::start_block_download(const Frame& frame, Time now, Transmitter& out) noexcept {
-  size_known_ = (frame.data[0] & 0x02) != 0;
-  size_ = size_known_ ? word(frame) : 0;
-  std::size_t width = 0;
-  Abort refused = dictionary_->width(key_, width);
-  if (refused == Abort::none && size_known_) refused = check_size(size_);
+  const Abort refused = take_size(frame, (frame.data[0] & 0x02) != 0);
   if (refused != Abort::none) return abort(refused, now, out);
   const bool crc = (frame.data[0] & 0x04) != 0 && !faults_->no_crc;
   buffer_.clear();

@@ -71,7 +71,7 @@ class SdoServer {
   void confirm(std::uint8_t command, Time now, Transmitter& out) noexcept;
   void abort(Abort code, Time now, Transmitter& out) noexcept;
   void send(Frame frame, Time now, Transmitter& out) noexcept;
-  Abort check_size(std::size_t size) const noexcept;
+  Abort take_size(const Frame& frame, bool reported) noexcept;
 
   Dictionary* dictionary_;
   const SdoFaults* faults_;

@@ -7,6 +7,7 @@
 #include "master/sim/dictionary/abort.hpp"
 #include "master/sim/dictionary/cob_rules.hpp"
 #include "master/sim/dictionary/object_store.hpp"
+#include "master/wire/bytes.hpp"
 #include "master/wire/frame.hpp"
 
 namespace takt::sim {
@@ -25,8 +26,7 @@ class TimeConsumer {
   }
   void on_frame(const Frame& frame, Time now) noexcept {
     if (frame.length != 6) return;
-    std::uint64_t raw = 0;
-    for (unsigned i = 0; i < 6; ++i) raw |= std::uint64_t{frame.data[i]} << (8 * i);
+    const auto raw = load_le<std::uint64_t>(std::span{frame.data}.first(6));
     set_ = Setting{.heard = now, .ms = (raw >> 32) * ms_a_day + (raw & 0x0FFF'FFFF)};
   }
   /// Milliseconds since 1984-01-01; empty until the first TIME.

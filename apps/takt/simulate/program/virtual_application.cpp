@@ -169,14 +169,9 @@ std::int64_t VirtualApplication::next_position(AxisControl::Index axis, std::int
 
 /// Returns the output 60B0 of an axis.
 std::optional<SignalIndex> VirtualApplication::position_offset(AxisControl::Index axis) const {
-  const auto& signals = plan_.layout.signals;
-  const Signal& target = signals[*axes_.signals(axis).target_position];
+  const Signal& target = plan_.layout.signals[*axes_.signals(axis).target_position];
   const auto index = static_cast<std::uint16_t>(target.object.index + from_target_to_offset);
-  const auto found = std::ranges::find_if(signals, [&](const Signal& signal) {
-    return signal.output && signal.node_index == target.node_index && signal.object.index == index;
-  });
-  if (found == signals.end()) return std::nullopt;
-  return static_cast<SignalIndex>(found - signals.begin());
+  return plan_.layout.find(target.node_index, {index, 0}, true);
 }
 
 /// Adds the position offset, which the axis library does not command.
