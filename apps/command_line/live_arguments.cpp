@@ -1,9 +1,9 @@
 #include "apps/command_line/live_arguments.hpp"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cstdio>
 
+#include "eds_parser/table/number_in.hpp"
 #include "master/lcm/printable_text.hpp"
 
 namespace takt {
@@ -36,10 +36,7 @@ std::optional<std::uint32_t> parse_unsigned(std::string_view text, int base) {
     text.remove_prefix(2);
     base = 16;
   }
-  std::uint32_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
+  return number_in<std::uint32_t>(text, base);
 }
 
 std::optional<ObjectKey> parse_object(std::string_view text) {

@@ -1,10 +1,10 @@
 #include "eds_parser/budget/what_if.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <iterator>
 
 #include "eds_parser/report/message.hpp"
+#include "eds_parser/table/number_in.hpp"
 
 namespace takt {
 namespace {
@@ -15,11 +15,8 @@ template <class T>
 std::optional<T> number(std::string_view text, T least, T most) {
   const bool hex = text.starts_with("0x");
   if (hex) text.remove_prefix(2);
-  T value{};
-  const auto* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value, hex ? 16 : 10);
-  const bool good = error == std::errc{} && stop == end && value >= least && value <= most;
-  return good ? std::optional{value} : std::nullopt;
+  const auto value = number_in<T>(text, hex ? 16 : 10);
+  return value && *value >= least && *value <= most ? value : std::nullopt;
 }
 
 /// Reads a number. Returns false if it is not within the bounds.

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <optional>
 
+#include "eds_parser/table/number_in.hpp"
+
 namespace takt {
 namespace {
 
@@ -19,9 +21,9 @@ bool read_network(std::string_view network, LcmUrl& url) {
   const std::size_t colon = network.find(':');
   if (colon != 0 && !network.empty()) url.address = network.substr(0, colon);
   if (colon == network.npos) return true;
-  const std::string_view port = network.substr(colon + 1);
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), url.port);
-  return error == std::errc{} && end == port.data() + port.size();
+  const auto port = number_in<decltype(url.port)>(network.substr(colon + 1));
+  url.port = port.value_or(url.port);
+  return port.has_value();
 }
 
 /// Returns the first number of `a.b.c.d`, or std::nullopt if the text is not a dotted address.

@@ -4,12 +4,12 @@
 #include <array>
 #include <bit>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
 #include "eds_parser/report/suggest.hpp"
 #include "eds_parser/report/text.hpp"
+#include "eds_parser/table/number_in.hpp"
 
 namespace takt {
 namespace {
@@ -53,13 +53,10 @@ std::optional<std::int64_t> parse_integer(std::string_view text) {
   }
   const bool is_hex = text.starts_with("0x") || text.starts_with("0X");
   if (is_hex) text.remove_prefix(2);
-  std::uint64_t magnitude = 0;
-  const auto [end, error] =
-      std::from_chars(text.data(), text.data() + text.size(), magnitude, is_hex ? 16 : 10);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return {};
+  const auto magnitude = number_in<std::uint64_t>(text, is_hex ? 16 : 10);
   constexpr std::uint64_t limit = std::uint64_t{1} << 63;
-  if (magnitude > limit || (magnitude == limit && !negative)) return {};
-  return static_cast<std::int64_t>(negative ? std::uint64_t{0} - magnitude : magnitude);
+  if (!magnitude || *magnitude > limit || (*magnitude == limit && !negative)) return {};
+  return static_cast<std::int64_t>(negative ? std::uint64_t{0} - *magnitude : *magnitude);
 }
 
 }  // namespace
@@ -109,12 +106,10 @@ std::optional<double> read_number(const YamlNode& node, std::string_view key,
   if (const auto integer = parse_integer(node.text); integer && !looks_octal(node.text)) {
     return static_cast<double>(*integer);
   }
-  double value = 0;
   std::string_view text = node.text;
   if (text.starts_with('+')) text.remove_prefix(1);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
-      looks_octal(text)) {
+  const auto value = number_in<double>(text);
+  if (!value || !std::isfinite(*value) || looks_octal(text)) {
     report.error(node.pos, "not-a-number", "`", key, "`: ", quote(node.text), " is not a number");
     return {};
   }

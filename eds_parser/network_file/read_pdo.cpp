@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <charconv>
 
 #include "eds_parser/network_file/sections.hpp"
+#include "eds_parser/table/number_in.hpp"
 
 namespace takt {
 namespace {
@@ -23,9 +23,10 @@ std::optional<ObjectKey> read_short_key(const YamlNode& node, std::string_view k
   if (colon == std::string::npos) return object;
   std::string_view sub = std::string_view{node.text}.substr(colon + 1);
   if (sub.starts_with("0x") || sub.starts_with("0X")) sub.remove_prefix(2);
-  const char* const end = sub.data() + sub.size();
-  const auto [last, error] = std::from_chars(sub.data(), end, object.sub, 16);
-  if (error == std::errc{} && last == end && sub.size() <= 2) return object;
+  if (const auto number = number_in<std::uint8_t>(sub, 16); number && sub.size() <= 2) {
+    object.sub = *number;
+    return object;
+  }
   report.error(node.pos, "not-a-number", "`", key, "`: `", node.text.substr(0, 40),
                "` is not an object: write 0x6064, or 0x6064:0 with the sub-index in hex");
   return {};

@@ -1,12 +1,12 @@
 #include "eds_parser/read/eds_info.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 #include "eds_parser/ini/eds_lists.hpp"
 #include "eds_parser/ini/eds_section.hpp"
 #include "eds_parser/ini/section_keys.hpp"
 #include "eds_parser/report/text.hpp"
+#include "eds_parser/table/number_in.hpp"
 
 namespace takt {
 namespace {
@@ -15,11 +15,7 @@ namespace {
 std::optional<std::uint16_t> baud_rate_of(std::string_view key) noexcept {
   constexpr std::string_view prefix = "baudrate_";
   if (!has_prefix(key, prefix)) return std::nullopt;
-  std::uint16_t rate = 0;
-  const auto* end = key.data() + key.size();
-  const auto [stop, error] = std::from_chars(key.data() + prefix.size(), end, rate);
-  if (error != std::errc{} || stop != end) return std::nullopt;
-  return rate;
+  return number_in<std::uint16_t>(key.substr(prefix.size()));
 }
 
 bool nothing_else(std::string_view /*key*/) noexcept { return false; }

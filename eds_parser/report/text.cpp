@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cstring>
 
+#include "eds_parser/table/number_in.hpp"
+
 namespace takt {
 namespace {
 
@@ -59,10 +61,7 @@ bool is_ascii(std::string_view text) noexcept {
 }  // namespace
 
 std::optional<std::uint32_t> hex_digits(std::string_view text) noexcept {
-  std::uint32_t value = 0;
-  const auto* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value, 16);
-  return error == std::errc{} && stop == end ? std::optional{value} : std::nullopt;
+  return number_in<std::uint32_t>(text, 16);
 }
 
 std::string_view without_comment(std::string_view value) noexcept {

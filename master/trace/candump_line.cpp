@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "eds_parser/table/number_in.hpp"
 #include "master/trace/words.hpp"
 
 namespace takt {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "eds_parser/table/number_in.hpp"
 #include "master/trace/trace_line.hpp"
 #include "master/trace/words.hpp"
 #include "master/wire/nmt.hpp"

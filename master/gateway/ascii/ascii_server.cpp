@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <utility>
 
+#include "eds_parser/table/number_in.hpp"
 #include "master/gateway/ascii/ascii_command.hpp"
 #include "master/linux/left_socket.hpp"
 #include "master/linux/tcp_loopback.hpp"
@@ -57,12 +57,9 @@ std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen_uni
 
 std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen_tcp(
     const std::string& text) {
-  std::uint16_t port = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
-  if (error != std::errc{} || end != text.data() + text.size()) {
-    return std::unexpected{"--gateway tcp:" + text + ": a port is 0..65535"};
-  }
-  auto listener = listen_on_loopback(port);
+  const auto port = number_in<std::uint16_t>(text);
+  if (!port) return std::unexpected{"--gateway tcp:" + text + ": a port is 0..65535"};
+  auto listener = listen_on_loopback(*port);
   if (!listener) return failed("tcp:" + text, listener.error());
   const std::string where = "tcp:127.0.0.1:" + std::to_string(listener->port);
   return std::unique_ptr<AsciiServer>{new AsciiServer{std::move(listener->socket), where, {}}};

@@ -1,9 +1,9 @@
 #include "master/gateway/ascii/ascii_value.hpp"
 
-#include <charconv>
 #include <fmt/format.h>
 #include <sodium.h>
 
+#include "eds_parser/table/number_in.hpp"
 #include "master/gateway/message/value_text.hpp"
 #include "master/lcm/messages.hpp"
 #include "master/wire/bytes.hpp"
@@ -90,11 +90,9 @@ std::optional<std::int64_t> parse_ascii_integer(std::string_view word) {
   const bool hex = word.starts_with("0x") || word.starts_with("0X");
   if (hex) word.remove_prefix(2);
   if (word.empty() || (!hex && word.size() > 1 && word[0] == '0')) return {};
-  std::uint64_t value = 0;
-  const auto [end, error] =
-      std::from_chars(word.data(), word.data() + word.size(), value, hex ? 16 : 10);
-  if (error != std::errc{} || end != word.data() + word.size()) return {};
-  return static_cast<std::int64_t>(negative ? 0 - value : value);
+  const auto value = number_in<std::uint64_t>(word, hex ? 16 : 10);
+  if (!value) return {};
+  return static_cast<std::int64_t>(negative ? 0 - *value : *value);
 }
 
 }  // namespace takt

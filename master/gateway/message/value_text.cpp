@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstdint>
 #include <fmt/format.h>
 #include <system_error>
 #include <utility>
 
+#include "eds_parser/table/number_in.hpp"
 #include "eds_parser/table/raw_number.hpp"
 #include "master/lcm/messages.hpp"
 #include "master/wire/bytes.hpp"
@@ -56,21 +56,12 @@ std::vector<std::byte> wire_bytes(std::uint64_t value, unsigned size) {
   return {bytes.begin(), bytes.begin() + size};
 }
 
-/// Reads all of `text` as a number.
-template <class T, class... Base>
-std::optional<T> parse(std::string_view text, Base... base) {
-  T value{};
-  const char* const last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, value, base...);
-  return error == std::errc{} && end == last ? std::optional{value} : std::nullopt;
-}
-
 std::optional<std::uint64_t> parse_integer(std::string_view text, bool& negative) {
   negative = text.starts_with('-');
   if (negative || text.starts_with('+')) text.remove_prefix(1);
   const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
   if (hexadecimal) text.remove_prefix(2);
-  return parse<std::uint64_t>(text, hexadecimal ? 16 : 10);
+  return number_in<std::uint64_t>(text, hexadecimal ? 16 : 10);
 }
 
 std::expected<std::vector<std::byte>, std::string> integer_bytes(DataType type,
@@ -92,7 +83,7 @@ std::expected<std::vector<std::byte>, std::string> integer_bytes(DataType type,
 
 std::expected<std::vector<std::byte>, std::string> real_bytes(DataType type,
                                                               const std::string& text) {
-  const auto value = parse<double>(text);
+  const auto value = number_in<double>(text);
   if (!value) return std::unexpected{"'" + text + "' is not a number"};
   if (type == DataType::real64) return wire_bytes(std::bit_cast<std::uint64_t>(*value), 8);
   if (exceeds_real32(*value)) return std::unexpected{text + " does not fit REAL32"};
@@ -105,7 +96,7 @@ std::expected<std::vector<std::byte>, std::string> hex_bytes(const std::string& 
   std::erase_if(digits, [](char c) { return c == ' ' || c == ':'; });
   if (digits.starts_with("0x")) digits.erase(0, 2);
   for (std::size_t i = 0; i < digits.size(); i += 2) {
-    const auto value = parse<std::uint8_t>(std::string_view{digits}.substr(i, 2), 16);
+    const auto value = number_in<std::uint8_t>(std::string_view{digits}.substr(i, 2), 16);
     if (!value || digits.size() % 2 != 0) {
       return std::unexpected{"'" + text + "' is not an even number of hex digits"};
     }

@@ -1,8 +1,8 @@
 #include "master/gateway/notice/emcy_log.hpp"
 
 #include <algorithm>
-#include <charconv>
 
+#include "eds_parser/table/number_in.hpp"
 #include "master/wire/bytes.hpp"
 
 namespace takt {
@@ -64,11 +64,9 @@ std::map<std::uint16_t, std::string> unpack_texts(std::string_view lines) {
   while (!lines.empty()) {
     const std::string_view line = lines.substr(0, lines.find('\n'));
     lines.remove_prefix(std::min(lines.size(), line.size() + 1));
-    std::uint16_t code = 0;
     if (line.size() <= code_width || !line.starts_with("0x")) continue;
-    const char* const end = line.data() + code_width - 1;
-    const auto [at, error] = std::from_chars(line.data() + 2, end, code, 16);
-    if (error == std::errc{} && at == end) texts[code] = line.substr(code_width);
+    const auto code = number_in<std::uint16_t>(line.substr(2, code_width - 3), 16);
+    if (code) texts[*code] = line.substr(code_width);
   }
   return texts;
 }
