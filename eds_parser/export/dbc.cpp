@@ -102,9 +102,7 @@ class DbcWriter {
       }
     }
     multiplex_ = row.multiplexed() ? 'm' + std::to_string(row.header) : std::string{};
-    for (std::size_t i = 0; i < row.field_count; ++i) {
-      write_field(plan_.pdos.fields[row.first_field + i], receiver);
-    }
+    for (const PdoField& field : plan_.pdos.fields_of(row)) write_field(field, receiver);
     multiplex_.clear();
   }
 

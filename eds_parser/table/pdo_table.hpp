@@ -66,12 +66,16 @@ struct PdoTable {
     empty.fill(no_row);
     return empty;
   }();
+
+  std::span<const PdoField> fields_of(const PdoRow& row) const noexcept {
+    return std::span{fields}.subspan(row.first_field, row.field_count);
+  }
 };
 
 /// Returns the TPDO that carries an input, or null if there is none.
 inline const PdoRow* tpdo_of(const PdoTable& pdos, SignalIndex input) noexcept {
   for (const PdoRow& pdo : pdos.tpdos) {
-    const auto fields = std::span{pdos.fields}.subspan(pdo.first_field, pdo.field_count);
+    const auto fields = pdos.fields_of(pdo);
     if (std::ranges::find(fields, input, &PdoField::signal) != fields.end()) return &pdo;
   }
   return nullptr;

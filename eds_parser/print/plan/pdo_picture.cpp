@@ -20,8 +20,7 @@ std::array<std::string, 2> pdo_picture(const BusPlan& plan, const PdoRow& row) {
   for (unsigned byte = 0; byte < row.length; ++byte) bytes += std::to_string(byte) + "       ";
   bytes.erase(bytes.find_last_not_of(' ') + 1);
   std::string cells(row.length * std::size_t{8}, '.');
-  for (std::uint16_t i = 0; i < row.field_count; ++i) {
-    const PdoField& field = plan.pdos.fields[row.first_field + i];
+  for (const PdoField& field : plan.pdos.fields_of(row)) {
     const Signal& signal = plan.layout.signals[field.signal];
     draw(cells, field.bit_offset, field.bits, to_string(signal.object) + " " + signal.name);
   }

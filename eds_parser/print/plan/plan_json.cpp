@@ -43,8 +43,7 @@ Json cycle_json(const BusPlan& plan) {
 
 Json pdo_json(const BusPlan& plan, const PdoRow& row) {
   Json fields = Json::array();
-  for (std::uint16_t i = 0; i < row.field_count; ++i) {
-    const PdoField& field = plan.pdos.fields[row.first_field + i];
+  for (const PdoField& field : plan.pdos.fields_of(row)) {
     const Signal& signal = plan.layout.signals[field.signal];
     fields.push_back({{"signal", field.signal},
                       {"name", signal.name},

@@ -95,8 +95,7 @@ class NodeText {
       for (const std::string& line : pdo_picture(plan_, row)) lines_.line("    {}", line);
     }
     unsigned expected = row.multiplexed() ? 32 : 0;  // the data follow address, index and sub-index
-    for (std::uint16_t i = 0; i < row.field_count; ++i) {
-      const PdoField& field = plan_.pdos.fields[row.first_field + i];
+    for (const PdoField& field : plan_.pdos.fields_of(row)) {
       const Signal& signal = plan_.layout.signals[field.signal];
       if (field.bit_offset > expected) gap(expected, field.bit_offset - expected);
       lines_.line("    bit {:>2}..{:<2}  {} {:<12} {}", field.bit_offset,

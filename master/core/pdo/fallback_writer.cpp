@@ -15,11 +15,10 @@ bool is_controlword(ObjectKey object) noexcept {
 FallbackWriter::FallbackWriter(const BusPlan& plan) {
   for (const PdoRow& row : plan.pdos.rpdos) {
     if (!row.synchronous() || row.on_request) continue;
-    for (std::uint16_t i = 0; i < row.field_count; ++i) {
-      const SignalIndex index = plan.pdos.fields[row.first_field + i].signal;
-      const Signal& signal = plan.layout.signals[index];
+    for (const PdoField& field : plan.pdos.fields_of(row)) {
+      const Signal& signal = plan.layout.signals[field.signal];
       if (signal.fallback != Fallback::value) continue;
-      values_.push_back({.signal = index,
+      values_.push_back({.signal = field.signal,
                          .node = signal.node.value(),
                          .node_index = signal.node_index,
                          .bytes = static_cast<std::uint8_t>((signal.bits + 7) / 8),

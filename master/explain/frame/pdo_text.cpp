@@ -43,8 +43,7 @@ Found find(const std::vector<PdoRow>& rows, bool tpdo, const Frame& frame) {
 
 std::string fields_text(const BusPlan& plan, const PdoRow& row, const Frame& frame) {
   std::string text;
-  for (std::size_t i = 0; i < row.field_count; ++i) {
-    const PdoField& field = plan.pdos.fields[row.first_field + i];
+  for (const PdoField& field : plan.pdos.fields_of(row)) {
     const Signal& signal = plan.layout.signals[field.signal];
     text += fmt::format("  {}={}", signal.name, value_text(signal, bits_of(frame, field)));
   }

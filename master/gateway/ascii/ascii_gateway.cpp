@@ -180,8 +180,8 @@ AsciiGateway::Answer AsciiGateway::read_pdo(std::uint32_t node, const AsciiComma
   const PdoRow* const row = find_row(plan_.pdos.tpdos, node, command.number);
   if (row == nullptr) return std::unexpected{AsciiError::unsupported_node};
   std::string text = fmt::format("{} pdo {}", only_net, row->field_count);
-  for (std::uint16_t i = 0; i < row->field_count; ++i) {
-    const std::size_t signal = plan_.pdos.fields[row->first_field + i].signal;
+  for (const PdoField& field : plan_.pdos.fields_of(*row)) {
+    const std::size_t signal = field.signal;
     const bool known = signal < values_.size() && (stale_[signal / 64] >> (signal % 64) & 1) == 0;
     if (!known) return std::unexpected{AsciiError::timeout};
     text += fmt::format(" {}", values_[signal]);

@@ -43,8 +43,7 @@ void ImageJudge::on_wire(const sim::WireFrame& wire) noexcept {
 
 bool ImageJudge::shows(const PdoRow& row, const Frame& frame,
                        const ImageView& image) const noexcept {
-  for (std::size_t i = row.first_field; i < row.first_field + row.field_count; ++i) {
-    const PdoField& field = plan_.pdos.fields[i];
+  for (const PdoField& field : plan_.pdos.fields_of(row)) {
     const std::uint64_t mask = mask_of(field.bits);
     const auto value = static_cast<std::uint64_t>(image.values[field.signal]);
     if ((value & mask) != bits_of(frame, field.bit_offset, field.bits)) return false;
@@ -55,11 +54,9 @@ bool ImageJudge::shows(const PdoRow& row, const Frame& frame,
 }
 
 bool ImageJudge::unchanged(const PdoRow& row, const ImageView& image) const noexcept {
-  for (std::size_t i = row.first_field; i < row.first_field + row.field_count; ++i) {
-    const SignalIndex signal = plan_.pdos.fields[i].signal;
-    if (image.values[signal] != last_[signal]) return false;
-  }
-  return true;
+  return std::ranges::all_of(plan_.pdos.fields_of(row), [&](const PdoField& field) {
+    return image.values[field.signal] == last_[field.signal];
+  });
 }
 
 /// Finds the oldest frame that fits, because a newer one with the same values may not have been

@@ -88,8 +88,7 @@ bool OutputJudge::fresh(std::size_t output, std::uint64_t value, Time now) const
 }
 
 void OutputJudge::judge_pdo(const PdoRow& row, const Frame& frame, Time now) {
-  for (std::size_t i = row.first_field; i < row.first_field + row.field_count; ++i) {
-    const PdoField& field = plan_.pdos.fields[i];
+  for (const PdoField& field : plan_.pdos.fields_of(row)) {
     const Signal& signal = plan_.layout.signals[field.signal];
     const std::uint64_t value = bits_of(frame, field.bit_offset, field.bits);
     const bool lasting = signal.fallback == Fallback::hold || is_lasting(plan_, signal, value);

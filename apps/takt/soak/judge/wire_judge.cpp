@@ -69,8 +69,7 @@ void WireJudge::sent(std::span<const Frame> frames, Time now) {
   for (const Frame& frame : frames) {
     for (const PdoRow& row : plan_.pdos.rpdos) {
       if (row.cob_id != frame.id || row.on_request || row.multiplexed()) continue;
-      for (std::size_t i = row.first_field; i < row.first_field + row.field_count; ++i) {
-        const PdoField& field = plan_.pdos.fields[i];
+      for (const PdoField& field : plan_.pdos.fields_of(row)) {
         judge(field.signal, bits_of(frame, field.bit_offset, field.bits), now);
       }
     }
