@@ -34,8 +34,8 @@ bool is_tpdo(std::uint16_t index) noexcept { return index >= 0x1800 && index <= 
 }  // namespace
 
 AstraadaDrv28::AstraadaDrv28(ObjectStore& store, EmcyProducer& emcy)
-    : store_{store},
-      emcy_{emcy},
+    : Model{emcy},
+      store_{store},
       slots_{.request_code = store.find({request, 1}),
              .request_address = store.find({request, 2}),
              .request_data = store.find({request, 3}),

@@ -48,7 +48,6 @@ class AstraadaDrv28 final : public Model {
   void publish() noexcept;
 
   ObjectStore& store_;
-  EmcyProducer& emcy_;
   Slots slots_;
   Drv28Parameters parameters_;
   Ramp frequency_;  ///< output frequency in 0.01 Hz

@@ -30,8 +30,8 @@ bool is_cob_id(ObjectKey key) noexcept {
 }  // namespace
 
 Lenze8400::Lenze8400(const DeviceTable& table, ObjectStore& store, EmcyProducer& emcy)
-    : store_{store},
-      emcy_{emcy},
+    : Model{emcy},
+      store_{store},
       firmware_{Firmware::parse(table.firmware).value_or(newest)},
       control_{store.find({words_in, 1})},
       set_point_{store.find({words_in, 2})},

@@ -31,7 +31,6 @@ class Lenze8400 final : public Model {
   void publish() noexcept;
 
   ObjectStore& store_;
-  EmcyProducer& emcy_;
   Firmware firmware_;
   Object* control_;
   Object* set_point_;

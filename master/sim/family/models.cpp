@@ -12,23 +12,6 @@
 namespace takt::sim {
 namespace {
 
-/// A model without an application: the device only communicates, and its objects keep the values
-/// written to them.
-class PlainModel final : public Model {
- public:
-  explicit PlainModel(EmcyProducer& emcy) : emcy_{emcy} {}
-
-  void reset(Time) noexcept override {}
-  void advance(Time) noexcept override {}
-  void outputs(Time) noexcept override {}
-  void fail(std::uint16_t code, Time) noexcept override {
-    emcy_.raise(code, ErrorBit::manufacturer);
-  }
-
- private:
-  EmcyProducer& emcy_;
-};
-
 bool has_quirk(const DeviceTable& table, std::string_view quirk) {
   return std::ranges::find(table.quirks, quirk) != table.quirks.end();
 }
@@ -49,7 +32,7 @@ std::unique_ptr<Model> make_model(const DeviceTable& table, ObjectStore& store, 
                                                                 : EventTimerReading::restarts;
     return std::make_unique<Plain301>(store, emcy, reading);
   }
-  return std::make_unique<PlainModel>(emcy);
+  return std::make_unique<Model>(emcy);
 }
 
 }  // namespace takt::sim

@@ -13,7 +13,7 @@ constexpr Time count_period = std::chrono::milliseconds{100};
 }  // namespace
 
 Plain301::Plain301(ObjectStore& store, EmcyProducer& emcy, EventTimerReading reading)
-    : store_{store}, emcy_{emcy}, reading_{reading}, counter_{store.find(counter_key)} {}
+    : Model{emcy}, store_{store}, reading_{reading}, counter_{store.find(counter_key)} {}
 
 DeviceTraits Plain301::traits() const noexcept {
   DeviceTraits traits;
@@ -31,9 +31,5 @@ void Plain301::advance(Time now) noexcept {
 }
 
 void Plain301::outputs(Time) noexcept { echo(store_, values_in, values_out); }
-
-void Plain301::fail(std::uint16_t code, Time) noexcept {
-  emcy_.raise(code, ErrorBit::manufacturer);
-}
 
 }  // namespace takt::sim

@@ -18,13 +18,11 @@ class Plain301 final : public Model {
   void reset(Time now) noexcept override;
   void advance(Time now) noexcept override;
   void outputs(Time now) noexcept override;
-  void fail(std::uint16_t code, Time now) noexcept override;
   Time next_change() const noexcept override { return counter_ == nullptr ? never : next_count_; }
   DeviceTraits traits() const noexcept override;
 
  private:
   ObjectStore& store_;
-  EmcyProducer& emcy_;
   EventTimerReading reading_;
   Object* counter_;
   Time next_count_ = never;

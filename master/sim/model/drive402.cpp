@@ -4,7 +4,7 @@
 
 namespace takt::sim {
 
-Drive402::Drive402(ObjectStore& store, EmcyProducer& emcy, Random random) {
+Drive402::Drive402(ObjectStore& store, EmcyProducer& emcy, Random random) : Model{emcy} {
   for (std::uint8_t axis = 0; axis < 8; ++axis) {
     const auto controlword = static_cast<std::uint16_t>(0x6040 + 0x800 * axis);
     if (store.find({controlword, 0}) == nullptr) continue;

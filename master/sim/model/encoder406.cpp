@@ -9,7 +9,7 @@ constexpr std::int64_t default_units = 4096;
 }  // namespace
 
 Encoder406::Encoder406(ObjectStore& store, EmcyProducer& emcy, Random random)
-    : emcy_{emcy},
+    : Model{emcy},
       position_{store, {0x6004, 0}},
       preset_{store, {0x6003, 0}},
       units_{store, {0x6001, 0}},
@@ -55,10 +55,6 @@ void Encoder406::outputs(Time) noexcept {
   last_preset_ = preset_.get();
   offset_ = last_preset_ - shaft(time_);
   publish();
-}
-
-void Encoder406::fail(std::uint16_t code, Time) noexcept {
-  emcy_.raise(code, ErrorBit::manufacturer);
 }
 
 }  // namespace takt::sim

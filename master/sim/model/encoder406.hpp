@@ -14,14 +14,12 @@ class Encoder406 final : public Model {
   void advance(Time now) noexcept override;
   /// A written preset becomes the present position.
   void outputs(Time now) noexcept override;
-  void fail(std::uint16_t code, Time now) noexcept override;
   Time next_change() const noexcept override { return time_ + Time{1}; }
 
  private:
   std::int64_t shaft(Time now) const noexcept;
   void publish() noexcept;
 
-  EmcyProducer& emcy_;
   Slot position_;
   Slot preset_;
   Slot units_;

@@ -19,7 +19,7 @@ constexpr std::uint32_t analogue_step = 401;
 }  // namespace
 
 Io401::Io401(ObjectStore& store, EmcyProducer& emcy, Random random, bool loopback)
-    : store_{store}, emcy_{emcy}, random_{random}, loopback_{loopback} {
+    : Model{emcy}, store_{store}, random_{random}, loopback_{loopback} {
   for (Object& object : store.range(digital_in, digital_in)) {
     if (object.key.sub == 0 || object.is_bytes()) continue;
     digital_.push_back({&object, store.find({digital_out, object.key.sub})});
@@ -78,7 +78,5 @@ void Io401::connection_lost(Time) noexcept {
     if (output.key.sub != 0 && changes && value != nullptr) output.set(value->value);
   }
 }
-
-void Io401::fail(std::uint16_t code, Time) noexcept { emcy_.raise(code, ErrorBit::manufacturer); }
 
 }  // namespace takt::sim

@@ -8,7 +8,7 @@ namespace takt::sim {
 /// An I/O module: digital (0x6000, 0x6200) and analogue (0x6401, 0x6411) channels. Inputs change in
 /// a pattern that depends on the seed, or repeat the outputs if the device has the quirk
 /// "loopback". CiA 401.
-class Io401 final : public Model {
+class Io401 : public Model {
  public:
   Io401(ObjectStore& store, EmcyProducer& emcy, Random random, bool loopback);
 
@@ -17,7 +17,6 @@ class Io401 final : public Model {
   void outputs(Time now) noexcept override;
   /// Sets the outputs to their error values (0x6206 and 0x6207, 0x6443 and 0x6444).
   void connection_lost(Time now) noexcept override;
-  void fail(std::uint16_t code, Time now) noexcept override;
   Time next_change() const noexcept override { return loopback_ ? never : next_change_; }
 
  private:
@@ -30,7 +29,6 @@ class Io401 final : public Model {
   void repeat_outputs() noexcept;
 
   ObjectStore& store_;
-  EmcyProducer& emcy_;
   Random random_;
   bool loopback_;
   std::vector<Channel> digital_;

@@ -15,16 +15,18 @@ namespace takt::sim {
 
 /// The application of a device besides its communication: a drive, inputs and outputs, or an
 /// encoder. A model reads and writes objects of the dictionary. All times are local times of the
-/// device.
+/// device. The base has no application: the device only communicates, and its objects keep the
+/// values written to them.
 class Model {
  public:
+  explicit Model(EmcyProducer& emcy) noexcept : emcy_{emcy} {}
   virtual ~Model() = default;
   /// Called at power-on and reset node, when the objects hold their power-on values.
-  virtual void reset(Time now) noexcept = 0;
-  /// Advances the model to `now` and writes its inputs into the dictionary.
-  virtual void advance(Time now) noexcept = 0;
+  virtual void reset(Time) noexcept {}
+  /// Advances the model to this time and writes its inputs into the dictionary.
+  virtual void advance(Time) noexcept {}
   /// Called after an RPDO or SDO has written objects.
-  virtual void outputs(Time now) noexcept = 0;
+  virtual void outputs(Time) noexcept {}
   /// Called at SYNC in OPERATIONAL after the inputs were sampled and the received outputs applied.
   virtual void on_sync(Time) noexcept {}
   /// Checks an SDO write of this value. Called after the checks of the dictionary itself.
@@ -52,9 +54,14 @@ class Model {
   /// Called when a heartbeat is lost, at bus-off, and when the device leaves OPERATIONAL.
   virtual void connection_lost(Time) noexcept {}
   /// Injects a fault: the device reports this error by EMCY and behaves accordingly.
-  virtual void fail(std::uint16_t, Time) noexcept {}
+  virtual void fail(std::uint16_t code, Time) noexcept {
+    emcy_.raise(code, ErrorBit::manufacturer);
+  }
   /// Next time at which inputs may change by themselves; `never` if they don't.
   virtual Time next_change() const noexcept { return never; }
+
+ protected:
+  EmcyProducer& emcy_;
 };
 
 /// Makes the model that the table names (one of sim_models); any other name gives a plain device. A
