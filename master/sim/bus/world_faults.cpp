@@ -7,6 +7,22 @@
 namespace takt::sim {
 namespace {
 
+/// A fault of a device that is only on or off.
+struct FlagFault {
+  FaultKind kind;
+  bool DeviceFaults::* flag;
+};
+
+constexpr FlagFault flag_faults[] = {
+    {FaultKind::mute_pdo, &DeviceFaults::mute_pdo},
+    {FaultKind::no_bootup, &DeviceFaults::no_bootup},
+    {FaultKind::no_heartbeat, &DeviceFaults::no_heartbeat},
+    {FaultKind::self_start, &DeviceFaults::self_start},
+    {FaultKind::no_start, &DeviceFaults::no_start},
+    {FaultKind::preop_only, &DeviceFaults::preop_only},
+    {FaultKind::fixed_mapping, &DeviceFaults::fixed_mapping},
+};
+
 void override_value(HostedDevice& hosted, const Fault& fault, bool begins) {
   Object* object = fault.object ? hosted.device.objects().find(*fault.object) : nullptr;
   if (object == nullptr) return;
@@ -131,6 +147,9 @@ void World::apply_to_device(std::size_t index, const Fault& fault, bool begins) 
   Device& device = hosted.device;
   DeviceFaults& faults = device.faults();
   const Time local = hosted.clock.local(now_);
+  for (const auto& [kind, flag] : flag_faults) {
+    if (kind == fault.kind) faults.*flag = begins;
+  }
   switch (fault.kind) {
     case FaultKind::power_off:
       return set_power(index, !begins);
@@ -152,12 +171,6 @@ void World::apply_to_device(std::size_t index, const Fault& fault, bool begins) 
     case FaultKind::late_bootup:
       faults.bootup_delay = begins ? fault.time : Time{};
       return;
-    case FaultKind::no_bootup:
-      faults.no_bootup = begins;
-      return;
-    case FaultKind::no_heartbeat:
-      faults.no_heartbeat = begins;
-      return;
     case FaultKind::no_guarding:
       faults.guarding = begins ? GuardingResponder::Fault::mute : GuardingResponder::Fault::none;
       return;
@@ -169,27 +182,12 @@ void World::apply_to_device(std::size_t index, const Fault& fault, bool begins) 
       faults.storm_period =
           begins ? std::max(fault.time, Time{std::chrono::microseconds{100}}) : Time{};
       return device.start_storm(local);
-    case FaultKind::self_start:
-      faults.self_start = begins;
-      return;
-    case FaultKind::no_start:
-      faults.no_start = begins;
-      return;
-    case FaultKind::preop_only:
-      faults.preop_only = begins;
-      return;
-    case FaultKind::fixed_mapping:
-      faults.fixed_mapping = begins;
-      return;
     case FaultKind::lss_silent:
     case FaultKind::lss_no_store:
       if (LssSlave* const lss = device.lss()) {
         (fault.kind == FaultKind::lss_silent ? lss->faults().silent : lss->faults().refuses_store) =
             begins;
       }
-      return;
-    case FaultKind::mute_pdo:
-      faults.mute_pdo = begins;
       return;
     case FaultKind::device_error:
       if (begins) device.fail(fault.emcy_code, local);
