@@ -84,7 +84,7 @@ bool add_pdo_change(std::string_view key, std::string_view value, WhatIf& change
   return false;
 }
 
-std::string time_text(std::uint64_t us) {
+std::string short_time(std::uint64_t us) {
   return us % 1000 == 0 ? concat(us / 1000, "ms") : concat(us, "us");
 }
 
@@ -100,7 +100,7 @@ void append_pdo(std::string& list, const PdoChange& pdo) {
   append_change(list, name, pdo.transmission);
   append_change(list, name + ".start", pdo.sync_start);
   append_change(list, name + ".inhibit",
-                pdo.inhibit_time.transform([](auto units) { return time_text(units * 100U); }));
+                pdo.inhibit_time.transform([](auto units) { return short_time(units * 100U); }));
   append_change(list, name + ".cob_id", pdo.cob_id.transform([](auto id) { return Hex{id, 1}; }));
 }
 
@@ -147,7 +147,7 @@ void merge(WhatIf& changes, const WhatIf& more) {
 
 std::string to_string(const WhatIf& changes) {
   std::string text;
-  append_change(text, "period", changes.sync_period_us.transform(time_text));
+  append_change(text, "period", changes.sync_period_us.transform(short_time));
   append_change(text, "bitrate", changes.bitrate_kbit);
   append_change(text, "services", changes.service_frames);
   append_change(text, "counter", changes.sync_overflow);

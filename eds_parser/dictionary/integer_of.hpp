@@ -24,4 +24,9 @@ inline std::optional<std::uint64_t> unsigned_of(const ObjectDictionary& dictiona
   return integer_of(dictionary, key);
 }
 
+/// Returns the value of an UNSIGNED32, or 0 if the file gives none.
+inline std::uint32_t unsigned32_of(const ObjectDictionary& dictionary, ObjectKey key) noexcept {
+  return static_cast<std::uint32_t>(integer_of(dictionary, key).value_or(0));
+}
+
 }  // namespace takt

@@ -17,8 +17,7 @@ bool may_be_same(const LssPlan& a, const LssPlan& b) {
 /// file.
 std::uint32_t identity(const Sourced<std::uint32_t>& wanted, const ObjectDictionary& dictionary,
                        std::uint8_t sub) {
-  if (wanted.given) return *wanted;
-  return static_cast<std::uint32_t>(integer_of(dictionary, {0x1018, sub}).value_or(0));
+  return wanted.given ? *wanted : unsigned32_of(dictionary, {0x1018, sub});
 }
 
 /// Returns the LSS address of a node. A number of 0 counts as unknown. The exception is a vendor ID

@@ -66,4 +66,9 @@ std::string concat(const Parts&... parts) {
   return message;
 }
 
+/// Returns a time in microseconds as text: "50 ms", "100 us".
+inline std::string time_text(std::uint64_t us) {
+  return us % 1000 == 0 ? concat(us / 1000, " ms") : concat(us, " us");
+}
+
 }  // namespace takt

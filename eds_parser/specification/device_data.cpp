@@ -10,10 +10,6 @@ namespace {
 
 constexpr std::string_view no_entry = "none";
 
-std::uint32_t number_of(const ObjectDictionary& dictionary, ObjectKey key) noexcept {
-  return static_cast<std::uint32_t>(integer_of(dictionary, key).value_or(0));
-}
-
 std::uint32_t first_known(const Sourced<std::uint32_t>& given, std::uint32_t of_object,
                           std::uint32_t of_info) noexcept {
   if (given.given) return *given;
@@ -75,12 +71,12 @@ std::string DeviceData::cite(const DeviceFact& fact) const {
 
 DeviceIdentity identity_of(const NodeSpec& node, const ObjectDictionary& dictionary) noexcept {
   const DeviceInfo& info = dictionary.device;
-  return {
-      .vendor = first_known(node.vendor_id, number_of(dictionary, {0x1018, 1}), info.vendor_number),
-      .product =
-          first_known(node.product_code, number_of(dictionary, {0x1018, 2}), info.product_number),
-      .revision = first_known(node.revision_number, number_of(dictionary, {0x1018, 3}),
-                              info.revision_number)};
+  return {.vendor = first_known(node.vendor_id, unsigned32_of(dictionary, {0x1018, 1}),
+                                info.vendor_number),
+          .product = first_known(node.product_code, unsigned32_of(dictionary, {0x1018, 2}),
+                                 info.product_number),
+          .revision = first_known(node.revision_number, unsigned32_of(dictionary, {0x1018, 3}),
+                                  info.revision_number)};
 }
 
 const DeviceData* find_device_data(std::span<const DeviceData> entries, const NodeSpec& node,

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 
+#include "eds_parser/table/time.hpp"
+
 namespace takt::sim {
 
 /// SplitMix64, a generator of pseudo-random numbers that are the same with every library and on
@@ -18,6 +20,10 @@ class Random {
   /// Returns a number in 0 .. limit - 1, or 0 if `limit` is 0.
   constexpr std::uint32_t below(std::uint32_t limit) noexcept {
     return static_cast<std::uint32_t>(((next() >> 32) * limit) >> 32);
+  }
+  /// Returns a time in 1 ns .. longest.
+  constexpr Time up_to(Time longest) noexcept {
+    return Time{1 + static_cast<Time::rep>(next() % static_cast<std::uint64_t>(longest.count()))};
   }
   /// Returns true with this probability. Draws no number if the probability is 0 or 1.
   constexpr bool chance(double probability) noexcept {

@@ -1,7 +1,6 @@
 #include "apps/takt/import/import_report.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <set>
 #include <unordered_map>
@@ -17,14 +16,6 @@ namespace takt {
 namespace {
 
 constexpr std::size_t longest_value = 60;
-
-std::string read_text(const std::filesystem::path& path) {
-  std::ifstream in{path, std::ios::binary};
-  std::string text(YamlTree::max_text + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return text;
-}
 
 /// Returns a value on one line, cut to 60 characters.
 std::string value_text(const YamlNode& node) {
@@ -327,7 +318,8 @@ std::size_t ImportReport::count(KeyFate fate) const noexcept {
 ImportReport import_report(const std::filesystem::path& path) {
   const LoadedNetwork network = load_network(path);
   Findings syntax;
-  const YamlTree tree = YamlTree::parse(read_text(path), path.string(), syntax);
+  const std::string text = read_yaml_file(path).value_or("");
+  const YamlTree tree = YamlTree::parse(text, path.string(), syntax);
   std::vector<Row> rows;
   if (tree.root() != nullptr) rows = RowCollector{}.collect(*tree.root());
 

@@ -15,10 +15,6 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t largest_file = std::uintmax_t{16} << 20U;
 
-std::uint32_t number_at(const ObjectDictionary& dictionary, ObjectKey key) {
-  return static_cast<std::uint32_t>(integer_of(dictionary, key).value_or(0));
-}
-
 bool is_device_file(const fs::path& path) {
   const std::string extension = path.extension().string();
   return same_word(extension, ".eds") || same_word(extension, ".dcf");
@@ -27,10 +23,10 @@ bool is_device_file(const fs::path& path) {
 /// Returns the identity in a file. The values of [DeviceInfo] count only if the dictionary itself
 /// has none.
 SeenIdentity identity_of(const ObjectDictionary& dictionary) {
-  SeenIdentity identity{.device_type = number_at(dictionary, {0x1000, 0}),
-                        .vendor_id = number_at(dictionary, {0x1018, 1}),
-                        .product_code = number_at(dictionary, {0x1018, 2}),
-                        .revision_number = number_at(dictionary, {0x1018, 3})};
+  SeenIdentity identity{.device_type = unsigned32_of(dictionary, {0x1000, 0}),
+                        .vendor_id = unsigned32_of(dictionary, {0x1018, 1}),
+                        .product_code = unsigned32_of(dictionary, {0x1018, 2}),
+                        .revision_number = unsigned32_of(dictionary, {0x1018, 3})};
   if (identity.vendor_id == 0) identity.vendor_id = dictionary.device.vendor_number;
   if (identity.product_code == 0) identity.product_code = dictionary.device.product_number;
   if (identity.revision_number == 0) identity.revision_number = dictionary.device.revision_number;

@@ -9,6 +9,7 @@
 #include "apps/takt/learn/learned_pdos.hpp"
 #include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/dictionary/standard_types.hpp"
+#include "eds_parser/ini/eds_lists.hpp"
 #include "eds_parser/write/object_sections.hpp"
 
 namespace takt::learn {
@@ -227,9 +228,6 @@ void add_list(std::string& text, std::string_view name, const std::vector<Object
   text += fmt::format("\n[{}]\nSupportedObjects={}\n{}", name, count, lines);
 }
 
-bool is_mandatory(std::uint16_t index) {
-  return index == 0x1000 || index == 0x1001 || index == 0x1018;
-}
 bool is_manufacturer(std::uint16_t index) { return index >= 0x2000 && index < 0x6000; }
 bool is_optional(std::uint16_t index) { return !is_mandatory(index) && !is_manufacturer(index); }
 

@@ -16,21 +16,16 @@ constexpr Time mean_pause = 400ms;
 Troubles::Troubles(Cast cast, sim::Random random, Time from, Time until, bool verbose)
     : cast_{cast}, random_{random}, next_{from}, until_{until}, verbose_{verbose} {}
 
-Time Troubles::some(Time longest) {
-  return Time{1 +
-              static_cast<Time::rep>(random_.next() % static_cast<std::uint64_t>(longest.count()))};
-}
-
 /// Returns the duration of a fault: mostly short, sometimes longer than every time to live.
 Time Troubles::span() {
   switch (random_.below(8)) {
     case 0:
-      return 1s + some(8s);
+      return 1s + random_.up_to(8s);
     case 1:
     case 2:
-      return some(1s);
+      return random_.up_to(1s);
     default:
-      return some(60ms);
+      return random_.up_to(60ms);
   }
 }
 
@@ -44,7 +39,7 @@ void Troubles::act(Time now) {
   agenda_.act(now);
   if (next_ > now) return;
   begin(now);
-  next_ = now + some(2 * mean_pause);
+  next_ = now + random_.up_to(2 * mean_pause);
   if (next_ >= until_) next_ = never;
 }
 
@@ -72,7 +67,7 @@ void Troubles::begin(Time now) {
       announce(now, "replay", {});
       return cast_.forger.replay(now);
     case 10:
-      cast_.clocks.set_wall(std::chrono::days{20454} + some(2s) - 1s);
+      cast_.clocks.set_wall(std::chrono::days{20454} + random_.up_to(2s) - 1s);
       return announce(now, "the wall clock is set", {});
     case 11:
       return let_jump(now);
@@ -94,7 +89,7 @@ void Troubles::stall_process(Time now) {
   const Time stall = span();
   announce(now, "taktd is stopped", stall);
   cast_.world.add({.kind = sim::FaultKind::stall_master, .at = now, .until = now + stall});
-  cast_.daemon.stall(now + stall + some(300us));
+  cast_.daemon.stall(now + stall + random_.up_to(300us));
   if (random_.chance(0.3))
     agenda_.add(now + stall / 2, [this, at = now + stall / 2] { kill_application(at); });
 }
@@ -142,7 +137,7 @@ void Troubles::bring_rival(Time now) {
 void Troubles::slow_down_lcm(Time now) {
   const Time lasts = span();
   announce(now, "messages are slow", lasts);
-  cast_.lcm.set_delay(1ms + some(300ms));
+  cast_.lcm.set_delay(1ms + random_.up_to(300ms));
   agenda_.add(now + lasts, [this] { cast_.lcm.set_delay(VirtualLcm::usual_delay); });
 }
 

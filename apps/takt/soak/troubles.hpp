@@ -49,7 +49,6 @@ class Troubles final : public Actor {
   void bring_rival(Time now);
   void slow_down_lcm(Time now);
   void announce(Time now, const char* what, Time span) const;
-  Time some(Time longest);
   Time span();
   VirtualApplication& application();
 

@@ -103,8 +103,7 @@ class BootCompiler : BootPart {
   /// Returns the value of the network file, else of the device file. 0 means that the value is not
   /// checked. [DeviceInfo] is not used: its product number is wrong in one of 25 files.
   std::uint32_t expected(const Sourced<std::uint32_t>& wanted, ObjectKey key) const {
-    if (wanted.given) return *wanted;
-    return static_cast<std::uint32_t>(integer_of(dictionary, key).value_or(0));
+    return wanted.given ? *wanted : unsigned32_of(dictionary, key);
   }
 
   void expect(ObjectKey key, std::uint32_t value, char letter, const std::string& purpose) {

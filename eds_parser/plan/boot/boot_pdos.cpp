@@ -82,11 +82,6 @@ class PdoBoot : BootPart {
     return text + ": by event";
   }
 
-  std::string unit_text() const {
-    const std::uint32_t us = pdo_.inhibit_unit_us;
-    return us % 1000 == 0 ? concat(us / 1000, " ms") : concat(us, " us");
-  }
-
   void compare_communication() {
     if (steps.has(cob_id_key())) {
       steps
@@ -149,7 +144,7 @@ class PdoBoot : BootPart {
       steps.integer(action, communication(sub), value, pdo_.label() + " " + text).optional = true;
     };
     step(pdo_.has_inhibit, 3, pdo_.inhibit_time,
-         concat("inhibit time ", pdo_.inhibit_time, " x ", unit_text()));
+         concat("inhibit time ", pdo_.inhibit_time, " x ", time_text(pdo_.inhibit_unit_us)));
     step(pdo_.has_event_timer, 5, pdo_.event_timer,
          concat(pdo_.is_tpdo ? "event timer " : "deadline ", pdo_.event_timer, " ms"));
     step(pdo_.has_sync_start, 6, pdo_.sync_start, concat("SYNC start value ", pdo_.sync_start));

@@ -39,10 +39,6 @@ std::string list_of(const std::vector<NumberRange>& ranges) {
   return text;
 }
 
-std::string time_text(std::uint64_t us) {
-  return us % 1000 == 0 ? concat(us / 1000, " ms") : concat(us, " us");
-}
-
 std::vector<std::string> device_notes(const NodePdos& node) {
   std::vector<std::string> notes;
   if (node.node.data == nullptr) return notes;

@@ -55,7 +55,7 @@ void VirtualDaemon::start() {
                 },
             .wait = [this](Time next, Time latest) { wait(next, latest); }};
   if (meddle_) meddle_(round_);
-  wake_ = port_.now() + some(longest_step);
+  wake_ = port_.now() + random_.up_to(longest_step);
   waits_ = false;
   stalled_until_ = {};
 }
@@ -67,11 +67,6 @@ void VirtualDaemon::kill() {
   wake_ = never;
 }
 
-Time VirtualDaemon::some(Time longest) noexcept {
-  return Time{1 +
-              static_cast<Time::rep>(random_.next() % static_cast<std::uint64_t>(longest.count()))};
-}
-
 Time VirtualDaemon::next() const noexcept {
   if (!runs()) return never;
   const Time wake = waits_ ? std::min(wake_, lcm_.next_arrival()) : wake_;
@@ -80,10 +75,10 @@ Time VirtualDaemon::next() const noexcept {
 
 void VirtualDaemon::act(Time now) {
   if (std::exchange(waits_, false)) {
-    wake_ = now + some(longest_wake_up);
+    wake_ = now + random_.up_to(longest_wake_up);
     return;
   }
-  wake_ = now + some(longest_step);
+  wake_ = now + random_.up_to(longest_step);
   round_.step();
 }
 

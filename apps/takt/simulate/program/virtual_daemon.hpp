@@ -81,7 +81,6 @@ class VirtualDaemon final : public Actor, private FrontGuest {
 
  private:
   void wait(Time next_image, Time latest) noexcept;
-  Time some(Time longest) noexcept;
   void take(const Reply&) override {}
   void hear(const Event& event) override;
   void see(const ImageView& image) override;
