@@ -1,7 +1,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <optional>
 
 #include "master/wire/bytes.hpp"
 #include "master/wire/frame.hpp"
@@ -30,8 +29,8 @@ constexpr Frame encode(const Emcy& emcy) noexcept {
   return frame;
 }
 
-/// Decodes an EMCY of any length; missing bytes count as zero. This function is for devices whose
-/// EMCY has another COB-ID than that of the predefined connection set.
+/// Decodes an EMCY of any length; missing bytes count as zero. Its COB-ID may be another one than
+/// that of the predefined connection set.
 constexpr Emcy emcy_of(NodeId node, const Frame& frame) noexcept {
   std::array<std::uint8_t, 8> bytes{};
   for (std::size_t i = 0; i < frame.length && i < bytes.size(); ++i) bytes[i] = frame.data[i];
@@ -39,14 +38,6 @@ constexpr Emcy emcy_of(NodeId node, const Frame& frame) noexcept {
               .code = load_le<std::uint16_t>(std::span{bytes}),
               .error_register = bytes[2],
               .manufacturer = {bytes[3], bytes[4], bytes[5], bytes[6], bytes[7]}};
-}
-
-/// Decodes an EMCY of the predefined connection set. Returns std::nullopt if the frame is not one.
-constexpr std::optional<Emcy> decode_emcy(const Frame& frame) noexcept {
-  if (frame.id.is_extended() || frame.rtr || (frame.id.id() & ~0x7FU) != 0x080) return {};
-  const auto node = NodeId::from(frame.id.id() & 0x7F);
-  if (!node) return {};
-  return emcy_of(*node, frame);
 }
 
 }  // namespace takt

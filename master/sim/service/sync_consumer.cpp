@@ -27,10 +27,7 @@ SyncConsumer::SyncConsumer(ObjectStore& store, EmcyProducer& emcy)
       window_{store.find({0x1007, 0})},
       overflow_{store.find({0x1019, 0})} {}
 
-void SyncConsumer::reset() noexcept {
-  deadline_ = window_end_ = never;
-  last_sync_ = Time{};
-}
+void SyncConsumer::reset() noexcept { deadline_ = window_end_ = never; }
 
 CobId SyncConsumer::id() const noexcept {
   return cob_ == nullptr ? CobId::base(0x080) : cob_id(cob_->value);
@@ -42,7 +39,6 @@ std::uint8_t SyncConsumer::on_sync(const Frame& frame, Time now) noexcept {
   deadline_ = period == 0 ? never : now + expected + std::max(expected / 2, least_patience);
   const std::uint64_t window = value_of(window_);
   window_end_ = window == 0 ? never : now + std::chrono::microseconds{window};
-  last_sync_ = now;
   emcy_.clear(sync_missing);
   const bool counted = value_of(overflow_) != 0;
   if (frame.length != (counted ? 1 : 0)) {

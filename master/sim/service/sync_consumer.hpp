@@ -27,7 +27,6 @@ class SyncConsumer {
   Time deadline() const noexcept { return deadline_; }
   /// End of the synchronous window of the newest SYNC; `never` means no window.
   Time window_end() const noexcept { return window_end_; }
-  Time last_sync() const noexcept { return last_sync_; }
 
   Abort check_write(const Object& object, std::uint64_t raw) const noexcept;
 
@@ -40,7 +39,6 @@ class SyncConsumer {
   bool may_produce_ = false;  ///< bit 30 of 0x1005 may be set
   Time deadline_ = never;
   Time window_end_ = never;
-  Time last_sync_{};
 };
 
 }  // namespace takt::sim
