@@ -76,7 +76,7 @@ std::vector<DeviceData> load_device_data(const std::vector<fs::path>& folders, F
   for (const fs::path& folder : folders) {
     for (const fs::path& file : files_of(folder, findings)) {
       if (!known.insert(file.stem().string()).second) continue;
-      auto entry = read_device_data(read_yaml_file(file).value_or(""), file.string(), findings);
+      auto entry = read_device_data(read_limited_file(file).value_or(""), file.string(), findings);
       if (entry) entries.push_back(std::move(*entry));
     }
   }

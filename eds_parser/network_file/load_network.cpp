@@ -55,7 +55,7 @@ class Loader {
   Loader(const fs::path& path, DeviceDataUse use) : path_{path}, use_{use} {}
 
   LoadedNetwork run(const WhatIf& changes) {
-    const auto text = read_yaml_file(path_);
+    const auto text = read_limited_file(path_);
     if (!text) {
       error({}, "no-file", why_unreadable(path_));
       return std::move(out_);

@@ -238,7 +238,7 @@ YamlTree YamlTree::parse(std::string_view text, const std::string& file, Finding
   return tree;
 }
 
-std::optional<std::string> read_yaml_file(const std::filesystem::path& path) {
+std::optional<std::string> read_limited_file(const std::filesystem::path& path) {
   std::error_code error;
   std::ifstream in{path, std::ios::binary};
   if (!std::filesystem::is_regular_file(path, error) || !in) return {};

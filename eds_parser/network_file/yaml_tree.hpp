@@ -58,6 +58,6 @@ std::string_view name(YamlNode::Kind kind) noexcept;
 
 /// Reads the text of a file, up to one byte more than a YamlTree accepts. Returns std::nullopt if
 /// there is no such file or it can't be read.
-std::optional<std::string> read_yaml_file(const std::filesystem::path& path);
+std::optional<std::string> read_limited_file(const std::filesystem::path& path);
 
 }  // namespace takt

@@ -318,7 +318,7 @@ std::size_t ImportReport::count(KeyFate fate) const noexcept {
 ImportReport import_report(const std::filesystem::path& path) {
   const LoadedNetwork network = load_network(path);
   Findings syntax;
-  const std::string text = read_yaml_file(path).value_or("");
+  const std::string text = read_limited_file(path).value_or("");
   const YamlTree tree = YamlTree::parse(text, path.string(), syntax);
   std::vector<Row> rows;
   if (tree.root() != nullptr) rows = RowCollector{}.collect(*tree.root());

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
 
 #include "eds_parser/ini/ini.hpp"
 #include "eds_parser/ini/value_reader.hpp"
+#include "eds_parser/network_file/yaml_tree.hpp"
 #include "eds_parser/read/eds.hpp"
 #include "eds_parser/report/text.hpp"
 
@@ -18,18 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t longest_file = std::size_t{1} << 20U;
 constexpr std::size_t longest_name = 40;
-
-std::string text_of_nodelist(const fs::path& path) {
-  std::error_code failed;
-  if (!fs::is_regular_file(path, failed)) return {};
-  std::ifstream in{path, std::ios::binary};
-  std::string text(longest_file + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return text;
-}
 
 std::string lower(std::string_view text) {
   std::string out{text};
@@ -97,8 +86,8 @@ class Importer {
         values_{report_, std::nullopt} {}
 
   ImportedNodelist run() {
-    const std::string text = text_of_nodelist(cpj_);
-    if (text.empty() || text.size() > longest_file) {
+    const std::string text = read_limited_file(cpj_).value_or("");
+    if (text.empty() || text.size() > YamlTree::max_text) {
       wrong({}, "no-file", "can't be read, is empty, or is larger than 1 MB");
       return finish();
     }
