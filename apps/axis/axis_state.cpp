@@ -1,6 +1,5 @@
 #include "apps/axis/axis_state.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

@@ -1,6 +1,5 @@
 #include "apps/command_line/whole_number.hpp"
 
-#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <fmt/format.h>

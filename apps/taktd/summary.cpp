@@ -1,6 +1,5 @@
 #include "apps/taktd/summary.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
 
 #include "master/lcm/printable_text.hpp"

@@ -7,7 +7,6 @@
 
 #include "apps/takt/learn/device_files.hpp"
 #include "apps/takt/learn/learned_pdos.hpp"
-#include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/dictionary/standard_types.hpp"
 #include "eds_parser/ini/eds_lists.hpp"
 #include "eds_parser/write/object_sections.hpp"

@@ -10,7 +10,6 @@
 #include "apps/takt/learn/sdo_value_text.hpp"
 #include "apps/takt/learn/yaml_text.hpp"
 #include "eds_parser/dictionary/integer_of.hpp"
-#include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/specification/object_units.hpp"
 #include "master/wire/sdo_abort.hpp"
 

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/plan/boot/boot_sections.hpp"
 

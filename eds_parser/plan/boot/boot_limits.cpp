@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <set>
 
 #include "eds_parser/dictionary/integer_of.hpp"

@@ -5,7 +5,6 @@
 #include <bit>
 #include <cstdint>
 #include <fmt/format.h>
-#include <system_error>
 #include <utility>
 
 #include "eds_parser/table/number_in.hpp"

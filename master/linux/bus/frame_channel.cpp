@@ -1,6 +1,5 @@
 #include "master/linux/bus/frame_channel.hpp"
 
-#include <algorithm>
 #include <cerrno>
 
 #include "master/linux/bus_name.hpp"
