@@ -45,27 +45,25 @@ Line bus_line(const status_t& status) {
   static constexpr const char* states[] = {"error active", "error passive", "BUS OFF",
                                            "INTERFACE DOWN"};
   const auto state = static_cast<std::size_t>(std::clamp<int>(status.bus_state, 0, 3));
-  Line line;
-  line.add(status.bus, Paint::title)
+  return Line{}
+      .add(status.bus, Paint::title)
       .add(fmt::format(" on {}  {} kbit/s  ", status.interface, status.bitrate / 1000))
       .add(states[state], state == 0 ? Paint::good : Paint::bad)
       .add(fmt::format("  {:.3f} ms  cycle {}", static_cast<double>(status.period_ns) / 1e6,
                        status.cycle))
       .add(fmt::format("  missed {}", status.cycles_missed), count_paint(status.cycles_missed))
       .add(fmt::format("  late {}", status.cycles_late), count_paint(status.cycles_late));
-  return line;
 }
 
 Line load_line(const status_t& status) {
-  Line line;
-  line.add("load ")
+  return Line{}
+      .add("load ")
       .add(bar(status.bus_load, 20), load_paint(status.bus_load))
       .add(fmt::format(" {:>3.0f} %   ", 100.0 * status.bus_load))
       .add(fmt::format("{} in  {} out", status.frames_received, status.frames_sent), Paint::dim)
       .add(fmt::format("  not sent {}", status.send_failures), count_paint(status.send_failures))
       .add(fmt::format("  lost {}", status.receive_overruns), count_paint(status.receive_overruns))
       .add(fmt::format("  error frames {}", status.error_frames), count_paint(status.error_frames));
-  return line;
 }
 
 Line diagnosis_line(const diagnosis_t& diagnosis) {
@@ -90,13 +88,12 @@ Line diagnosis_line(const diagnosis_t& diagnosis) {
 Line sync_line(const sync_status_t& sync) {
   const bool locked = sync.state == static_cast<int>(SyncState::locked);
   const bool lost = sync.state == static_cast<int>(SyncState::lost);
-  Line line;
-  line.add("SYNC ")
+  return Line{}
+      .add("SYNC ")
       .add(sync.text, locked ? Paint::good
                       : lost ? Paint::bad
                              : Paint::warning)
       .add(fmt::format("   lost {} times", sync.losses), count_paint(sync.losses));
-  return line;
 }
 
 Line node_line(const node_status_t& node) {
@@ -105,8 +102,8 @@ Line node_line(const node_status_t& node) {
   const std::string emcy =
       node.emcy_count == 0 ? "-"
                            : fmt::format("{} x {:04X}", node.emcy_count, node.last_emcy & 0xFFFF);
-  Line line;
-  line.add(right(std::to_string(node.node_id), 5))
+  return Line{}
+      .add(right(std::to_string(node.node_id), 5))
       .add("  ")
       .add(left(node.name, 18), Paint::title)
       .add(left(nmt_name(node.nmt_state), 17), nmt_paint(node.nmt_state))
@@ -116,7 +113,6 @@ Line node_line(const node_status_t& node) {
       .add(right(std::to_string(node.pdos_missing), 9), count_paint(node.pdos_missing))
       .add("  ")
       .add(node.holder.empty() ? "-" : node.holder, Paint::dim);
-  return line;
 }
 
 const histogram_t* find(const timing_t& timing, std::string_view name) {
@@ -150,8 +146,8 @@ Line signal_line(const BusView& bus, std::size_t at, double si) {
   const bool scaled = !signal.unit.empty();
   const auto type = static_cast<DataType>(signal.data_type);
   const bool stale = bus.stale(at);
-  Line line;
-  line.add(left(signal.node + "." + signal.name, 44), stale ? Paint::bad : Paint::plain)
+  return Line{}
+      .add(left(signal.node + "." + signal.name, 44), stale ? Paint::bad : Paint::plain)
       .add(fmt::format("{:04X}:{:02X} ", signal.index & 0xFFFF, signal.sub & 0xFF), Paint::dim)
       .add(signal.output ? "out " : "in  ", Paint::dim)
       .add(right(scaled ? si_text(si) : std::string{}, 14))
@@ -161,7 +157,6 @@ Line signal_line(const BusView& bus, std::size_t at, double si) {
                  14),
            scaled ? Paint::dim : Paint::plain)
       .add(stale ? "  stale" : "", Paint::bad);
-  return line;
 }
 
 /// Sorts the signals by node and then in the order of the layout, because people look for a node.
@@ -202,10 +197,9 @@ Line event_line(const event_t& event) {
   static constexpr Paint paints[] = {Paint::plain, Paint::warning, Paint::bad};
   const std::time_t seconds = event.utime / 1'000'000;
   const std::string_view text{event.text};
-  Line line;
-  line.add(fmt::format("{:%H:%M:%S} ", fmt::localtime(seconds)), Paint::dim)
+  return Line{}
+      .add(fmt::format("{:%H:%M:%S} ", fmt::localtime(seconds)), Paint::dim)
       .add(text.substr(0, text.find('\n')), paints[std::clamp<int>(event.severity, 0, 2)]);
-  return line;
 }
 
 }  // namespace
