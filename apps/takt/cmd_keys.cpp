@@ -44,10 +44,10 @@ void add_keys(CLI::App& app, int& exit_code) {
   fresh.add_option("FILE", options.file, "key file to make; the file must not exist yet")
       ->required();
   fresh.add_option("--name", options.name, "name of the key")->capture_default_str();
-  auto [look, known] = add_command<KeysOptions>(
+  auto [look, check_options] = add_command<KeysOptions>(
       *verb, exit_code, "check",
       "checks permissions and contents, and prints the names of the keys", check);
-  look.add_option("FILE", known.file, "the key file")->required();
+  look.add_option("FILE", check_options.file, "the key file")->required();
 }
 
 }  // namespace takt

@@ -23,7 +23,8 @@ struct MappedObject {
 /// A PDO as the values of the file configure it; for a DCF these are its ParameterValues.
 /// Directions are those of the device: the device sends a TPDO.
 struct PdoDescription : PdoNumber {
-  /// Sub 1 with its flags; empty if there is no value or the node-ID is unknown.
+  /// The value of sub-index 1 with its flags. It is empty if the file has no value, or if the value
+  /// needs an unknown node-ID.
   std::optional<std::uint32_t> cob_id_raw;
   /// The number that is added to an unknown node-ID, as in `$NODEID+0x180`. Empty if the COB-ID is
   /// absolute or the node-ID is known.

@@ -22,7 +22,7 @@ bool read_network(std::string_view network, LcmUrl& url) {
   if (colon != 0 && !network.empty()) url.address = network.substr(0, colon);
   if (colon == network.npos) return true;
   const auto port = number_in<decltype(url.port)>(network.substr(colon + 1));
-  url.port = port.value_or(url.port);
+  if (port) url.port = *port;
   return port.has_value();
 }
 

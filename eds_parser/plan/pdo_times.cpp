@@ -48,10 +48,10 @@ class TimeJudge {
 
   void timer(const EffectivePdo& pdo, const SenderTimes& times) {
     if (times.timer_us == 0 || times.timer_us >= times.inhibit_us) return;
-    const std::string inhibit = time_text(times.inhibit_us);
+    const std::string inhibit = microseconds_text(times.inhibit_us);
     report_.warning(
         pos(pdo, &PdoSpec::event_timer), "event-timer", "the event timer of ", label(pdo), " (",
-        time_text(times.timer_us), ") is shorter than its inhibit time (", inhibit,
+        microseconds_text(times.timer_us), ") is shorter than its inhibit time (", inhibit,
         "): the device sends the PDO every ", inhibit, ". Write `event_timer` of at least ",
         (times.inhibit_us + 999) / 1000, " (ms), or a shorter `inhibit_time` (in 100 us)");
   }
@@ -61,9 +61,10 @@ class TimeJudge {
     const std::uint64_t period = std::max(times.inhibit_us, times.timer_us);
     if (!pdo.is_tpdo || wanted == 0 || wanted >= period) return;
     report_.warning(pos(pdo, &PdoSpec::event_deadline), "event-timer", "`event_deadline` of ",
-                    label(pdo), " (", time_text(wanted),
-                    ") is shorter than the time between two of its frames (", time_text(period),
-                    " by ", period == times.inhibit_us ? "its inhibit time" : "its event timer",
+                    label(pdo), " (", microseconds_text(wanted),
+                    ") is shorter than the time between two of its frames (",
+                    microseconds_text(period), " by ",
+                    period == times.inhibit_us ? "its inhibit time" : "its event timer",
                     "): good frames count as missing");
   }
 
@@ -74,8 +75,8 @@ class TimeJudge {
     if (times.inhibit_us >= longest) return;
     report_.warning(
         pos(pdo, &PdoSpec::inhibit_time), "inhibit-time", "the inhibit time of ", label(pdo), " (",
-        time_text(times.inhibit_us), ") is shorter than its frame (up to ", time_text(longest),
-        " at ", bitrate_ / 1000,
+        microseconds_text(times.inhibit_us), ") is shorter than its frame (up to ",
+        microseconds_text(longest), " at ", bitrate_ / 1000,
         " kbit/s): the PDO can fill the bus. The inhibit time runs from the first attempt to send, "
         "so write more than the longest wait for the bus, or 0 for no inhibit time");
   }

@@ -67,7 +67,7 @@ std::string concat(const Parts&... parts) {
 }
 
 /// Returns a time in microseconds as text: "50 ms", "100 us".
-inline std::string time_text(std::uint64_t us) {
+inline std::string microseconds_text(std::uint64_t us) {
   return us % 1000 == 0 ? concat(us / 1000, " ms") : concat(us, " us");
 }
 

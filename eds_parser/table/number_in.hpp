@@ -5,8 +5,8 @@
 
 namespace takt {
 
-/// Reads a number, a whole one to the given base or else to base 10. Returns std::nullopt if the
-/// whole text is not one number, or if the number is too large for `T`.
+/// Reads a number. `base` is the base of a whole number, 10 by default; a real number takes none.
+/// Returns std::nullopt if the whole text is not one number, or if the number is too large for `T`.
 template <class T, class... Base>
 std::optional<T> number_in(std::string_view text, Base... base) noexcept {
   T value{};

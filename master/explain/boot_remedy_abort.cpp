@@ -10,7 +10,7 @@
 namespace takt {
 namespace {
 
-/// "TPDO2" for a communication or mapping object, "the PDO" for other objects.
+/// Returns "TPDO2" for a communication or mapping object, and "the PDO" for other objects.
 std::string pdo_name(ObjectKey object) {
   const unsigned area = object.index & 0xFE00U;
   const unsigned number = (object.index & 0x1FFU) + 1;

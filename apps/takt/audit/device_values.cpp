@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "eds_parser/table/little_endian.hpp"
+
 namespace takt {
 namespace {
 

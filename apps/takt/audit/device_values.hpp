@@ -9,7 +9,6 @@
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/device_table.hpp"
-#include "eds_parser/table/little_endian.hpp"
 
 namespace takt {
 

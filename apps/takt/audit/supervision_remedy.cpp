@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/takt/audit/supervision.hpp"
+#include "eds_parser/table/little_endian.hpp"
 
 namespace takt {
 namespace {

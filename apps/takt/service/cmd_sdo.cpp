@@ -240,24 +240,24 @@ void add_sdo(CLI::App& app, int& exit_code) {
       "  takt sdo download 5 1F50:1 firmware.bin --timeout 10000\n"
       "Files have at most 16 MiB; Ctrl-C aborts a transfer on the bus.\n"
       "Types: bool, i8..i64, u8..u64, f32, f64, string, hex.");
-  auto [reading, what] = add_verb(*sdo, exit_code, "read", "prints one value", read);
-  reading.add_option("TYPE", what.type, "u16, i32, f32, string, hex ...");
-  auto [writing, value] = add_verb(*sdo, exit_code, "write", "writes one value", write);
-  writing.add_option("TYPE", value.type, "u16, i32, f32, string, hex ...")->required();
-  writing.add_option("VALUE", value.value, "decimal, 0x hex, or text")->required();
-  auto [uploading, target] =
+  auto [reading, read_options] = add_verb(*sdo, exit_code, "read", "prints one value", read);
+  reading.add_option("TYPE", read_options.type, "u16, i32, f32, string, hex ...");
+  auto [writing, write_options] = add_verb(*sdo, exit_code, "write", "writes one value", write);
+  writing.add_option("TYPE", write_options.type, "u16, i32, f32, string, hex ...")->required();
+  writing.add_option("VALUE", write_options.value, "decimal, 0x hex, or text")->required();
+  auto [uploading, upload_options] =
       add_verb(*sdo, exit_code, "upload", "reads an object of the device into a file", upload_file);
-  uploading.add_option("FILE", target.file)->required();
+  uploading.add_option("FILE", upload_options.file)->required();
   uploading
-      .add_option("--limit", target.limit,
+      .add_option("--limit", upload_options.limit,
                   "most bytes, as 64K or 2M; takt aborts a longer transfer (16M)")
       ->transform(CLI::AsSizeValue(false))
       ->transform(CLI::Validator{[](std::string& text) { return octal_trouble(text); }, ""})
       ->check(CLI::Range(std::size_t{1}, most_file_bytes))
       ->type_name("BYTES");
-  auto [downloading, source] = add_verb(*sdo, exit_code, "download",
-                                        "writes a file to an object of the device", download_file);
-  downloading.add_option("FILE", source.file)->required();
+  auto [downloading, download_options] = add_verb(
+      *sdo, exit_code, "download", "writes a file to an object of the device", download_file);
+  downloading.add_option("FILE", download_options.file)->required();
 }
 
 }  // namespace takt

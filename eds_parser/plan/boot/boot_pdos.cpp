@@ -143,8 +143,9 @@ class PdoBoot : BootPart {
       if (!has) return;
       steps.integer(action, communication(sub), value, pdo_.label() + " " + text).optional = true;
     };
-    step(pdo_.has_inhibit, 3, pdo_.inhibit_time,
-         concat("inhibit time ", pdo_.inhibit_time, " x ", time_text(pdo_.inhibit_unit_us)));
+    step(
+        pdo_.has_inhibit, 3, pdo_.inhibit_time,
+        concat("inhibit time ", pdo_.inhibit_time, " x ", microseconds_text(pdo_.inhibit_unit_us)));
     step(pdo_.has_event_timer, 5, pdo_.event_timer,
          concat(pdo_.is_tpdo ? "event timer " : "deadline ", pdo_.event_timer, " ms"));
     step(pdo_.has_sync_start, 6, pdo_.sync_start, concat("SYNC start value ", pdo_.sync_start));

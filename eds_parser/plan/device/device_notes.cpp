@@ -52,14 +52,15 @@ std::vector<std::string> device_notes(const NodePdos& node) {
   for (const TimeoutEdit& edit : data.timeouts) {
     const SdoObjectTimeout& slow = edit.timeout;
     add(slow.sub ? to_string(ObjectKey{slow.index, *slow.sub}) : hex(slow.index), ": SDO time-out ",
-        time_text(static_cast<std::uint64_t>(slow.timeout / 1us)));
+        microseconds_text(static_cast<std::uint64_t>(slow.timeout / 1us)));
   }
   for (const PdoRule& rule : data.pdos) add(rule_text(rule));
   const InhibitRule& inhibit = data.inhibit;
-  const std::string by_default = time_text(inhibit.us(inhibit.factory)) + " by default";
+  const std::string by_default = microseconds_text(inhibit.us(inhibit.factory)) + " by default";
   if (inhibit.unit_us != 100 || inhibit.least != 0) {
-    add("inhibit times in steps of ", time_text(inhibit.unit_us), ", at least ",
-        time_text(inhibit.us(inhibit.least)), inhibit.factory == 0 ? "" : ", " + by_default);
+    add("inhibit times in steps of ", microseconds_text(inhibit.unit_us), ", at least ",
+        microseconds_text(inhibit.us(inhibit.least)),
+        inhibit.factory == 0 ? "" : ", " + by_default);
   } else if (inhibit.factory != 0) {
     add("inhibit times of ", by_default);
   }

@@ -151,11 +151,11 @@ class Judge {
       report_.error(pos, "device-data", "the inhibit time of ", label(pdo), why...);
     };
     if (us % rule.unit_us != 0) {
-      refuse(" is ", time_text(us), "; ", data_.name, " counts ", key, " in ",
-             time_text(rule.unit_us), source(rule.fact));
+      refuse(" is ", microseconds_text(us), "; ", data_.name, " counts ", key, " in ",
+             microseconds_text(rule.unit_us), source(rule.fact));
     } else if (us < rule.us(rule.least)) {
-      refuse(" is ", time_text(us), "; ", data_.name, " takes no less than ",
-             time_text(rule.us(rule.least)), source(rule.fact));
+      refuse(" is ", microseconds_text(us), "; ", data_.name, " takes no less than ",
+             microseconds_text(rule.us(rule.least)), source(rule.fact));
     } else if (us / rule.unit_us > 0xFFFF) {
       refuse(" does not fit into ", key);
     }

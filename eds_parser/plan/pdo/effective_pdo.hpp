@@ -10,6 +10,7 @@
 #include "eds_parser/specification/network_spec.hpp"
 #include "eds_parser/table/data_type.hpp"
 #include "eds_parser/table/firmware.hpp"
+#include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/pdo_number.hpp"
 
 namespace takt {

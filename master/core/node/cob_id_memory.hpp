@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/pdo_number.hpp"
 
 namespace takt {

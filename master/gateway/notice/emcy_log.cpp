@@ -59,13 +59,14 @@ std::string pack_texts(std::span<const EmcyRecord> records, std::span<const Emcy
 }
 
 std::map<std::uint16_t, std::string> unpack_texts(std::string_view lines) {
-  constexpr std::size_t code_width = 7;  // "0x1000 "
+  constexpr std::size_t digits = 4;
+  constexpr std::size_t code_width = digits + 3;  // "0x1000 "
   std::map<std::uint16_t, std::string> texts;
   while (!lines.empty()) {
     const std::string_view line = lines.substr(0, lines.find('\n'));
     lines.remove_prefix(std::min(lines.size(), line.size() + 1));
     if (line.size() <= code_width || !line.starts_with("0x")) continue;
-    const auto code = number_in<std::uint16_t>(line.substr(2, code_width - 3), 16);
+    const auto code = number_in<std::uint16_t>(line.substr(2, digits), 16);
     if (code) texts[*code] = line.substr(code_width);
   }
   return texts;
