@@ -8,7 +8,7 @@ How to try it on the simulated bus of share/demo/two_axes.yaml:
 
     python3 -m venv venv && venv/bin/pip install lcm
     lcm-gen -p --ppath venv/lib/python3*/site-packages share/lcm/*.lcm    # makes the module takt
-    taktd share/demo/two_axes.yaml --bus sim &
+    taktd share/demo/two_axes.yaml --bus sim --motions &
     venv/bin/python apps/python/motion.py demo shoulder 1.5 --velocity 3 --acceleration 20
 
 The program enables the drive, sends one motion_command_t, and then a sign of life each 50 ms. If it

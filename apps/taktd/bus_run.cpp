@@ -58,6 +58,7 @@ std::optional<Exit> BusRun::start() {
                                                    .observe = observe,
                                                    .interface = bus_name_,
                                                    .realtime = to_string(realtime_),
+                                                   .motions = front_.options.motions,
                                                    .typed = network_.lcm.typed},
                                      [this](const Notice& notice) { on_notice(notice); });
   recorder_.attach(*bridge_);

@@ -1,28 +1,21 @@
 #include "eds_parser/table/motion_axes.hpp"
 
-#include <algorithm>
 #include <cstddef>
 
 namespace takt {
 namespace {
 
-constexpr std::uint16_t index_step = 0x800;  // between two axes of one device
 constexpr std::uint8_t axes_of_device = 8;
 constexpr std::size_t most_motion_axes = 127;
 
 std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, std::uint8_t number) {
-  const auto find = [&](std::uint16_t base, bool output) -> std::optional<SignalIndex> {
-    const ObjectKey object{static_cast<std::uint16_t>(base + number * index_step), 0};
-    const auto found = std::ranges::find_if(plan.layout.signals, [&](const Signal& signal) {
-      return signal.node_index == node && signal.object == object && signal.output == output;
-    });
-    if (found == plan.layout.signals.end()) return std::nullopt;
-    return static_cast<SignalIndex>(found - plan.layout.signals.begin());
+  const auto find = [&](std::uint16_t index, bool output) {
+    return plan.layout.find(node, axis_object(number, index), output);
   };
   const auto statusword = find(0x6041, false);
   const auto position = find(0x6064, false);
   const auto target = find(0x607A, true);
-  if (!statusword || !position || !target) return std::nullopt;
+  if (!statusword || !position || !target || find(0x60B0, true)) return std::nullopt;
   const auto signal = [&](SignalIndex index) { return plan.layout.signals[index]; };
   const auto offset = find(0x60B1, true);
   const bool same_unit = offset && !signal(*offset).unit.empty() &&
@@ -33,6 +26,7 @@ std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, st
                     .statusword = *statusword,
                     .position = *position,
                     .target = *target,
+                    .controlword = find(0x6040, true),
                     .velocity = find(0x606C, false),
                     .mode = shown_mode ? shown_mode : find(0x6060, true),
                     .velocity_offset = same_unit ? offset : std::nullopt};

@@ -5,6 +5,9 @@ namespace takt {
 void Bridge::on_motion(Bytes data) {
   const auto command = decode<motion_command_t>(data);
   if (!command) return report_damaged(channels_.motion_command, command.error());
+  if (!options_.motions) {
+    return warn("motion_refused", "taktd runs no motions: it was started without --motions");
+  }
   const Time now = clocks_.now();
   if (waited(command->cycle, now)) return commands_.discard();
   motions_.take(*command, context_at(now));
@@ -15,6 +18,7 @@ void Bridge::serve_motions() {
   if (!motions_.active()) return;
   const Time now = clocks_.now();
   for (motion::MotionEnd end; master_.take(end);) motions_.take(end, context_at(now));
+  motions_.serve(context_at(now));
   const std::uint64_t published = motion_reports_.cycle;
   master_.motions(motion_reports_);
   if (motion_reports_.cycle == published) return;

@@ -38,6 +38,7 @@ std::expected<double, Defect> possible(const AxisTask& task, Goal goal, double d
                             .max = std::max(task.range.max, task.from.position)};
   double time = motion.possible(duration);
   for (int i = 0; i < 50; ++i) {
+    if (!std::isfinite(time)) return std::unexpected{Defect::not_finite};
     if (stays_inside(range, motion.profile(time), task.from)) return time;
     time = motion.possible(1.1 * time);
   }

@@ -16,7 +16,7 @@ enum class Synchronisation : std::uint8_t {
 
 /// The reason why an axis can't do its task.
 enum class Defect : std::uint8_t {
-  not_finite,              ///< a number is infinite or NaN
+  not_finite,              ///< a number of the task or of its motion is infinite or NaN
   velocity_limits,         ///< min_velocity < 0 < max_velocity does not hold
   acceleration_limits,     ///< min_acceleration < 0 < max_acceleration does not hold
   jerk_limit,              ///< jerk is not positive

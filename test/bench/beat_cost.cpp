@@ -36,14 +36,14 @@ struct MovingAxes {
       order.profile = planned[i].profile;
       order.stop = limits;
       order.timeout = 1'000'000'000;
-      motions.take(order, beat);
+      motions.take(order);
     }
     for (int i = 0; i < 100; ++i) run();
   }
 
   std::span<const AxisReport> run() {
     ++beat;
-    return motions.run(beat, beat, inputs);
+    return motions.run(beat, inputs);
   }
 
   AxisMotions motions;

@@ -42,7 +42,8 @@ class RestlessFront {
       stopped_ += end.order.outcome == motion::Outcome::stopped;
     }
     if (run_.world.now() < 1500ms) return enable();
-    if (random_() % 200 != 0) exchange.motions.push({});
+    if (random_() % 200 != 0)
+      exchange.motions.push({.kind = motion::MessageKind::heard, .cycle = ~0ULL});
     if (now_.cycle == 0) return;
     for (std::uint8_t axis = 0; axis < now_.axes.size(); ++axis) {
       if (random_() % 50 == 0 && now_.axes[axis].state == AxisState::standing) move(axis);
@@ -62,7 +63,7 @@ class RestlessFront {
       if (object == 0x607A) run_.exchange->set_points.set(i, 0, 500);
     }
     run_.exchange->set_points.publish(run_.world.now());
-    run_.exchange->motions.push({});
+    run_.exchange->motions.push({.kind = motion::MessageKind::heard, .cycle = ~0ULL});
   }
   void move(std::uint8_t axis) {
     const motion::State from = now_.axes[axis].commanded;
@@ -75,7 +76,7 @@ class RestlessFront {
     message.order = {.id = ++id_,
                      .axis = axis,
                      .group = axis,
-                     .begin = now_.beat + 3,
+                     .begin = now_.cycle + 3,
                      .from = from,
                      .profile = planned[0].profile,
                      .stop = limits,

@@ -87,6 +87,7 @@ class Gateway {
   static takt::BridgeOptions options() {
     takt::BridgeOptions options;
     options.session = session;
+    options.motions = true;
     return options;
   }
   /// The newest cycle, one near it, or any.

@@ -14,7 +14,7 @@ python=$(sh "$here/test/vcan/python_environment.sh" "$build/judges")
 lcm-gen -p --ppath "$tmp" "$here"/share/lcm/*.lcm
 
 export LCM_DEFAULT_URL=tcpq://127.0.0.1:$((20000 + $$ % 12000))
-"$bin/taktd" "$here/share/demo/two_axes.yaml" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/log" &
+"$bin/taktd" "$here/share/demo/two_axes.yaml" --bus sim --motions --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/log" &
 daemon=$!
 for _ in $(seq 600); do grep -q 'serving' "$tmp/log" && break || sleep 0.1; done
 # The program ends where no image comes for a second, as may be on a busy machine: one of three runs has to be good.
@@ -23,11 +23,13 @@ for _ in 1 2 3; do
   PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/axes.py" demo 2 && moved=yes && break
 done
 [ "$moved" ] || { cat "$tmp/log" >&2; exit 1; }
-# taktd runs the motions of the other program, so a pause of the machine does not end them.
-motion() { PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/motion.py" demo "$@"; }
-motion shoulder 1.5 --velocity 3 --acceleration 20 >"$tmp/moved" || { cat "$tmp/log" >&2; exit 1; }
-grep -q '^the motion is done: shoulder is at 1\.[45]' "$tmp/moved" || { cat "$tmp/moved" >&2; exit 1; }
-motion elbow --jog -1 --for 1 --velocity 2 --acceleration 20 | grep -q '^the motion has stopped: elbow is at -'
-if motion shoulder 150 --velocity 3 --acceleration 20 2>"$tmp/refused"; then echo "a position outside was not refused" >&2; exit 1; fi
-grep -q 'would leave its range' "$tmp/refused" || { cat "$tmp/refused" >&2; exit 1; }
+# one_of_three COMMAND...: a motion stops where its program gets no processor for 500 ms, so one of three runs has to be good.
+one_of_three() { "$@" || "$@" || "$@" || { cat "$tmp/log" "$tmp/said" >&2; return 1; }; }
+motion() { PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/motion.py" demo "$@" >"$tmp/said" 2>&1; }
+moves() { motion shoulder 1.5 --velocity 3 --acceleration 20 && grep -q '^the motion is done: shoulder is at 1\.[45]' "$tmp/said"; }
+jogs() { motion elbow --jog -1 --for 1 --velocity 2 --acceleration 20; grep -q '^the motion has stopped: elbow is at -' "$tmp/said"; }
+refuses() { ! motion shoulder 150 --velocity 3 --acceleration 20 && grep -q 'would leave its range' "$tmp/said"; }
+one_of_three moves
+one_of_three jogs
+one_of_three refuses
 timeout 240 "$python" "$here/test/house/python_axes_faults.py" "$tmp"

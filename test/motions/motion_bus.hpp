@@ -138,6 +138,19 @@ class MotionBus {
     send(message);
   }
   void keep_alive() { send(command("alive", 0)); }
+  /// A command_t of one controlword.
+  void send_controlword(std::size_t axis, std::int64_t word) {
+    command_t message{};
+    message.schema = message_schema;
+    message.session = session;
+    message.instance = 5;
+    message.sender = "test";
+    message.cycle = static_cast<std::int64_t>(bridge.status().bus.cycle);
+    message.signals = {static_cast<std::int32_t>(*axes[axis].controlword)};
+    message.values = {word};
+    message.num_values = 1;
+    lcm.send(bridge.channels().command, message);
+  }
   /// What the newest motion_t says of an axis.
   axis_motion_t axis(std::size_t i) const {
     return i < lcm.motion.axes.size() ? lcm.motion.axes[i] : axis_motion_t{};
@@ -165,6 +178,7 @@ class MotionBus {
   static BridgeOptions options() {
     BridgeOptions made;
     made.session = session;
+    made.motions = true;
     return made;
   }
   std::optional<std::int64_t> value(std::size_t axis, std::uint16_t index) {

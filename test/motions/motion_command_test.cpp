@@ -75,6 +75,35 @@ TEST(MotionCommand, JitterAndStallsOfTheApplicationDoNotReachTheDrive) {
   EXPECT_FALSE(bus.said("motion_refused", "")) << bus.notices.back().text;
 }
 
+/// The set-points of one motion, while `speaks` decides in which cycles the application sends a
+/// sign of life.
+std::vector<std::int64_t> targets_of_motion(const std::function<bool(int cycle)>& speaks) {
+  MotionBus bus;
+  bus.enable();
+  motion_command_t message = bus.command("move", 1);
+  message.goals = {MotionBus::goal("shoulder", 12.0)};
+  bus.send(message);
+  std::vector<std::int64_t> targets;
+  for (int cycle = 0; cycle < 2500; ++cycle) {
+    bus.cycle();
+    targets.push_back(bus.target(0));
+    if (speaks(cycle)) bus.keep_alive();
+  }
+  return targets;
+}
+
+TEST(MotionCommand, AStallingApplicationGivesTheSameSetPointsAsAnIdealOne) {
+  const auto ideal = targets_of_motion([](int) { return true; });
+  const auto stalling = targets_of_motion(
+      [](int cycle) { return cycle % 150 == 0 || (cycle % 10 == 0 && cycle < 1000); });
+  EXPECT_EQ(ideal, stalling);
+  EXPECT_NEAR(static_cast<double>(ideal.back()) * MotionBus::scale, 12.0, 1e-3);
+  // Each cycle of the motion has a set-point of its own: 3 rad/s are 9.5 counts in a cycle.
+  int alike = 0;
+  for (std::size_t i = 200; i < 1800; ++i) alike += ideal[i] == ideal[i - 1];
+  EXPECT_EQ(alike, 0);
+}
+
 TEST(MotionCommand, AnAxisStopsWhenItsApplicationHasDiedAndThenItsDriveIsDisabled) {
   MotionBus bus;
   bus.enable();
@@ -125,9 +154,13 @@ TEST(MotionCommand, ADaemonThatWasStoppedForLongerThanTheTimeoutStopsTheAxisAtOn
   };
   ASSERT_TRUE(bus.run_until([&] { return bus.world.now() > 2990ms; }));
   ASSERT_EQ(bus.axis(0).state, moving);
+  const std::int64_t before = bus.target(0);
   ASSERT_TRUE(bus.run_until([&] { return bus.world.now() > 3500ms; }));
-  bus.run(4);
-  EXPECT_NE(bus.axis(0).state, moving);
+  bus.run(100);
+  EXPECT_LE(bus.axis(0).state, standing);
+  // One set-point may have been sent when the pause began.
+  EXPECT_NEAR(static_cast<double>(bus.target(0)), static_cast<double>(before), 60.0);
+  EXPECT_TRUE(bus.said("motion_stopped", "SYNC was missing"));
 }
 
 TEST(MotionCommand, AnotherProgramNeitherMovesNorStopsAHeldAxis) {
@@ -144,6 +177,30 @@ TEST(MotionCommand, AnotherProgramNeitherMovesNorStopsAHeldAxis) {
   EXPECT_EQ(bus.axis(0).state, moving);
   EXPECT_EQ(bus.axis(0).id, 1);
   EXPECT_TRUE(bus.said("command_refused", "belong to"));
+}
+
+TEST(MotionCommand, AMotionStopsWhenItsSenderKeepsOnlyAnotherNode) {
+  MotionBus bus;
+  bus.enable();
+  bus.move_one(1, 50.0);
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == moving; }, 20));
+  bus.each_cycle = [&] {
+    motion_command_t alive = bus.command("alive", 0);
+    alive.goals = {MotionBus::goal("elbow", 0.0)};
+    bus.send(alive);
+  };
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == stopping; }, 300));
+}
+
+TEST(MotionCommand, AHaltOfTheDriveStopsTheMotion) {
+  MotionBus bus;
+  bus.enable();
+  bus.move_one(1, 50.0);
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == moving; }, 20));
+  bus.send_controlword(0, 0x010F);
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == 0; }, 10));
+  EXPECT_EQ(bus.axis(0).outcome, stopped);
 }
 
 TEST(MotionCommand, AJogRunsUntilItsDeadManIsSilent) {
@@ -214,7 +271,10 @@ TEST(MotionCommand, RefusesWithTheReason) {
           "`limits:` of the network file allow 40");
   refusal([](Command& m) { m.goals[0].max_acceleration = -1.0; }, "must be above 0");
   refusal([&](Command& m) { m.goals[0].max_jerk = nan; }, "must be above 0");
-  refusal([&](Command& m) { m.goals[0].position = nan; }, "infinite or NaN");
+  refusal([&](Command& m) { m.goals[0].position = nan; }, "infinite, NaN or too large");
+  refusal([](Command& m) { m.goals[0].position = 1e13; }, "too large");
+  refusal([](Command& m) { m.goals[0].max_acceleration = 1e-10; }, "is not between");
+  refusal([](Command& m) { m.goals[0].max_jerk = 1e187; }, "is not between");
   refusal([&](Command& m) { m.goals[0].max_following_error = nan; }, "negative or NaN");
   refusal([](Command& m) { m.goals[0].position = 100.5; }, "would leave its range of positions");
   refusal([](Command& m) { m.goals.push_back(m.goals[0]); }, "named twice");

@@ -148,6 +148,7 @@ TEST(MotionStage, TheBusThreadAllocatesNothingWhileAxesBeginMoveAndStop) {
   std::uint64_t made = 0;
   for (int i = 0; i < 400; ++i) {
     if (i == 300) bus.stop(0);
+    ++bus.last_cycle;
     bus.keep_alive();
     const std::uint64_t before = allocations();
     bus.master.cycle();

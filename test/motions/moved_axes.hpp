@@ -41,7 +41,10 @@ class MovedAxes {
     if (commands) command_drives();
     master.cycle();
     ImageView image;
-    if (master.take_newest(image)) values.assign(image.values.begin(), image.values.end());
+    if (master.take_newest(image)) {
+      values.assign(image.values.begin(), image.values.end());
+      last_cycle = image.cycle;
+    }
     master.motions(now);
     for (motion::MotionEnd end; master.take(end);) ends.push_back(end);
     for (Event event; master.take(event);) events.push_back(event);
@@ -72,7 +75,9 @@ class MovedAxes {
     return !values.empty() && (values[axes[axis].statusword] & 0x6F) == 0x27;
   }
   /// A message of the sender of all orders.
-  void keep_alive() { EXPECT_TRUE(master.submit(motion::MotionMessage{})); }
+  void keep_alive() {
+    EXPECT_TRUE(master.submit({.kind = motion::MessageKind::heard, .cycle = last_cycle}));
+  }
   void stop(std::uint8_t axis) {
     EXPECT_TRUE(master.submit({.kind = motion::MessageKind::stop, .sender = 0, .axis = axis}));
   }
@@ -87,12 +92,13 @@ class MovedAxes {
     std::vector<motion::PlannedAxis> planned(tasks.size());
     ASSERT_TRUE(motion::plan_trajectory(tasks, {}, planned).has_value());
     ++id;
+    keep_alive();
     for (std::size_t i = 0; i < tasks.size(); ++i) {
       motion::MotionMessage message{.kind = motion::MessageKind::order};
       message.order = {.id = id,
                        .axis = static_cast<std::uint8_t>(i),
                        .axes = static_cast<std::uint8_t>(tasks.size()),
-                       .begin = now.beat + 3,
+                       .begin = now.cycle + 3,
                        .from = tasks[i].from,
                        .profile = planned[i].profile,
                        .stop = limits,
@@ -118,6 +124,7 @@ class MovedAxes {
   std::vector<motion::MotionEnd> ends;
   std::vector<Event> events;
   std::function<void()> each_cycle;
+  std::uint64_t last_cycle = 0;
   std::uint32_t id = 0;
   bool commands = false;
 

@@ -1,7 +1,10 @@
 #include "master/gateway/motion/axis_motion_limits.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <fmt/format.h>
+#include <limits>
 #include <string_view>
 
 namespace takt {
@@ -21,7 +24,13 @@ std::expected<double, std::string> limit(double wanted, std::optional<double> of
                     "network file",
                     name, wanted)};
   }
-  if (wanted == 0.0 && of_file) return *of_file;
+  const double least = AxisMotionLimits::smallest;
+  const double most = AxisMotionLimits::largest;
+  if (wanted != 0.0 && (wanted < least || wanted > most)) {
+    return std::unexpected{
+        fmt::format("max_{} is {}, which is not between {} and {}", name, wanted, least, most)};
+  }
+  if (wanted == 0.0 && of_file) return std::clamp(*of_file, least, most);
   if (wanted == 0.0) {
     return std::unexpected{
         fmt::format("there is no limit of {}: set max_{} in the command, or "
@@ -35,6 +44,14 @@ std::expected<double, std::string> limit(double wanted, std::optional<double> of
   return wanted;
 }
 
+/// The positions that the target position can hold.
+motion::PositionRange range_of_integer32(const Signal& target) {
+  constexpr double counts = std::numeric_limits<std::int32_t>::max();
+  const double one = target.offset - counts * target.scale;
+  const double other = target.offset + counts * target.scale;
+  return {.min = std::min(one, other), .max = std::max(one, other)};
+}
+
 /// Without a limit of jerk, the acceleration reaches its limit within this time, in s.
 constexpr double default_rise = 0.05;
 
@@ -45,13 +62,15 @@ AxisMotionLimits::AxisMotionLimits(const BusPlan& plan) {
 }
 
 AxisMotionLimits::Axis AxisMotionLimits::limits_of(const BusPlan& plan, const MotionAxis& axis) {
-  Axis found{.unit = plan.layout.signals[axis.target].unit};
+  const std::string& unit = plan.layout.signals[axis.target].unit;
+  Axis found{.range = range_of_integer32(plan.layout.signals[axis.target])};
   for (const LimitLine& line : plan.limits.lines) {
     if (line.node_index != axis.node_index || line.axis != axis.number + 1 || !line.high) continue;
-    if (line.kind == LimitKind::position && line.unit == found.unit) {
-      found.range = {.min = line.low.value_or(found.range.min), .max = *line.high};
+    if (line.kind == LimitKind::position && line.unit == unit) {
+      found.range = {.min = std::max(found.range.min, line.low.value_or(found.range.min)),
+                     .max = std::min(found.range.max, *line.high)};
     }
-    if (!is_rate_of(line.unit, found.unit)) continue;
+    if (!is_rate_of(line.unit, unit)) continue;
     if (line.kind == LimitKind::velocity) found.velocity = line.high;
     if (line.kind == LimitKind::acceleration) found.acceleration = line.high;
     if (line.kind == LimitKind::jerk) found.jerk = line.high;
@@ -67,8 +86,10 @@ std::expected<motion::Limits, std::string> AxisMotionLimits::of(std::size_t axis
   const auto acceleration = limit(goal.max_acceleration, known.acceleration, "acceleration");
   if (!acceleration) return std::unexpected{acceleration.error()};
   const bool free_jerk = goal.max_jerk == 0.0 && !known.jerk;
-  const auto jerk = free_jerk ? std::expected<double, std::string>{*acceleration / default_rise}
-                              : limit(goal.max_jerk, known.jerk, "jerk");
+  const auto jerk =
+      free_jerk
+          ? std::expected<double, std::string>{std::min(*acceleration / default_rise, largest)}
+          : limit(goal.max_jerk, known.jerk, "jerk");
   if (!jerk) return std::unexpected{jerk.error()};
   return motion::Limits{.max_velocity = *velocity,
                         .min_velocity = -*velocity,

@@ -16,6 +16,11 @@ namespace takt {
 /// command.
 class AxisMotionLimits {
  public:
+  /// Limits and targets must lie between these magnitudes, in the unit of the axis. They keep the
+  /// planner inside the range in which it computes exactly.
+  static constexpr double smallest = 1e-9;
+  static constexpr double largest = 1e12;
+
   explicit AxisMotionLimits(const BusPlan& plan);
 
   /// Returns the limits of a motion, or why there are none. `axis` is a position in motion_axes().
@@ -28,7 +33,6 @@ class AxisMotionLimits {
     std::optional<double> acceleration{};
     std::optional<double> jerk{};
     motion::PositionRange range{};
-    std::string unit{};  ///< of the position
   };
   static Axis limits_of(const BusPlan& plan, const MotionAxis& axis);
 

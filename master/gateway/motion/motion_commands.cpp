@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fmt/format.h>
 #include <limits>
 #include <utility>
@@ -64,7 +65,9 @@ MotionCommands::MotionCommands(const BusPlan& plan, Commands& commands, SubmitMo
       limits_{plan},
       planner_{axes_.size(), std::chrono::duration<double>{plan.cycle.period}.count()},
       sent_(axes_.size()),
-      shown_(axes_.size()) {}
+      shown_(axes_.size()),
+      owners_(axes_.size()),
+      stops_(axes_.size()) {}
 
 std::string MotionCommands::name_of(std::size_t axis) const {
   const std::string& node = plan_.nodes[axes_[axis].node_index].name;
@@ -115,12 +118,19 @@ std::optional<std::vector<std::size_t>> MotionCommands::axes_of(const motion_com
              context);
       return std::nullopt;
     }
-    found.push_back(static_cast<std::size_t>(axis - axes_.begin()));
+    const auto place = static_cast<std::size_t>(axis - axes_.begin());
+    if (std::ranges::find(found, place) != found.end()) {
+      refuse({.id = command.id, .sender = command.sender},
+             {.why = "an axis is named twice", .axis = place}, context);
+      return std::nullopt;
+    }
+    found.push_back(place);
   }
   return found;
 }
 
-/// The nodes of the axes. A sign of life without goals is for all nodes that the sender holds.
+/// The nodes of the axes. A sign of life without goals is for all nodes that the sender holds and
+/// that are ready.
 std::vector<std::size_t> MotionCommands::nodes_of(const motion_command_t& command,
                                                   std::span<const std::size_t> axes,
                                                   const CommandContext& context) const {
@@ -131,7 +141,8 @@ std::vector<std::size_t> MotionCommands::nodes_of(const motion_command_t& comman
   for (const std::size_t axis : axes) add(axes_[axis].node_index);
   if (!axes.empty() || command.kind != "alive") return nodes;
   for (const MotionAxis& axis : axes_) {
-    if (commands_.holds(axis.node_index, command.instance, context.cycle)) add(axis.node_index);
+    const bool held = commands_.holds(axis.node_index, command.instance, context.cycle);
+    if (held && context.nodes[axis.node_index].nmt == NmtState::operational) add(axis.node_index);
   }
   return nodes;
 }
@@ -158,28 +169,37 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
   const auto lease = static_cast<std::uint32_t>(cycles_in(timeout_of(command), plan_.cycle.period));
   const std::vector<std::size_t> nodes = nodes_of(command, *axes, context);
   if (nodes.empty() || !commands_.lease(header, nodes, lease, context)) return;
+  if (command.kind == "stop") {
+    for (const std::size_t axis : *axes) stop(axis);
+    return;
+  }
   const auto sender = senders_.number_of(command.instance, context.now);
   if (!sender) {
     return refuse({.id = command.id, .sender = command.sender},
                   {.why = "too many programs command motions"}, context);
   }
   active_ = true;
-  submit_({.kind = motion::MessageKind::heard, .sender = *sender});
-  if (command.kind == "stop") {
-    for (const std::size_t axis : *axes) {
-      std::erase_if(jobs_, [&](const Job& job) {
-        return std::ranges::find(job.goals, axis, &motion::AxisGoal::axis) != job.goals.end();
-      });
-      submit_({.kind = motion::MessageKind::stop, .axis = static_cast<std::uint8_t>(axis)});
-    }
-  } else if (command.kind != "alive") {
-    begin(command, *axes, context);
-  }
+  submit_({.kind = motion::MessageKind::heard,
+           .sender = *sender,
+           .cycle = static_cast<motion::BeatNumber>(command.cycle)});
+  if (command.kind != "alive") begin(command, *axes, *sender, context);
+}
+
+/// A stop is never lost: if the bus thread can't take it now, serve() tries again.
+void MotionCommands::stop(std::size_t axis) {
+  std::erase_if(jobs_, [&](const Job& job) {
+    return std::ranges::find(job.goals, axis, &motion::AxisGoal::axis) != job.goals.end();
+  });
+  stops_[axis] =
+      !submit_({.kind = motion::MessageKind::stop, .axis = static_cast<std::uint8_t>(axis)});
 }
 
 void MotionCommands::begin(const motion_command_t& command, std::span<const std::size_t> axes,
-                           const CommandContext& context) {
-  Job job{.id = command.id, .sender = command.sender};
+                           std::uint8_t sender, const CommandContext& context) {
+  Job job{.id = command.id,
+          .sender = command.sender,
+          .instance = command.instance,
+          .until = context.now + timeout_of(command)};
   const auto synchronisation = synchronisation_of(command.synchronisation);
   if (!synchronisation) {
     return refuse(job, {.why = "its synchronisation is none of \"time\", \"phase\", \"none\""},
@@ -187,12 +207,19 @@ void MotionCommands::begin(const motion_command_t& command, std::span<const std:
   }
   job.group = {.goal = command.kind == "jog" ? motion::Goal::velocity : motion::Goal::position,
                .synchronisation = *synchronisation,
-               .sender = *senders_.known(command.instance),
+               .sender = sender,
                .timeout = cycles_in(timeout_of(command), plan_.cycle.period)};
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const motion_goal_t& goal = command.goals[i];
     const auto limits = limits_.of(axes[i], goal);
     if (!limits) return refuse(job, {.why = limits.error(), .axis = axes[i]}, context);
+    const double wanted = command.kind == "jog" ? goal.velocity : goal.position;
+    if (!(std::abs(wanted) <= AxisMotionLimits::largest)) {
+      return refuse(job,
+                    {.why = fmt::format("its target {} is infinite, NaN or too large", wanted),
+                     .axis = axes[i]},
+                    context);
+    }
     if (!(goal.max_following_error >= 0.0)) {
       return refuse(job, {.why = "max_following_error is negative or NaN", .axis = axes[i]},
                     context);
@@ -223,6 +250,10 @@ void MotionCommands::drop_replaced(const Job& job) {
 /// Plans the job and sends its orders. Returns false if it has to wait for the next report, or for
 /// the bus thread's answer.
 bool MotionCommands::plan(Job& job, const CommandContext& context) {
+  if (!holds(job, context)) {
+    refuse(job, {.why = "its sender does not hold the nodes any longer"}, context);
+    return true;
+  }
   const std::uint64_t since = context.cycle - std::min(context.cycle, snapshot_.cycle);
   const auto orders = planner_.plan(job.group, job.goals, planner_.beat() + since + lead_beats);
   if (!orders) {
@@ -242,7 +273,7 @@ bool MotionCommands::plan(Job& job, const CommandContext& context) {
   for (const motion::MotionOrder& order : *orders) {
     std::vector<Sent>& sent = sent_[order.axis];
     if (sent.size() == most_sent) sent.erase(sent.begin() + 1);  // the first one may run
-    sent.push_back({.order = order.id, .id = job.id});
+    sent.push_back({.order = order.id, .id = job.id, .instance = job.instance});
     submit_({.kind = motion::MessageKind::order, .order = order});
   }
   return false;
@@ -251,11 +282,12 @@ bool MotionCommands::plan(Job& job, const CommandContext& context) {
 void MotionCommands::observe(const MotionSnapshot& snapshot, const CommandContext& context) {
   if (snapshot.cycle == 0) return;
   snapshot_ = snapshot;
-  planner_.observe(snapshot.beat, snapshot.axes);
+  planner_.observe(snapshot.cycle, snapshot.axes);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const std::uint32_t running = snapshot.axes[i].running;
     const auto found = std::ranges::find(sent_[i], running, &Sent::order);
     shown_[i].id = found == sent_[i].end() ? 0 : found->id;
+    if (found != sent_[i].end()) owners_[i] = found->instance;
     if (found != sent_[i].end()) sent_[i].erase(sent_[i].begin(), found);
   }
   std::erase_if(jobs_, [&](const Job& job) {
@@ -269,6 +301,29 @@ void MotionCommands::observe(const MotionSnapshot& snapshot, const CommandContex
       ++i;
     }
   }
+}
+
+bool MotionCommands::holds(const Job& job, const CommandContext& context) const {
+  return std::ranges::all_of(job.goals, [&](const motion::AxisGoal& goal) {
+    return commands_.holds(axes_[goal.axis].node_index, job.instance, context.cycle);
+  });
+}
+
+void MotionCommands::serve(const CommandContext& context) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (stops_[i]) stop(i);
+    const bool lost =
+        owners_[i] != 0 && !commands_.holds(axes_[i].node_index, owners_[i], context.cycle);
+    if (lost &&
+        submit_({.kind = motion::MessageKind::left, .axis = static_cast<std::uint8_t>(i)})) {
+      owners_[i] = 0;
+    }
+  }
+  std::erase_if(jobs_, [&](const Job& job) {
+    if (context.now <= job.until) return false;
+    refuse(job, {.why = "it did not begin in time"}, context);
+    return true;
+  });
 }
 
 void MotionCommands::take(const motion::MotionEnd& end, const CommandContext& context) {

@@ -34,6 +34,9 @@ class MotionCommands {
   void take(const motion_command_t& command, const CommandContext& context);
   /// Takes the newest reports, and plans what waits for them.
   void observe(const MotionSnapshot& snapshot, const CommandContext& context);
+  /// Does what waits for time and not for reports: stops that the bus thread could not take, jobs
+  /// that did not begin in time, and senders that have lost a node.
+  void serve(const CommandContext& context);
   /// Takes the end of an order.
   void take(const motion::MotionEnd& end, const CommandContext& context);
 
@@ -49,6 +52,8 @@ class MotionCommands {
   struct Job {
     std::int32_t id = 0;  ///< of the application
     std::string sender{};
+    std::int64_t instance = 0;
+    Time until{};  ///< a job that has not begun by then is refused
     motion::GroupGoal group{};
     std::vector<motion::AxisGoal> goals{};
     unsigned tries = 0;
@@ -63,6 +68,7 @@ class MotionCommands {
   struct Sent {
     std::uint32_t order = 0;
     std::int32_t id = 0;
+    std::int64_t instance = 0;
   };
 
   std::optional<std::vector<std::size_t>> axes_of(const motion_command_t& command,
@@ -71,8 +77,10 @@ class MotionCommands {
                                     std::span<const std::size_t> axes,
                                     const CommandContext& context) const;
   void begin(const motion_command_t& command, std::span<const std::size_t> axes,
-             const CommandContext& context);
+             std::uint8_t sender, const CommandContext& context);
   bool plan(Job& job, const CommandContext& context);
+  void stop(std::size_t axis);
+  bool holds(const Job& job, const CommandContext& context) const;
   void drop_replaced(const Job& job);
   void on_refused(const motion::MotionEnd& end, const CommandContext& context);
   void refuse(const Job& job, const Refusal& refusal, const CommandContext& context);
@@ -94,6 +102,8 @@ class MotionCommands {
   std::vector<Job> jobs_;  ///< at most one for each axis
   std::vector<std::vector<Sent>> sent_;
   std::vector<ShownMotion> shown_;
+  std::vector<std::int64_t> owners_;  ///< by axis: instance whose motion began last; 0 for none
+  std::vector<bool> stops_;           ///< by axis: a stop has to be handed over
   bool active_ = false;
 };
 

@@ -29,12 +29,6 @@ class MotionSenders {
     *found = {.instance = instance, .heard = now};
     return static_cast<std::uint8_t>(found - slots_.begin());
   }
-  /// Returns the number of a sender that has one.
-  std::optional<std::uint8_t> known(std::int64_t instance) const {
-    const auto found = std::ranges::find(slots_, instance, &Slot::instance);
-    if (found == slots_.end()) return std::nullopt;
-    return static_cast<std::uint8_t>(found - slots_.begin());
-  }
 
  private:
   struct Slot {

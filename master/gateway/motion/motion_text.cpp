@@ -42,7 +42,7 @@ std::string_view text(const motion::PlanRefusal& refusal) noexcept {
     case foreign:
       return "the axis runs another motion";
     case too_long:
-      return "the axis would need too long to reach the velocity of the jog";
+      return "the motion, or the start of the jog, would take too long";
     case impossible:
       return text_of(refusal.defect);
   }
@@ -88,6 +88,8 @@ std::string_view text(motion::StopCause cause) noexcept {
       return "the end of the range of positions is near";
     case limit:
       return "a set-point was outside the limits of the network file";
+    case no_sync:
+      return "SYNC was missing in several periods";
     case ordered_stop:
       return "taktd stops";
     case application:

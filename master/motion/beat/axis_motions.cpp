@@ -10,21 +10,32 @@ AxisMotions::AxisMotions(std::size_t axes, double period) : reports_(std::min(ax
   }
 }
 
-Outcome AxisMotions::take(const MotionOrder& order, CycleNumber cycle) noexcept {
+Outcome AxisMotions::take(const MotionOrder& order) noexcept {
   if (order.axis >= runners_.size() || order.group >= runners_.size()) return Outcome::unsound;
-  const Outcome refusal = runners_[order.axis].wait(order);
-  if (refusal == Outcome::none) sender_heard(order.sender, cycle);
-  return refusal;
+  return runners_[order.axis].wait(order);
 }
 
-void AxisMotions::sender_heard(std::uint8_t sender, CycleNumber cycle) noexcept {
-  if (sender < max_axes) heard_[sender] = cycle;
+void AxisMotions::sender_heard(std::uint8_t sender, BeatNumber cycle) noexcept {
+  if (sender < max_axes) heard_[sender] = std::max(heard_[sender], cycle);
 }
 
 void AxisMotions::stop_axis(std::uint8_t axis, StopCause cause) noexcept {
   if (axis >= runners_.size()) return;
   if (runners_[axis].waiting() != nullptr) runners_[axis].refuse(Outcome::stopped);
   add_stop(axis, cause);
+}
+
+void AxisMotions::sender_left(std::uint8_t axis) noexcept {
+  if (axis < runners_.size()) runners_[axis].forget_sender();
+}
+
+void AxisMotions::abandon(std::uint8_t axis, StopCause cause) noexcept {
+  add_stop(axis, cause);
+  runners_[axis].abandon({.cause = cause, .axis = axis});
+}
+
+void AxisMotions::abandon_all(StopCause cause) noexcept {
+  for (AxisRunner& runner : runners_) runner.abandon({.cause = cause});
 }
 
 void AxisMotions::stop_all(StopCause cause) noexcept {
@@ -43,11 +54,11 @@ void AxisMotions::add_stop(std::size_t axis, StopCause cause) noexcept {
   }
 }
 
-std::span<const AxisReport> AxisMotions::run(BeatNumber beat, CycleNumber cycle,
+std::span<const AxisReport> AxisMotions::run(BeatNumber beat,
                                              std::span<const AxisInput> inputs) noexcept {
-  observe(beat, cycle, inputs);
-  stop_groups(beat);
-  begin_orders(beat, cycle);
+  observe(beat, inputs);
+  stop_groups();
+  begin_orders(beat);
   for (std::size_t i = 0; i < runners_.size(); ++i) {
     reports_[i] = runners_[i].run(beat);
     runners_[i].forget_ended();
@@ -55,26 +66,25 @@ std::span<const AxisReport> AxisMotions::run(BeatNumber beat, CycleNumber cycle,
   return reports_;
 }
 
-void AxisMotions::observe(BeatNumber beat, CycleNumber cycle,
-                          std::span<const AxisInput> inputs) noexcept {
+void AxisMotions::observe(BeatNumber beat, std::span<const AxisInput> inputs) noexcept {
   for (std::size_t i = 0; i < runners_.size(); ++i) {
-    const CycleNumber silence = silence_of(runners_[i].sender(), cycle);
+    const BeatNumber silence = silence_of(runners_[i].sender(), beat);
     const StopCause cause = runners_[i].observe(beat, inputs[i], silence);
     if (cause != StopCause::none) add_stop(i, cause);
   }
 }
 
-void AxisMotions::stop_groups(BeatNumber beat) noexcept {
+void AxisMotions::stop_groups() noexcept {
   for (AxisRunner& runner : runners_) {
     const GroupStop& stop = stops_[runner.group()];
     if (stop.stop.cause == StopCause::none) continue;
-    if (stop.id == 0 || stop.id == runner.newest()) runner.stop(beat, stop.stop);
+    if (stop.id == 0 || stop.id == runner.newest()) runner.stop(stop.stop);
   }
   stops_ = {};
 }
 
 /// An order begins if all orders of its group are due, have its id, and may begin.
-void AxisMotions::begin_orders(BeatNumber beat, CycleNumber cycle) noexcept {
+void AxisMotions::begin_orders(BeatNumber beat) noexcept {
   std::array<Outcome, max_axes> objections{};
   std::array<std::uint8_t, max_axes> ready{};  // orders of each group
   const auto leads = [&](const MotionOrder& order) {
@@ -85,7 +95,7 @@ void AxisMotions::begin_orders(BeatNumber beat, CycleNumber cycle) noexcept {
   for (std::size_t i = 0; i < runners_.size(); ++i) {
     const MotionOrder* order = runners_[i].due(beat);
     if (order == nullptr) continue;
-    objections[i] = objection_of(i, beat, cycle);
+    objections[i] = objection_of(i, beat);
     if (objections[i] == Outcome::none && leads(*order)) ++ready[order->group];
   }
   std::array<Outcome, max_axes> verdicts{};
@@ -106,14 +116,14 @@ void AxisMotions::begin_orders(BeatNumber beat, CycleNumber cycle) noexcept {
   }
 }
 
-Outcome AxisMotions::objection_of(std::size_t axis, BeatNumber beat, CycleNumber cycle) noexcept {
+Outcome AxisMotions::objection_of(std::size_t axis, BeatNumber beat) noexcept {
   const MotionOrder& order = *runners_[axis].due(beat);
-  if (silence_of(order.sender, cycle) > order.timeout) return Outcome::sender_was_silent;
+  if (silence_of(order.sender, beat) > order.timeout) return Outcome::sender_was_silent;
   return runners_[axis].objection(beat);
 }
 
-CycleNumber AxisMotions::silence_of(std::uint8_t sender, CycleNumber cycle) const noexcept {
-  return cycle - std::min(heard_[sender], cycle);
+BeatNumber AxisMotions::silence_of(std::uint8_t sender, BeatNumber beat) const noexcept {
+  return sender < max_axes ? beat - std::min(heard_[sender], beat) : beat;
 }
 
 }  // namespace takt::motion

@@ -17,13 +17,15 @@ class AxisMotions {
   /// `axes` is at most max_axes, `period` is that of the beat in s.
   AxisMotions(std::size_t axes, double period);
 
-  std::size_t size() const noexcept { return runners_.size(); }
-
-  /// Takes an order before its first beat or in it. It counts as a message of its sender. Returns a
-  /// refusal, or Outcome::none if the order waits for its first beat.
-  Outcome take(const MotionOrder& order, CycleNumber cycle) noexcept;
-  /// The sender is alive in this cycle.
-  void sender_heard(std::uint8_t sender, CycleNumber cycle) noexcept;
+  /// Takes an order before its first beat or in it. This is no sign of life of its sender, because
+  /// the order may have been planned late. Returns a refusal, or Outcome::none if the order waits
+  /// for its first beat.
+  Outcome take(const MotionOrder& order) noexcept;
+  /// The sender was alive in this cycle, which is not later than the present one.
+  void sender_heard(std::uint8_t sender, BeatNumber cycle) noexcept;
+  /// The sender of the newest motion of this axis may not command it any longer: it counts as
+  /// silent from now on.
+  void sender_left(std::uint8_t axis) noexcept;
   /// Stops the axis and its group, each axis along its own limits, in the next run(). An order of
   /// the axis that waits ends as well.
   void stop_axis(std::uint8_t axis, StopCause cause) noexcept;
@@ -31,10 +33,13 @@ class AxisMotions {
   void stop_all(StopCause cause) noexcept;
 
   /// Runs one beat. `inputs` has one element for each axis, and so has the result, which is valid
-  /// until the next call. Beats must follow each other without a gap, from 1 on; the cycles, by
-  /// which the silence of senders counts, may jump.
-  std::span<const AxisReport> run(BeatNumber beat, CycleNumber cycle,
-                                  std::span<const AxisInput> inputs) noexcept;
+  /// until the next call.
+  std::span<const AxisReport> run(BeatNumber beat, std::span<const AxisInput> inputs) noexcept;
+  /// Ends the motion of the axis at once, because its last set-point did not reach the drive. The
+  /// other axes of its group stop along their limits.
+  void abandon(std::uint8_t axis, StopCause cause) noexcept;
+  /// Ends all motions at once.
+  void abandon_all(StopCause cause) noexcept;
   /// The reports of the last run.
   std::span<const AxisReport> reports() const noexcept { return reports_; }
 
@@ -56,16 +61,16 @@ class AxisMotions {
   };
 
   void add_stop(std::size_t axis, StopCause cause) noexcept;
-  void observe(BeatNumber beat, CycleNumber cycle, std::span<const AxisInput> inputs) noexcept;
-  void stop_groups(BeatNumber beat) noexcept;
-  void begin_orders(BeatNumber beat, CycleNumber cycle) noexcept;
-  Outcome objection_of(std::size_t axis, BeatNumber beat, CycleNumber cycle) noexcept;
-  CycleNumber silence_of(std::uint8_t sender, CycleNumber cycle) const noexcept;
+  void observe(BeatNumber beat, std::span<const AxisInput> inputs) noexcept;
+  void stop_groups() noexcept;
+  void begin_orders(BeatNumber beat) noexcept;
+  Outcome objection_of(std::size_t axis, BeatNumber beat) noexcept;
+  BeatNumber silence_of(std::uint8_t sender, BeatNumber beat) const noexcept;
 
   std::vector<AxisRunner> runners_;
   std::vector<AxisReport> reports_;
-  std::array<GroupStop, max_axes> stops_{};    ///< of each group in the next beat
-  std::array<CycleNumber, max_axes> heard_{};  ///< of each sender
+  std::array<GroupStop, max_axes> stops_{};   ///< of each group in the next beat
+  std::array<BeatNumber, max_axes> heard_{};  ///< of each sender
 };
 
 }  // namespace takt::motion

@@ -37,6 +37,7 @@ enum class StopCause : std::uint8_t {
   following_error,  ///< of an axis, above its limit
   end_of_range,     ///< a later stop would leave the range of positions
   limit,            ///< a set-point of an axis was outside the limits of the network file
+  no_sync,          ///< SYNC was missing in several periods
   ordered_stop,     ///< of the master
   application,      ///< it asked for the stop
 };

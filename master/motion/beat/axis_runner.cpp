@@ -91,7 +91,7 @@ void AxisRunner::refuse(Outcome why) noexcept {
 }
 
 StopCause AxisRunner::observe(BeatNumber beat, const AxisInput& input,
-                              CycleNumber silence) noexcept {
+                              BeatNumber silence) noexcept {
   report_.actual = input.actual;
   report_.following_error = report_.commanded.position - input.actual.position;
   if (report_.state == AxisState::unpowered) {
@@ -120,18 +120,30 @@ StopCause AxisRunner::observe(BeatNumber beat, const AxisInput& input,
   return StopCause::none;
 }
 
-void AxisRunner::stop(BeatNumber beat, const Stop& stop) noexcept {
+void AxisRunner::stop(const Stop& stop) noexcept {
   if (waiting_) refuse(Outcome::stopped);
   if (report_.stop.cause == StopCause::none) report_.stop = stop;
   if (report_.state != AxisState::moving) return;
   end(Outcome::stopped);
   report_.state = AxisState::stopping;
   player_ = {stop_profile(report_.commanded, stop_limits_), report_.commanded, Ending::rest};
-  began_ = beat - 1;
+  began_ = last_run_;
+}
+
+void AxisRunner::abandon(const Stop& stop) noexcept {
+  if (waiting_) refuse(Outcome::stopped);
+  newest_ = 0;
+  report_.kept_alive = false;
+  if (report_.state != AxisState::moving && report_.state != AxisState::stopping) return;
+  if (report_.stop.cause == StopCause::none) report_.stop = stop;
+  if (report_.state == AxisState::moving) end(Outcome::stopped);
+  report_.state = AxisState::standing;
+  report_.commanded = {.position = report_.commanded.position};
 }
 
 const AxisReport& AxisRunner::run(BeatNumber beat) noexcept {
   has_taken_ = false;
+  last_run_ = beat;
   report_.beats_left = 0;
   if (report_.state == AxisState::unpowered) {
     report_.commanded = {.position = report_.actual.position};
@@ -142,7 +154,9 @@ const AxisReport& AxisRunner::run(BeatNumber beat) noexcept {
   if (report_.state == AxisState::standing) return report_;
   if (!player_.is_over()) {
     const double left = player_.duration() - static_cast<double>(beat - began_) * period_;
-    report_.beats_left = static_cast<BeatNumber>(std::ceil(std::max(left, 0.0) / period_));
+    constexpr double most = 1e15;
+    report_.beats_left =
+        static_cast<BeatNumber>(std::min(std::ceil(std::max(left, 0.0) / period_), most));
   } else if (player_.ending() == Ending::rest) {
     if (report_.state == AxisState::moving) end(Outcome::done);
     report_.state = AxisState::standing;

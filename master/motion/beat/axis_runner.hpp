@@ -44,16 +44,21 @@ class AxisRunner {
 
   /// Takes what the drive tells. Returns the cause if the axis makes its group stop. `silence` is
   /// the number of cycles since the sender was heard.
-  StopCause observe(BeatNumber beat, const AxisInput& input, CycleNumber silence) noexcept;
+  StopCause observe(BeatNumber beat, const AxisInput& input, BeatNumber silence) noexcept;
   /// Starts the shortest stop from the commanded state of the beat before. It also ends an order
   /// that waits. An axis that doesn't move keeps its state.
-  void stop(BeatNumber beat, const Stop& stop) noexcept;
+  void stop(const Stop& stop) noexcept;
+  /// Ends the motion at once: the axis stands at its commanded position. It is not kept alive.
+  void abandon(const Stop& stop) noexcept;
+  /// The sender counts as silent from now on.
+  void forget_sender() noexcept { sender_ = no_sender; }
   /// Gives the commanded state of the beat.
   const AxisReport& run(BeatNumber beat) noexcept;
   /// Forgets which orders have ended. Called before the orders of the next beat are taken.
   void forget_ended() noexcept { report_.ended.clear(); }
 
   std::uint8_t group() const noexcept { return group_; }
+  /// The sender of the newest motion, or `no_sender`.
   std::uint8_t sender() const noexcept { return sender_; }
   /// Id of the newest motion that began; 0 for none.
   std::uint32_t newest() const noexcept { return newest_; }
@@ -61,12 +66,14 @@ class AxisRunner {
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(report_, player_, began_, stop_limits_, timeout_, latest_stop_, max_following_error_,
-          waiting_, newest_, has_taken_);
+          waiting_, newest_, last_run_, has_taken_);
     state.position(group_, max_axes);
-    state.position(sender_, max_axes);
+    state.position(sender_, max_axes + 1);
   }
 
  private:
+  static constexpr std::uint8_t no_sender = max_axes;
+
   State commanded_at(BeatNumber beat) noexcept;
   void end(Outcome outcome) noexcept;
   void end(std::uint32_t id, Outcome outcome) noexcept {
@@ -77,8 +84,9 @@ class AxisRunner {
   AxisReport report_;
   ProfilePlayer player_;
   BeatNumber began_ = 0;
+  BeatNumber last_run_ = 0;  ///< the beat of the commanded state
   Limits stop_limits_;
-  CycleNumber timeout_ = 0;
+  BeatNumber timeout_ = 0;
   BeatNumber latest_stop_ = 0;
   double max_following_error_ = 0.0;
   std::optional<MotionOrder> waiting_;

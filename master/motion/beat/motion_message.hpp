@@ -11,18 +11,20 @@ enum class MessageKind : std::uint8_t {
   heard,  ///< the sender is alive
   order,  ///< `order` waits for its first beat
   stop,   ///< the axis and its group stop along their limits
+  left,   ///< the sender of the axis may not command it any longer
 };
 
 /// A message of the front thread about motions. Plain data.
 struct MotionMessage {
   MessageKind kind = MessageKind::heard;
   std::uint8_t sender = 0;  ///< of `heard`
-  std::uint8_t axis = 0;    ///< of `stop`
+  BeatNumber cycle = 0;     ///< of `heard`: the cycle whose image the sender has seen
+  std::uint8_t axis = 0;    ///< of `stop` and `left`
   MotionOrder order{};      ///< of `order`
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(kind, sender, axis);
+    state(kind, sender, cycle, axis);
     if (kind == MessageKind::order) state(order);
   }
 };

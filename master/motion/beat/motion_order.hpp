@@ -8,13 +8,10 @@
 
 namespace takt::motion {
 
-/// Number of a beat, which is a cycle whose SYNC was sent. The numbers follow each other without a
-/// gap and never wrap.
+/// Number of a beat, which is a cycle whose SYNC was sent: the number of this cycle. The numbers
+/// jump where periods have no SYNC, so that their differences are times by the clock. They never
+/// wrap.
 using BeatNumber = std::uint64_t;
-
-/// Number of a cycle. It jumps by the number of the periods that were missed, so that differences
-/// are times by the clock.
-using CycleNumber = std::uint64_t;
 
 /// Axes, groups and senders are numbered from 0. A bus has at most 127 nodes, and axes above this
 /// number can't be moved.
@@ -36,11 +33,11 @@ struct MotionOrder {
   std::uint8_t axes = 1;  ///< number of orders with this id
   std::uint8_t sender = 0;  ///< less than max_axes
   Ending ending = Ending::rest;
-  BeatNumber begin = 0;     ///< the axis is at `from` in this beat
-  State from;               ///< must be what the axis is commanded in the beat `begin`
-  Profile profile;          ///< of the motion that starts at `from`
-  Limits stop;              ///< of a stop
-  CycleNumber timeout = 0;  ///< cycles for which the motion outlives the silence of its sender
+  BeatNumber begin = 0;    ///< the axis is at `from` in this beat
+  State from;              ///< must be what the axis is commanded in the beat `begin`
+  Profile profile;         ///< of the motion that starts at `from`
+  Limits stop;             ///< of a stop
+  BeatNumber timeout = 0;  ///< periods for which the motion outlives the silence of its sender
   /// The axis is stopped at the latest from the state that it has so many beats after `begin`, see
   /// beats_with_stop().
   BeatNumber latest_stop = std::numeric_limits<BeatNumber>::max();
@@ -49,8 +46,10 @@ struct MotionOrder {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(id, axis, group, axes, sender, ending, begin, from, profile, stop, timeout, latest_stop,
-          max_following_error);
+    state(id, axes, ending, begin, from, profile, stop, timeout, latest_stop, max_following_error);
+    state.position(axis, max_axes);
+    state.position(group, max_axes);
+    state.position(sender, max_axes);
   }
 };
 

@@ -99,6 +99,7 @@ std::expected<void, PlanRefusal> MotionPlanner::set_orders(const GroupGoal& grou
                                                            std::span<const AxisGoal> goals,
                                                            BeatNumber begin) {
   const bool is_jog = group.goal == Goal::velocity;
+  double jog_start = 0.0;
   orders_.clear();
   for (std::size_t i = 0; i < goals.size(); ++i) {
     const AxisGoal& goal = goals[i];
@@ -114,8 +115,12 @@ std::expected<void, PlanRefusal> MotionPlanner::set_orders(const GroupGoal& grou
                       .stop = goal.limits,
                       .timeout = group.timeout,
                       .max_following_error = goal.max_following_error};
+    if (!(planned_[i].duration <= longest_motion * period_)) {
+      return std::unexpected{PlanRefusal{.fault = PlanFault::too_long, .axis = goal.axis}};
+    }
     if (is_jog) {
-      if (planned_[i].duration > static_cast<double>(longest_jog_start) * period_) {
+      jog_start += planned_[i].duration / period_;
+      if (jog_start > longest_jog_start) {
         return std::unexpected{PlanRefusal{.fault = PlanFault::too_long, .axis = goal.axis}};
       }
       const auto latest = beats_with_stop(order, goal.range, period_, order.latest_stop);

@@ -28,7 +28,7 @@ struct GroupGoal {
   Goal goal = Goal::position;  ///< velocity: a jog
   Synchronisation synchronisation = Synchronisation::time;
   std::uint8_t sender = 0;
-  CycleNumber timeout = 0;  ///< cycles for which the motion outlives the silence of its sender
+  BeatNumber timeout = 0;  ///< periods for which the motion outlives the silence of its sender
 };
 
 /// Why there is no motion.
@@ -40,7 +40,7 @@ enum class PlanFault : std::uint8_t {
   stopping,     ///< the axis must come to rest first
   foreign,      ///< the axis runs a motion that this planner does not know
   impossible,   ///< see `defect`
-  too_long,     ///< a jog takes too many beats to reach its velocity
+  too_long,     ///< the motion, or the start of a jog, takes too many beats
 };
 
 struct PlanRefusal {
@@ -53,8 +53,10 @@ struct PlanRefusal {
 /// from the newest reports and from the orders that it has planned before. One thread.
 class MotionPlanner {
  public:
-  /// Longest acceleration of a jog in beats. It bounds the time that plan() takes.
-  static constexpr BeatNumber longest_jog_start = 20'000;
+  /// Most beats in which the axes of a jog reach their velocities, all axes added. It bounds the
+  /// time that plan() takes.
+  static constexpr double longest_jog_start = 20'000;
+  static constexpr double longest_motion = 1e9;  ///< in beats
 
   /// `period` is that of the beat in s.
   MotionPlanner(std::size_t axes, double period) : period_{period}, axes_(axes) {}

@@ -9,10 +9,9 @@
 
 namespace takt {
 
-/// The reports of all axes in one beat.
+/// The reports of all axes in one beat, which is the cycle of this number.
 struct MotionSnapshot {
   std::uint64_t cycle = 0;  ///< 0: no motion message has come so far, so there are no reports
-  motion::BeatNumber beat = 0;
   std::vector<motion::AxisReport> axes{};  ///< in the order of motion_axes()
 };
 
@@ -24,11 +23,9 @@ class MotionBoard {
       : axes_{axes}, lock_{(head_words + axes * axis_words) * sizeof(std::uint64_t)} {}
 
   /// Bus thread.
-  void write(std::uint64_t cycle, motion::BeatNumber beat,
-             std::span<const motion::AxisReport> reports) noexcept {
+  void write(std::uint64_t cycle, std::span<const motion::AxisReport> reports) noexcept {
     lock_.begin();
     lock_.put(0, cycle);
-    lock_.put(1, beat);
     for (std::size_t i = 0; i < reports.size() && i < axes_; ++i) {
       lock_.put(head_words + i * axis_words, reports[i]);
     }
@@ -39,7 +36,6 @@ class MotionBoard {
     snapshot.axes.resize(axes_);
     lock_.read([&] {
       lock_.get(0, snapshot.cycle);
-      lock_.get(1, snapshot.beat);
       for (std::size_t i = 0; i < axes_; ++i) {
         lock_.get(head_words + i * axis_words, snapshot.axes[i]);
       }
@@ -47,7 +43,7 @@ class MotionBoard {
   }
 
  private:
-  static constexpr std::size_t head_words = 2;
+  static constexpr std::size_t head_words = 1;
   static constexpr std::size_t axis_words = seqlock_words<motion::AxisReport>;
 
   std::size_t axes_;

@@ -10,6 +10,8 @@ namespace {
 using motion::AxisCondition;
 using motion::AxisState;
 
+constexpr std::int64_t halt = 0x100;  // of the controlword, CiA 402-2, 0x6040
+
 /// CiA 402-2, 0x6041.
 AxisCondition condition_of(std::int64_t statusword) noexcept {
   if ((statusword & 0x6F) == 0x27) return AxisCondition::enabled;
@@ -61,7 +63,8 @@ AxisCondition DrivenAxis::condition(const WorkingImage& image, bool exchanging) 
   }
   silent_beats_ = 0;
   const AxisCondition found = condition_of(image.values[axis_.statusword]);
-  const bool follows = !axis_.mode || follows_each_target(image.values[*axis_.mode]);
+  const bool halted = axis_.controlword && (image.values[*axis_.controlword] & halt) != 0;
+  const bool follows = !halted && (!axis_.mode || follows_each_target(image.values[*axis_.mode]));
   return found == AxisCondition::enabled && !follows ? AxisCondition::disabled : found;
 }
 
@@ -77,7 +80,8 @@ motion::AxisInput DrivenAxis::read(PdoExchange& pdos, bool exchanging,
   if (axis_.velocity) input.actual.velocity = velocity_.number(image.values[*axis_.velocity]);
   const std::int64_t target = image.values[axis_.target];
   if (target != written_) writer_ = Writer::others;
-  if (writer_ == Writer::others && pdos.outputs().known(axis_.target)) {
+  const bool starts = last.state == AxisState::unpowered;
+  if ((starts || writer_ == Writer::others) && pdos.outputs().known(axis_.target)) {
     input.set_point = target_.number(target);
   }
   return input;

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -35,7 +36,8 @@ class MotionStage {
     if (bus_.observe) return;
     take_messages(moment.cycle);
     if (!active_) return;
-    if (bus_.status.beats != beat_) run_beat(moment, stopping);
+    if (bus_.status.beats != beats_) run_beat(moment, stopping);
+    if (is_late(moment)) return;
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       if (motions_.reports()[i].kept_alive) axes_[i].keep_alive(bus_.pdos.outputs(), moment);
     }
@@ -43,21 +45,28 @@ class MotionStage {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(active_, beat_, axes_, motions_);
+    state(active_, beats_, last_beat_, axes_, motions_);
   }
 
  private:
   /// Messages that are taken in one cycle: an order for each axis, and a few more.
   static constexpr std::size_t most_messages = motion::max_axes + 8;
 
-  void take_messages(motion::CycleNumber cycle) noexcept {
+  /// If SYNC is missing in more periods than this, the drives have stopped following, and a motion
+  /// that went on would jump.
+  static constexpr motion::BeatNumber most_missed = 1;
+
+  bool is_late(OutputMoment moment) const noexcept {
+    return last_beat_ != 0 && moment.cycle - last_beat_ > most_missed + 1;
+  }
+  void take_messages(motion::BeatNumber cycle) noexcept {
     motion::MotionMessage message;
     for (std::size_t i = 0; i < most_messages && front_.take_motion(message); ++i) {
       active_ = true;
       accept(message, cycle);
     }
   }
-  void accept(const motion::MotionMessage& message, motion::CycleNumber cycle) noexcept;
+  void accept(const motion::MotionMessage& message, motion::BeatNumber cycle) noexcept;
   void run_beat(OutputMoment moment, bool stopping) noexcept;
   void tell_ends() noexcept;
 
@@ -66,22 +75,26 @@ class MotionStage {
   std::vector<DrivenAxis> axes_;
   motion::AxisMotions motions_;
   std::vector<motion::AxisInput> inputs_;
-  motion::BeatNumber beat_ = 0;  ///< the last one that was run
-  bool active_ = false;          ///< a message has come
+  std::uint64_t beats_ = 0;           ///< BusStatus::beats when a beat was run last
+  motion::BeatNumber last_beat_ = 0;  ///< the last one that was run
+  bool active_ = false;               ///< a message has come
 };
 
 template <FrontLink L, Services S>
 void MotionStage<L, S>::accept(const motion::MotionMessage& message,
-                               motion::CycleNumber cycle) noexcept {
+                               motion::BeatNumber cycle) noexcept {
   switch (message.kind) {
     case motion::MessageKind::heard:
-      motions_.sender_heard(message.sender, cycle);
+      motions_.sender_heard(message.sender, std::min(message.cycle, cycle));
       break;
     case motion::MessageKind::stop:
       motions_.stop_axis(message.axis, motion::StopCause::application);
       break;
+    case motion::MessageKind::left:
+      motions_.sender_left(message.axis);
+      break;
     case motion::MessageKind::order: {
-      const motion::Outcome refusal = motions_.take(message.order, cycle);
+      const motion::Outcome refusal = motions_.take(message.order);
       if (refusal == motion::Outcome::none) break;
       const motion::EndedOrder ended{.id = message.order.id, .outcome = refusal};
       front_.exchange().motion_ends.push({.axis = message.order.axis, .order = ended, .stop = {}});
@@ -92,19 +105,21 @@ void MotionStage<L, S>::accept(const motion::MotionMessage& message,
 
 template <FrontLink L, Services S>
 void MotionStage<L, S>::run_beat(OutputMoment moment, bool stopping) noexcept {
-  beat_ = bus_.status.beats;
+  beats_ = bus_.status.beats;
+  if (is_late(moment)) motions_.abandon_all(motion::StopCause::no_sync);
+  last_beat_ = moment.cycle;
   if (stopping) motions_.stop_all(motion::StopCause::ordered_stop);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const bool exchanging = bus_.exchanging[axes_[i].node_index()];
     inputs_[i] = axes_[i].read(bus_.pdos, exchanging, motions_.reports()[i]);
   }
-  const auto reports = motions_.run(beat_, moment.cycle, inputs_);
+  const auto reports = motions_.run(moment.cycle, inputs_);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (axes_[i].write(bus_.pdos.outputs(), reports[i], moment) || stopping) continue;
-    motions_.stop_axis(static_cast<std::uint8_t>(i), motion::StopCause::limit);
+    motions_.abandon(static_cast<std::uint8_t>(i), motion::StopCause::limit);
   }
   tell_ends();
-  front_.exchange().motion_board.write(moment.cycle, beat_, reports);
+  front_.exchange().motion_board.write(moment.cycle, reports);
 }
 
 template <FrontLink L, Services S>

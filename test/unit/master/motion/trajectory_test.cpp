@@ -236,5 +236,25 @@ TEST(Trajectory, IsRefusedWithTheAxisAndTheReason) {
   EXPECT_EQ(defect(task), Defect::velocity_before_target);
 }
 
+/// Numbers whose products overflow must not make the planner search for ever.
+TEST(Trajectory, LimitsThatCannotBeComputedWithAreRefused) {
+  const auto limits = [](double velocity, double acceleration, double jerk) {
+    return Limits{.max_velocity = velocity,
+                  .min_velocity = -velocity,
+                  .max_acceleration = acceleration,
+                  .min_acceleration = -acceleration,
+                  .jerk = jerk};
+  };
+  for (const Limits& extreme :
+       {limits(7.3e-129, 1.4e81, 4.7e-247), limits(1e-50, 2.6e-293, 4.9e187)}) {
+    const std::array tasks{AxisTask{.from = {},
+                                    .to = {.position = -85.115},
+                                    .limits = extreme,
+                                    .range = {.min = -100.0, .max = 100.0}}};
+    std::array<PlannedAxis, 1> planned;
+    EXPECT_FALSE(plan_trajectory(tasks, {}, planned).has_value());
+  }
+}
+
 }  // namespace
 }  // namespace takt::motion

@@ -38,7 +38,7 @@ class Plant {
 
   void step() {
     ++beat;
-    const auto reports = motions.run(beat, beat, inputs);
+    const auto reports = motions.run(beat, inputs);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       const bool powered =
           last[i].state != AxisState::unpowered && reports[i].state != AxisState::unpowered;
@@ -65,7 +65,11 @@ class Plant {
             .timeout = 500};
   }
 
-  bool take(const MotionOrder& order) { return motions.take(order, beat) == Outcome::none; }
+  /// Takes the order and a sign of life of its sender.
+  bool take(const MotionOrder& order) {
+    motions.sender_heard(order.sender, beat);
+    return motions.take(order) == Outcome::none;
+  }
 
   AxisMotions motions;
   std::vector<AxisInput> inputs;
@@ -187,8 +191,7 @@ TEST(AxisMotions, ALaterOrderThatWaitsReplacesTheEarlierOne) {
   plant.step();
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 1.0})));
   plant.ids = 2;
-  EXPECT_EQ(plant.motions.take(plant.order(0, {.position = 2.0}), plant.beat),
-            Outcome::second_in_beat);
+  EXPECT_EQ(plant.motions.take(plant.order(0, {.position = 2.0})), Outcome::second_in_beat);
   plant.step();
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 2.0})));
   plant.step();
@@ -205,7 +208,7 @@ TEST(AxisMotions, RefusesOrdersWithNumbersThatWouldHideAFault) {
   const auto refused = [&](auto change) {
     MotionOrder order = plant.order(0, {.position = 1.0});
     change(order);
-    return plant.motions.take(order, plant.beat) == Outcome::unsound;
+    return plant.motions.take(order) == Outcome::unsound;
   };
   EXPECT_TRUE(refused([&](MotionOrder& order) { order.max_following_error = nan; }));
   EXPECT_TRUE(refused([&](MotionOrder& order) { order.from.velocity = nan; }));
@@ -268,6 +271,15 @@ TEST(AxisMotions, AnOrderOfASilentSenderDoesNotBegin) {
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 5.0}, 501)));
   plant.steps(501);
   EXPECT_EQ(plant.ended[0].outcome, Outcome::sender_was_silent);
+}
+
+TEST(AxisMotions, AnOrderIsNoSignOfLife) {
+  Plant plant{1};
+  plant.steps(600);
+  EXPECT_EQ(plant.motions.take(plant.order(0, {.position = 5.0}, 1)), Outcome::none);
+  plant.step();
+  EXPECT_EQ(plant.ended[0].outcome, Outcome::sender_was_silent);
+  EXPECT_EQ(plant.last[0].state, AxisState::standing);
 }
 
 /// Starts a motion of three axes, of which the last is in a group of its own.

@@ -26,7 +26,7 @@ class Line {
 
   void step() {
     ++beat;
-    motions.run(beat, beat, inputs);
+    motions.run(beat, inputs);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       for (const EndedOrder& end : motions.reports()[i].ended.orders()) ends.push_back(end);
       inputs[i].actual = motions.reports()[i].commanded;
@@ -44,7 +44,7 @@ class Line {
     const auto orders = plan(goals, goal);
     if (!orders) return false;
     for (const MotionOrder& order : *orders) {
-      EXPECT_EQ(motions.take(order, beat), Outcome::none);
+      EXPECT_EQ(motions.take(order), Outcome::none);
     }
     return true;
   }
