@@ -10,14 +10,15 @@ namespace takt::motion {
 
 /// Runs the motions of one axis, beat by beat. Its states:
 ///
-/// | from               | to        | when                                                     |
-/// |--------------------|-----------|----------------------------------------------------------|
-/// | unpowered          | standing  | the drive is enabled: it stands at its commanded position |
-/// | standing, moving   | moving    | an order begins in its beat                              |
-/// | moving             | standing  | the motion has ended at rest                             |
-/// | moving             | stopping  | stop()                                                   |
-/// | stopping           | standing  | the axis is at rest                                      |
-/// | each other         | unpowered | the drive is no longer enabled                           |
+/// | from             | to        | when                                                      |
+/// |------------------|-----------|-----------------------------------------------------------|
+/// | unpowered        | standing  | the drive is enabled: it stands at its commanded position |
+/// | standing, moving | moving    | an order begins in its beat                               |
+/// | moving           | standing  | the motion has ended at rest                              |
+/// | moving           | stopping  | stop()                                                    |
+/// | stopping         | standing  | the axis is at rest                                       |
+/// | moving, stopping | standing  | abandon()                                                 |
+/// | each other       | unpowered | the drive is no longer enabled                            |
 ///
 /// A beat calls observe(), then stop() if the group stops, then begin() or refuse() if an order is
 /// due, then run(). No call allocates; the bound of instructions is that of stop().
