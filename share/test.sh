@@ -83,7 +83,7 @@ check_alone() { read_sources alone build/alone -DTAKT_UNITY=OFF -DTAKT_WERROR=ON
 # The copy of the tree and its programs stay in build/mutation, so that a second run compiles only what has changed.
 check_mutation() { python3 test/mutation/mutate.py --seed 1 --count 200 --jobs "$jobs"; }
 
-# build PRESET COMPILER [TARGET...]. Warnings are errors in release and asan, which compile all files.
+# build PRESET COMPILER [TARGET...]. Warnings are errors in release and fuzz, which compile all files.
 build() {
   preset=$1
   compiler=$2
@@ -104,7 +104,7 @@ run_benchmarks() {
 
 fuzz() {
   seconds=${TAKT_FUZZ:-60}
-  cmake --preset fuzz -DTAKT_UNITY=ON -DTAKT_PCH="${TAKT_PCH:-ON}" && ninja -C build/fuzz -j "$jobs" takt_fuzz_targets || return 1
+  build fuzz clang++-19 takt_fuzz_targets || return 1
   # One seed: a finding comes from a change and not from luck. Longer runs with other seeds belong to a release.
   {
     echo "eds $seconds -dict=test/fuzz/eds.dict"
@@ -141,7 +141,8 @@ for wanted in $stages; do
         stage benchmarks run_benchmarks
       fi
       ;;
-    asan) stage asan-build build asan clang++-19 takt_host_tests && stage asan-tests run_tests asan -L host ;;
+    # The tests under ASan and UBSan and the fuzz targets are programs of one build: the preset fuzz is asan with clang.
+    asan) stage asan-build build fuzz clang++-19 takt_host_tests && stage asan-tests run_tests fuzz -L host ;;
     fuzz) stage fuzz fuzz ;;
     tsan) stage tsan-build build tsan c++ takt_threaded_tests taktd takt takt-move && stage tsan-tests run_tests tsan -L threaded ;;
     *) echo "no stage $wanted" >&2 && exit 2 ;;
