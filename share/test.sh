@@ -1,7 +1,7 @@
 #!/bin/sh
 # test.sh - everything that CI runs, a line a stage; ends with the count and exit code 0 if all is good.
-#   TAKT_STAGES  only these of: format alone release asan tsan fuzz tidy mutation (without: all but mutation, which builds a copy of
-#                the tree and belongs to a release)
+#   TAKT_STAGES  only these of: format release asan tsan fuzz tidy alone mutation (without: all but the last two, which belong to
+#                a release: they compile each source alone, and 200 changed copies)
 #   TAKT_FUZZ    seconds of the stage fuzz for EDS files; half of it for network files, a third for each other target (60)
 #   TAKT_PCH     OFF: no precompiled headers
 #   TAKT_JOBS    parallel jobs (number of processors)
@@ -9,7 +9,7 @@ set -u
 cd "$(dirname "$0")/.." || exit 1
 sh share/install_packages.sh build run test || exit 1
 
-stages=${TAKT_STAGES:-format release asan tsan fuzz tidy alone}
+stages=${TAKT_STAGES:-format release asan tsan fuzz tidy}
 jobs=${TAKT_JOBS:-$(nproc)}
 logs=build/test-logs
 # What another checkout on this machine has compiled need not be compiled again.
@@ -77,7 +77,8 @@ read_sources() {
     ninja -C "$build" takt_lcm_headers && python3 "test/house/$script.py" "$build" "$jobs"
 }
 check_tidy() { read_sources tidy build/tidy -DTAKT_UNITY=ON; }
-# Proves that each source includes what it uses: the builds compile the sources of a room together.
+# Proves that each source includes what it uses: the builds compile the sources of a room together. Each run of the tests checks
+# the same by names (test/house/check_includes.py).
 check_alone() { read_sources alone build/alone -DTAKT_UNITY=OFF -DTAKT_WERROR=ON; }
 
 # The copy of the tree and its programs stay in build/mutation, so that a second run compiles only what has changed.

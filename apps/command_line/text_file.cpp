@@ -4,6 +4,7 @@
 #include <iostream>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 namespace takt {
 

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <map>
 
 #include "apps/command_line/known_words.hpp"
 #include "apps/command_line/live_arguments.hpp"

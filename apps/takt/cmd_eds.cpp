@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iostream>
 #include <sstream>
+#include <utility>
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/finding_text.hpp"

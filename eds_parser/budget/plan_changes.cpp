@@ -1,7 +1,9 @@
 #include "eds_parser/budget/plan_changes.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <set>
+#include <utility>
 
 #include "eds_parser/report/message.hpp"
 

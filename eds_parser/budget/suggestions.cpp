@@ -1,6 +1,7 @@
 #include "eds_parser/budget/suggestions.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "eds_parser/budget/combinations.hpp"
 #include "eds_parser/budget/fitting_services.hpp"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "eds_parser/report/message.hpp"
 #include "eds_parser/table/number_in.hpp"

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdlib>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "eds_parser/check/rules.hpp"

@@ -2,6 +2,7 @@
 #include <compare>
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace takt {
 

@@ -1,6 +1,7 @@
 #include "eds_parser/dictionary/concise_dcf.hpp"
 
 #include <cstdint>
+#include <utility>
 
 namespace takt {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/ini/number.hpp"

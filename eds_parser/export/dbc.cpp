@@ -1,5 +1,6 @@
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "eds_parser/export/dbc_text.hpp"

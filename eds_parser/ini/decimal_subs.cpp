@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "eds_parser/ini/eds_lists.hpp"
 #include "eds_parser/ini/eds_section.hpp"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "eds_parser/lcm/lcm_channel.hpp"
 #include "eds_parser/table/name_of.hpp"

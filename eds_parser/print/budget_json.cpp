@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "eds_parser/print/json.hpp"
 #include "eds_parser/print/names.hpp"
 #include "eds_parser/print/print_budget.hpp"

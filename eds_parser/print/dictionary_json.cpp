@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/print/json.hpp"

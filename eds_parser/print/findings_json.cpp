@@ -1,6 +1,8 @@
 #include "eds_parser/print/findings_json.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include "eds_parser/print/json.hpp"
 

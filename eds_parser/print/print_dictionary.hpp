@@ -1,5 +1,6 @@
 #pragma once
 #include <iosfwd>
+#include <ostream>
 
 #include "eds_parser/dictionary/object_dictionary.hpp"
 #include "eds_parser/report/source.hpp"

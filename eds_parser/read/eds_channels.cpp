@@ -1,6 +1,7 @@
 #include "eds_parser/read/eds_channels.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "eds_parser/dictionary/standard_types.hpp"
 #include "eds_parser/ini/section_keys.hpp"

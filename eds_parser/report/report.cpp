@@ -1,6 +1,7 @@
 #include "eds_parser/report/report.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace takt {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/dictionary/pdo_description.hpp"

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 #include <span>
+#include <utility>
 
 #include "eds_parser/ini/decimal_subs.hpp"
 #include "eds_parser/ini/number.hpp"

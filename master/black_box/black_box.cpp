@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
+#include <exception>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <set>

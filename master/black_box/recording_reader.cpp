@@ -1,9 +1,11 @@
 #include <cerrno>
 #include <cstring>
+#include <exception>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "master/black_box/recording_format.hpp"
 #include "master/trace/candump_line.hpp"

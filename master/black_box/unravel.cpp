@@ -5,6 +5,7 @@
 #include <cstring>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "master/core/set_point.hpp"
 #include "master/rt/journal/recorded_port.hpp"

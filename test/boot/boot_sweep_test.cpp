@@ -1,3 +1,4 @@
+#include <ios>
 #include <set>
 
 #include "test/boot/plant.hpp"

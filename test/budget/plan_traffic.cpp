@@ -1,6 +1,7 @@
 #include "test/budget/plan_traffic.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace takt {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <utility>
 
 #include "eds_parser/plan/frame_time.hpp"
 #include "master/sim/bus/frame_bits.hpp"

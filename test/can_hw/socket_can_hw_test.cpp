@@ -1,5 +1,6 @@
 // On can0 and can1, two SJA1000 controllers on one wire at 1 Mbit/s: see support/with-rt-can.
 #include <gmock/gmock.h>
+#include <stdexcept>
 #include <thread>
 
 #include "master/linux/can/can_filters.hpp"

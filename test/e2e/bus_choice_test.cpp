@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <utility>
 
 #include "test/e2e/daemon_process.hpp"
 #include "test/support/folder.hpp"

@@ -2,6 +2,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"

@@ -1,4 +1,5 @@
 #include <bit>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <gtest/gtest.h>
+#include <string>
 
 #include "test/mutation/mutant.hpp"
 

@@ -1,5 +1,6 @@
 #include <array>
 #include <gtest/gtest.h>
+#include <memory>
 
 #include "apps/takt/soak/judge/image_judge.hpp"
 #include "apps/takt/soak/judge/node_judge.hpp"

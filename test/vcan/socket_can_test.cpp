@@ -1,5 +1,7 @@
 #include "master/linux/can/socket_can.hpp"
 
+#include <stdexcept>
+
 #include "master/linux/bus/frame_channel.hpp"
 #include "master/linux/can/can_filters.hpp"
 #include "test/support/patience.hpp"

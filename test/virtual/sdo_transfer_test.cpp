@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdio>
 #include <gtest/gtest.h>
 #include <numeric>
 

@@ -1,6 +1,7 @@
 #include "apps/takt/audit/audit.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "apps/takt/audit/supervision.hpp"
 

@@ -2,6 +2,7 @@
 #include <array>
 #include <fmt/format.h>
 #include <set>
+#include <utility>
 
 #include "apps/takt/audit/reaction.hpp"
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "apps/takt/audit/supervision.hpp"
 #include "eds_parser/table/little_endian.hpp"

@@ -1,4 +1,5 @@
 #include <fstream>
+#include <string_view>
 #include <sys/utsname.h>
 
 #include "apps/takt/doctor/checkup.hpp"

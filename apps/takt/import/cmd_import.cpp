@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/finding_text.hpp"

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "eds_parser/ini/ini.hpp"
 #include "eds_parser/ini/value_reader.hpp"

@@ -1,6 +1,7 @@
 #include "apps/takt/learn/network_text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <ranges>

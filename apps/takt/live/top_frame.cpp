@@ -7,6 +7,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sstream>
+#include <utility>
 
 #include "apps/takt/live/timing_table.hpp"
 #include "master/core/node_status.hpp"

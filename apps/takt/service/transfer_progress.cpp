@@ -1,5 +1,6 @@
 #include "apps/takt/service/transfer_progress.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <fmt/format.h>

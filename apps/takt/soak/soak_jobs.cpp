@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <cstring>
+#include <stdexcept>
 #include <sys/wait.h>
 #include <type_traits>
 #include <unistd.h>

@@ -1,4 +1,5 @@
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "apps/takt/trajectory/trajectory_line.hpp"
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 namespace takt {
 namespace {

@@ -1,6 +1,7 @@
 #include "eds_parser/print/plan/pdo_picture.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace takt {
 namespace {

@@ -1,5 +1,7 @@
 #include "eds_parser/print/plan/plan_diff_json.hpp"
 
+#include <utility>
+
 #include "eds_parser/print/json.hpp"
 
 namespace takt {

@@ -1,6 +1,7 @@
 #pragma once
 #include <iosfwd>
 #include <optional>
+#include <ostream>
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/run_options.hpp"

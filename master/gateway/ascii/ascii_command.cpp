@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <utility>
 
 #include "master/core/request.hpp"
 #include "master/gateway/ascii/ascii_words.hpp"

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <takt/envelope_t.hpp>
 #include <takt/lcm.hpp>
+#include <utility>
 #include <vector>
 
 #include "eds_parser/table/time.hpp"

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <sys/stat.h>
 #include <takt/lcm.hpp>
+#include <utility>
 #include <vector>
 
 #include "eds_parser/table/time.hpp"

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 #include <takt/lcm.hpp>
+#include <utility>
 #include <vector>
 
 #include "master/lcm/front_budget.hpp"

@@ -1,5 +1,6 @@
 #include "master/rt/exchange/histogram.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 

@@ -1,6 +1,7 @@
 // The example of the README: all axes creep forward for as long as images come.
 #include <chrono>
 #include <takt/axis.hpp>
+#include <utility>
 
 int main() {
   using namespace std::chrono_literals;

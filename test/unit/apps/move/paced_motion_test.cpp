@@ -1,5 +1,6 @@
 #include "apps/move/paced_motion.hpp"
 
+#include <algorithm>
 #include <deque>
 #include <gtest/gtest.h>
 

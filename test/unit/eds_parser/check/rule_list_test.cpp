@@ -1,6 +1,7 @@
 #include "eds_parser/check/rule_list.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <gtest/gtest.h>
 
 #include "test/unit/eds_parser/read/eds_text.hpp"

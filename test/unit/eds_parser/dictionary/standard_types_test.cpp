@@ -1,6 +1,7 @@
 #include "eds_parser/dictionary/standard_types.hpp"
 
 #include <gtest/gtest.h>
+#include <ios>
 
 namespace takt {
 namespace {

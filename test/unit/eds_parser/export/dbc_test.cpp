@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <utility>
 
 #include "eds_parser/export/dbc_text.hpp"
 #include "eds_parser/export/export.hpp"

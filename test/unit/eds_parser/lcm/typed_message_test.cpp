@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <utility>
 
 #include "eds_parser/export/export.hpp"
 #include "eds_parser/network_file/load_network.hpp"

@@ -1,6 +1,7 @@
 // The questions of a careful colleague about a network file that can be run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <utility>
 
 #include "eds_parser/network_file/load_network.hpp"
 #include "test/support/folder.hpp"

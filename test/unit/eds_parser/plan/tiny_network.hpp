@@ -1,5 +1,6 @@
 #pragma once
 #include <deque>
+#include <ios>
 #include <optional>
 #include <sstream>
 #include <string>

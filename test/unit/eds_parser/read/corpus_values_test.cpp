@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdio>
 #include <gtest/gtest.h>
 
 #include "eds_parser/read/eds.hpp"

@@ -1,5 +1,6 @@
 #include "eds_parser/report/text_diff.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <gtest/gtest.h>
 #include <random>

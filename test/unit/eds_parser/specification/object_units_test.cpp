@@ -1,6 +1,7 @@
 #include "eds_parser/specification/object_units.hpp"
 
 #include <gtest/gtest.h>
+#include <ios>
 
 namespace takt {
 namespace {

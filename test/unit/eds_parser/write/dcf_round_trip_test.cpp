@@ -1,6 +1,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <iterator>
+#include <utility>
 
 #include "eds_parser/write/configured_values.hpp"
 #include "eds_parser/write/dcf_writer.hpp"

@@ -1,6 +1,7 @@
 #include "eds_parser/write/dcf_writer.hpp"
 
 #include <gtest/gtest.h>
+#include <utility>
 
 #include "eds_parser/dictionary/pdo_description.hpp"
 #include "test/unit/eds_parser/read/eds_text.hpp"

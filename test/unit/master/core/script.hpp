@@ -2,6 +2,7 @@
 #include <chrono>
 #include <gtest/gtest.h>
 #include <initializer_list>
+#include <ios>
 #include <ostream>
 #include <vector>
 

@@ -1,5 +1,6 @@
 #include <array>
 #include <gtest/gtest.h>
+#include <ios>
 #include <set>
 
 #include "master/explain/emcy_text.hpp"

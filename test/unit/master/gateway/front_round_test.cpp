@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <gtest/gtest.h>
+#include <string>
 
 namespace takt {
 namespace {

@@ -4,6 +4,7 @@
 #include <sched.h>
 #include <sys/resource.h>
 #include <thread>
+#include <utility>
 
 namespace takt {
 namespace {

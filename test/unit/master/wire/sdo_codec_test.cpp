@@ -1,6 +1,7 @@
 #include "master/wire/sdo_codec.hpp"
 
 #include <gtest/gtest.h>
+#include <vector>
 
 namespace takt {
 namespace {

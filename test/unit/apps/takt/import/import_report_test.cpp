@@ -1,5 +1,6 @@
 #include "apps/takt/import/import_report.hpp"
 
+#include <cstdlib>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <ios>
 #include <random>
 #include <sstream>
 #include <unistd.h>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <stdexcept>
 
 #include "test/unit/eds_parser/plan/tiny_network.hpp"
 

@@ -1,7 +1,9 @@
 #include "master/core/lss/lss_master.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <gtest/gtest.h>
+#include <utility>
 #include <vector>
 
 #include "master/core/lss/lss_runner.hpp"

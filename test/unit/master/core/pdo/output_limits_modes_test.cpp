@@ -1,4 +1,5 @@
 // Limits together with the modes of an axis, and limits against random commands.
+#include <cmath>
 #include <gtest/gtest.h>
 #include <random>
 #include <vector>

@@ -1,4 +1,5 @@
 // Limits of the sum of a target velocity or torque and its offset.
+#include <cmath>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <random>

@@ -2,6 +2,7 @@
 // one SYNC, MPDO.
 #include <gtest/gtest.h>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "master/core/pdo/pdo_exchange.hpp"

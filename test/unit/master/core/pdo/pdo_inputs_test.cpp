@@ -1,6 +1,7 @@
 #include "master/core/pdo/pdo_inputs.hpp"
 
 #include <gtest/gtest.h>
+#include <utility>
 #include <vector>
 
 #include "test/unit/master/core/pdo/small_plan.hpp"

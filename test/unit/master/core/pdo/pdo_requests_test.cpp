@@ -2,6 +2,7 @@
 
 #include <array>
 #include <gtest/gtest.h>
+#include <utility>
 #include <vector>
 
 #include "test/unit/master/core/pdo/small_plan.hpp"

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <gtest/gtest.h>
+#include <utility>
 #include <vector>
 
 #include "test/unit/master/gateway/a_plan.hpp"

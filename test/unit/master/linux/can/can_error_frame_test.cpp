@@ -1,5 +1,6 @@
 #include "master/linux/can/can_error_frame.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace takt {

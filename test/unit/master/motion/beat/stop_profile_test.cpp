@@ -1,5 +1,6 @@
 #include "master/motion/beat/stop_profile.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>

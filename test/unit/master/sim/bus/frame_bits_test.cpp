@@ -1,6 +1,7 @@
 #include "master/sim/bus/frame_bits.hpp"
 
 #include <gtest/gtest.h>
+#include <vector>
 
 namespace takt::sim {
 namespace {

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <ios>
 
 #include "master/sim/device/device.hpp"
 #include "master/wire/bytes.hpp"
