@@ -77,7 +77,7 @@ read_sources() {
     ninja -C "$build" takt_lcm_headers && python3 "test/house/$script.py" "$build" "$jobs"
 }
 check_tidy() { read_sources tidy build/tidy -DTAKT_UNITY=ON; }
-# Proves that each source includes what it uses: the builds compile the sources of a room together. Each run of the tests checks
+# Proves that each source includes what it uses: the builds compile the sources of a library together. Each run of the tests checks
 # the same by names (test/house/check_includes.py).
 check_alone() { read_sources alone build/alone -DTAKT_UNITY=OFF -DTAKT_WERROR=ON; }
 

@@ -37,7 +37,7 @@ std::size_t size_of(const std::vector<ConciseEntry>& entries) {
   return size;
 }
 
-int decode(const EdsCdcfOptions& options) {
+int print_concise(const EdsCdcfOptions& options) {
   const std::string content = value_or_fail(read_whole_file(options.file), 1);
   const auto entries = decode_concise_dcf(std::as_bytes(std::span{content}));
   if (!entries) return complain(options.file + ": the concise DCF " + entries.error(), 1);
@@ -52,7 +52,7 @@ int decode(const EdsCdcfOptions& options) {
   return 0;
 }
 
-int encode(const EdsCdcfOptions& options) {
+int write_concise(const EdsCdcfOptions& options) {
   const auto [entries, findings] =
       configured_values(read_eds_file(options.file, NodeId::from(options.node)));
   if (print_findings(findings, Severity::warning)) return 1;
@@ -87,7 +87,7 @@ void add_eds_cdcf(CLI::App& eds, int& exit_code) {
       "  takt eds cdcf --decode axis.bin");
   command->callback([options, out, &exit_code] {
     if (!options->decode && out->empty()) throw CLI::RequiredError{"--output"};
-    exit_code = options->decode ? decode(*options) : encode(*options);
+    exit_code = options->decode ? print_concise(*options) : write_concise(*options);
   });
 }
 

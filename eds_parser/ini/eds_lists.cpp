@@ -9,11 +9,11 @@
 namespace takt {
 namespace {
 
-constexpr std::uint32_t most_entries = 0xFFFF;
+constexpr std::uint32_t longest_list = 0xFFFF;
 
 std::optional<std::uint32_t> small_number(std::string_view text) noexcept {
   const auto number = parse_number(text);
-  if (!number || !number->is_within(most_entries)) return std::nullopt;
+  if (!number || !number->is_within(longest_list)) return std::nullopt;
   return static_cast<std::uint32_t>(number->magnitude);
 }
 

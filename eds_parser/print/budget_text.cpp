@@ -13,7 +13,7 @@ namespace takt {
 namespace {
 
 /// Formats a time, for example "2000 us", "100 ms" or "1 s".
-std::string span_text(Time time) {
+std::string period_text(Time time) {
   using namespace std::chrono_literals;
   if (time >= 1s && time % 1s == Time{0}) return fmt::format("{} s", time / 1s);
   if (time >= 10ms && time % 1ms == Time{0}) return fmt::format("{} ms", time / 1ms);
@@ -24,7 +24,7 @@ std::string every(const BudgetRow& row) {
   const auto& frame = row.frame;
   std::string text = "SYNC";
   if (!frame.in_cycle || frame.period_assumed) {
-    text = (frame.period_assumed ? "~" : "") + span_text(frame.period);
+    text = (frame.period_assumed ? "~" : "") + period_text(frame.period);
   } else if (frame.every > 1) {
     text = fmt::format("{} SYNCs", frame.every);
   } else if (frame.on_change) {
@@ -71,12 +71,12 @@ class BudgetText {
     const auto& load = budget_.load;
     out_ << fmt::format("bus {}: {} kbit/s, {} {}\n", plan_.name, plan_.bitrate / 1000,
                         plan_.cycle.sync ? "SYNC every" : "no SYNC, a cycle of",
-                        span_text(plan_.cycle.period));
+                        period_text(plan_.cycle.period));
     out_ << fmt::format(
         "load: {:.1f} % typical, {:.1f} % with worst stuffing; SDO takes {:.1f} % more at most "
         "({} dialogues in {})\n",
         100 * load.typical, 100 * load.worst, 100 * load.services, budget_.service_dialogues,
-        span_text(budget_.service_round));
+        period_text(budget_.service_round));
     for (const auto& sentence : budget_.assumptions) out_ << "assumed: " << sentence << '\n';
   }
 

@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-using Lines = std::span<const std::string_view>;
+using TextLines = std::span<const std::string_view>;
 using Kind = DiffLine::Kind;
 
 constexpr std::size_t most_cells = 1'000'000;  // size limit of the table for repeated lines
@@ -43,7 +43,7 @@ std::vector<Anchor> ascending(const std::vector<Anchor>& anchors) {
   return run;
 }
 
-std::vector<Anchor> anchors_of(Lines before, Lines after) {
+std::vector<Anchor> anchors_of(TextLines before, TextLines after) {
   struct Seen {
     std::size_t in_before = 0;
     std::size_t in_after = 0;
@@ -66,19 +66,19 @@ std::vector<Anchor> anchors_of(Lines before, Lines after) {
 
 class Differ {
  public:
-  std::vector<DiffLine> run(Lines before, Lines after) {
+  std::vector<DiffLine> run(TextLines before, TextLines after) {
     range(before, after);
     return std::move(out_);
   }
 
  private:
-  void add(Kind kind, Lines lines) {
+  void add(Kind kind, TextLines lines) {
     for (const std::string_view line : lines) out_.push_back({kind, line});
   }
 
   /// Compares a range of lines. The lines that both texts have in common at the beginning and at
   /// the end are equal; middle() compares the lines between them.
-  void range(Lines before, Lines after) {
+  void range(TextLines before, TextLines after) {
     std::size_t head = 0;
     const std::size_t least = std::min(before.size(), after.size());
     while (head < least && before[head] == after[head]) ++head;
@@ -90,12 +90,12 @@ class Differ {
            before[before.size() - 1 - tail] == after[after.size() - 1 - tail]) {
       ++tail;
     }
-    const Lines end = before.last(tail);
+    const TextLines end = before.last(tail);
     middle(before.first(before.size() - tail), after.first(after.size() - tail));
     add(Kind::same, end);
   }
 
-  void middle(Lines before, Lines after) {
+  void middle(TextLines before, TextLines after) {
     const std::vector<Anchor> anchors =
         before.empty() || after.empty() ? std::vector<Anchor>{} : anchors_of(before, after);
     if (anchors.empty()) return repeated(before, after);
@@ -111,7 +111,7 @@ class Differ {
 
   /// Compares lines without an anchor by their longest common subsequence, which a table finds. If
   /// the table would become too large, all lines count as changed.
-  void repeated(Lines before, Lines after) {
+  void repeated(TextLines before, TextLines after) {
     const std::size_t width = after.size() + 1;
     if (before.empty() || after.empty() || (before.size() + 1) * width > most_cells) {
       add(Kind::removed, before);
@@ -238,7 +238,9 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-std::vector<DiffLine> diff_lines(Lines before, Lines after) { return Differ{}.run(before, after); }
+std::vector<DiffLine> diff_lines(TextLines before, TextLines after) {
+  return Differ{}.run(before, after);
+}
 
 std::string unified_hunks(std::span<const DiffLine> lines, bool (*heading)(std::string_view),
                           std::size_t context) {

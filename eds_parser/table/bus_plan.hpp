@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -128,6 +129,11 @@ struct NodePlan {
   std::optional<FirmwarePlan> firmware{};
   std::string on_sync_loss{};  ///< reaction of such a device to SYNC loss; empty = not known
   std::vector<AxisPlan> axes{};
+
+  /// Returns how long the master waits for an answer about this object to a request.
+  Time sdo_timeout_of(ObjectKey object) const noexcept {
+    return sdo.timeout_of(object, sdo_timeout > Time{} ? sdo_timeout : std::chrono::seconds{1});
+  }
 };
 
 /// What the master does, besides reporting, when the SYNC of another device stops.

@@ -6,7 +6,7 @@
 namespace takt {
 namespace {
 
-constexpr std::size_t most_known = 1024;
+constexpr std::size_t most_known_channels = 1024;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ bool ChannelPatterns::match(std::string_view channel) const {
   std::string key{channel};
   const bool matches = std::ranges::any_of(
       patterns_, [&](const ChannelPattern& pattern) { return pattern.match(key); });
-  if (known_.size() >= most_known) known_.clear();
+  if (known_.size() >= most_known_channels) known_.clear();
   known_.emplace(std::move(key), matches);
   return matches;
 }

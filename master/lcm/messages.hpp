@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -33,6 +34,9 @@ inline constexpr std::int16_t message_schema = 2;
 /// Largest message, if the sender can choose: one Ethernet frame with LCM's header and channel
 /// name.
 inline constexpr std::size_t message_bytes = 1300;
+
+/// Longest time between the arrivals of one message by two ways.
+inline constexpr std::chrono::milliseconds echo_limit{50};
 
 using Bytes = std::span<const std::byte>;
 

@@ -70,8 +70,8 @@ class ErrorControlSteps : BootPart {
       const auto value = configured.value_or(integer_of(sub.default_value).value_or(0));
       const auto watched = (value >> 16) & 0xFF;
       if (watched == context.plan.master_id.value()) return sub.sub;
-      const bool off = watched == 0 || watched > 127 || (value & 0xFFFF) == 0;
-      if (off && !unused) unused = sub.sub;
+      const bool is_free = watched == 0 || watched > 127 || (value & 0xFFFF) == 0;
+      if (is_free && !unused) unused = sub.sub;
       if (!configured && !by_default) by_default = sub.sub;
     }
     return unused ? unused : by_default;

@@ -5,8 +5,6 @@
 namespace takt {
 namespace {
 
-using std::chrono::milliseconds;
-
 bool writes(const BootStep& step, ObjectKey key) noexcept {
   const bool any = step.action == BootAction::write ||
                    step.action == BootAction::write_if_differs ||
@@ -35,10 +33,12 @@ void set_device_watch(const ObjectDictionary& dictionary, NodePlan& node) {
       const std::int64_t raw = entry.sub == 0 ? 0 : value({0x1016, entry.sub});
       const auto producer = NodeId::from(static_cast<unsigned>(raw >> 16 & 0xFF));
       if (!producer || (raw & 0xFFFF) == 0) continue;
-      node.watches.push_back({.producer = *producer, .longest = milliseconds{raw & 0xFFFF}});
+      node.watches.push_back(
+          {.producer = *producer, .longest = std::chrono::milliseconds{raw & 0xFFFF}});
     }
   }
-  node.life_guarding = milliseconds{value({0x100C, 0}) & 0xFFFF} * (value({0x100D, 0}) & 0xFF);
+  node.life_guarding =
+      std::chrono::milliseconds{value({0x100C, 0}) & 0xFFFF} * (value({0x100D, 0}) & 0xFF);
 }
 
 }  // namespace takt

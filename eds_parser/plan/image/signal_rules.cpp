@@ -11,7 +11,7 @@
 namespace takt {
 namespace {
 
-constexpr std::int64_t quick_stop_command = 0x0002;
+constexpr std::int64_t quick_stop_bits = 0x0002;
 constexpr std::int64_t disable_voltage_command = 0x0000;
 constexpr std::chrono::milliseconds default_time_to_live{50};
 
@@ -111,7 +111,7 @@ void apply_fallback(const NodeSource& node, bool cia402, Time period, Signal& si
     case FallbackPolicy::hold:
       break;
     case FallbackPolicy::quick_stop:
-      stop_axis(signal, quick_stop_command);
+      stop_axis(signal, quick_stop_bits);
       break;
     case FallbackPolicy::disable:
       stop_axis(signal, disable_voltage_command);

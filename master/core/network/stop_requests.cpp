@@ -14,7 +14,6 @@ namespace {
 constexpr Time poll_pause = std::chrono::milliseconds{10};
 /// The shortest time between two writes to an axis. In between, its values are read.
 constexpr Time write_pause = std::chrono::milliseconds{100};
-constexpr Time default_sdo_timeout = std::chrono::seconds{1};
 
 bool keeps_alive(const NodePlan& node) {
   return std::ranges::any_of(node.boot_plan.steps, [](const BootStep& step) {
@@ -77,13 +76,12 @@ void StopRequests::add_jobs(const BusPlan& plan, std::uint8_t node_index) {
     if (jobs_.size() == first) {
       jobs_.push_back({.node = node.id.value(), .node_index = node_index, .step = place});
     }
-    const Time own = node.sdo_timeout > Time{} ? node.sdo_timeout : default_sdo_timeout;
     jobs_.push_back({.node = node.id.value(),
                      .node_index = node_index,
                      .object = step.object,
                      .bytes = static_cast<std::uint8_t>(step.value.size()),
                      .step = place,
-                     .timeout = node.sdo.timeout_of(step.object, own)});
+                     .timeout = node.sdo_timeout_of(step.object)});
   }
 }
 

@@ -6,7 +6,6 @@
 namespace takt {
 namespace {
 
-constexpr Time default_sdo_timeout = std::chrono::seconds{1};
 constexpr Time transfer_look = std::chrono::milliseconds{20};
 
 }  // namespace
@@ -47,9 +46,8 @@ void NodeRequests::answer(const SdoResult& result, const SdoClient& client,
 void NodeRequests::begin_next(SdoClient& client, Time now) noexcept {
   if (!client.idle() || !activate_next()) return;
   Request& request = active_->request;
-  const Time own = plan_->sdo_timeout > Time{} ? plan_->sdo_timeout : default_sdo_timeout;
   const Time timeout =
-      request.timeout > Time{} ? request.timeout : plan_->sdo.timeout_of(request.object, own);
+      request.timeout > Time{} ? request.timeout : plan_->sdo_timeout_of(request.object);
   SdoTransfer* const transfer = request.transfer;
   const bool upload = request.kind == RequestKind::sdo_upload;
   if (transfer != nullptr) {

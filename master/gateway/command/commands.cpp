@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, command_refusals> refusal_names{
     "observing", "schema",  "session",   "sender", "no_cycle", "future",   "bad_signal",
     "bad_value", "too_old", "not_ready", "held",   "waited",   "overtaken"};
 
-std::uint32_t cycles_in(Time span, Time period) noexcept {
+std::uint32_t whole_cycles(Time span, Time period) noexcept {
   if (period <= Time{0}) return 1;
   return static_cast<std::uint32_t>(std::max<std::int64_t>(1, span / period));
 }
@@ -53,7 +53,7 @@ Commands::Commands(const BusPlan& plan, CommandsOptions options, SetOutput set_o
       options_{options},
       set_output_{std::move(set_output)},
       announce_{std::move(announce)},
-      second_{cycles_in(std::chrono::seconds{1}, plan.cycle.period)},
+      second_{whole_cycles(std::chrono::seconds{1}, plan.cycle.period)},
       leases_{plan.nodes.size(), second_},
       verdicts_(plan.nodes.size()),
       limits_(plan.layout.signals.size()) {}

@@ -20,14 +20,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t most_known = 256;
+constexpr std::size_t most_known_requests = 256;
 constexpr std::size_t most_heard = 64;
 constexpr std::size_t most_pending = 64;
 constexpr std::size_t longest_service = 32;
 /// Time after the answer. It is longer than the 11 s for which a copy of a request can be accepted:
 /// from 1 s before its utime until 10 s after it.
 constexpr Time remembered = 12s;
-constexpr Time echo_limit = 50ms;  // time between the arrivals of one message by two ways
 
 bool same_message(const request_t& a, const request_t& b) {
   const auto fields = [](const request_t& m) {
@@ -150,7 +149,7 @@ void Requests::forget(Time now) {
   std::erase_if(known_, [now](const Known& known) {
     return known.answered != never && now - known.answered > remembered;
   });
-  if (known_.size() < most_known) return;
+  if (known_.size() < most_known_requests) return;
   const auto answered =
       std::ranges::find_if(known_, [](const Known& known) { return known.answered != never; });
   if (answered != known_.end()) known_.erase(answered);

@@ -5,13 +5,13 @@
 #include <utility>
 
 #include "eds_parser/lcm/lcm_channel.hpp"
+#include "master/lcm/messages.hpp"
 #include "master/lcm/printable_text.hpp"
 #include "master/lcm/random_number.hpp"
 
 namespace takt {
 namespace {
 
-constexpr Time echo_limit = std::chrono::milliseconds{50};
 constexpr std::size_t most_opened = 64;
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-constexpr std::chrono::milliseconds retry_pause{500};
+constexpr std::chrono::milliseconds reconnect_pause{500};
 
 }  // namespace
 
@@ -21,7 +21,7 @@ TcpqClient::TcpqClient(std::string address, std::uint16_t port, FrontClock clock
 std::string TcpqClient::url() const { return "tcpq://" + address_ + ':' + std::to_string(port_); }
 
 void TcpqClient::connect() {
-  next_try_ = std::chrono::steady_clock::now() + retry_pause;
+  next_try_ = std::chrono::steady_clock::now() + reconnect_pause;
   connection_.reset();
   sockaddr_in server{};
   server.sin_family = AF_INET;
@@ -67,7 +67,7 @@ void TcpqClient::serve(const MessageHandler& handler) {
   connection_->receive(take, FrontBudget{clock_, FrontBudget::broker});
   if (connection_->closed()) {
     connection_.reset();
-    next_try_ = std::chrono::steady_clock::now() + retry_pause;
+    next_try_ = std::chrono::steady_clock::now() + reconnect_pause;
   }
 }
 

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t news_batch_frames = 128;
 constexpr int batches_a_poll = 32;
-constexpr Time look_again = std::chrono::seconds{1};
+constexpr Time look_for_traffic_again = std::chrono::seconds{1};
 
 FileDescriptor open_can(const std::string& interface) {
   FileDescriptor socket{::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)};
@@ -136,7 +136,7 @@ void DiagnosticSocket::poll(const OnFrame& on_frame) {
   const Time start = monotonic_now();
   if (!state.socket) {
     if (start < state.next_look) return;
-    state.next_look = start + look_again;
+    state.next_look = start + look_for_traffic_again;
     if (!state.connect()) return;
   }
   for (int batch = 0; batch < batches_a_poll && state.socket; ++batch) {

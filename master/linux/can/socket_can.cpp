@@ -20,8 +20,8 @@
 namespace takt {
 namespace {
 
-constexpr std::size_t batch_frames = 256;
-constexpr Time look_again = std::chrono::milliseconds{50};
+constexpr std::size_t can_batch_frames = 256;
+constexpr Time look_at_interface_again = std::chrono::milliseconds{50};
 
 BusError error_of(const std::string& interface, const std::string& what, int error) {
   return {interface + ": " + what + ": " + std::strerror(error), error};
@@ -49,8 +49,8 @@ struct SocketCanPort::State {
   Time next_look{};
   PortNews news;
   std::uint32_t dropped = 0;  // part of news.receive_overruns that the kernel dropped
-  MessageBatch<can_frame, batch_frames, can_control_bytes> in;
-  MessageBatch<can_frame, batch_frames, 0> out;
+  MessageBatch<can_frame, can_batch_frames, can_control_bytes> in;
+  MessageBatch<can_frame, can_batch_frames, 0> out;
 
   bool bind_interface() noexcept;
   void note(int error) noexcept;
@@ -75,14 +75,14 @@ bool SocketCanPort::State::bind_interface() noexcept {
 void SocketCanPort::State::note(int error) noexcept {
   news.last_error = error;
   if (!means_down(error)) return;
-  if (!news.interface_down) next_look = monotonic_now() + look_again;
+  if (!news.interface_down) next_look = monotonic_now() + look_at_interface_again;
   news.interface_down = true;
 }
 
 void SocketCanPort::State::look_for_interface() noexcept {
   const Time now = monotonic_now();
   if (now < next_look) return;
-  next_look = now + look_again;
+  next_look = now + look_at_interface_again;
   ifreq flags = request;
   if (ioctl(fd.get(), SIOCGIFFLAGS, &flags) != 0 || (flags.ifr_flags & IFF_UP) == 0) return;
   if (!bind_interface()) return;
@@ -190,7 +190,7 @@ void SocketCanPort::sleep_precisely_until(Time until) noexcept {
 }
 
 bool SocketCanPort::wait_frame(Time until) noexcept {
-  if (state_->news.interface_down) return wait_to_look_again(look_again, until);
+  if (state_->news.interface_down) return wait_to_look_again(look_at_interface_again, until);
   return wait_for_frame(state_->fd.get(), until);
 }
 
@@ -199,7 +199,7 @@ std::size_t SocketCanPort::receive(std::span<StampedFrame> in) noexcept {
   if (state.news.interface_down) state.look_for_interface();
   std::size_t taken = 0;
   for (bool more = true; more;) {
-    const std::size_t room = std::min(in.size() - taken, batch_frames);
+    const std::size_t room = std::min(in.size() - taken, can_batch_frames);
     const std::size_t got = state.fetch(room);
     if (got == 0) break;
     const Time offset = realtime_offset();
