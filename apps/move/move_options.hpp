@@ -3,8 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/move/jerk_limited.hpp"
-
 namespace takt {
 
 /// Options of takt-move. Lengths are in the unit of each axis, times in seconds.

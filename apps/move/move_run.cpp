@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "apps/move/held_axes.hpp"
-#include "apps/move/motion_time.hpp"
 #include "apps/move/not_enabled.hpp"
 #include "apps/move/sine.hpp"
 
@@ -165,17 +164,28 @@ Eigen::VectorXd MoveRun::target(Eigen::VectorXd from) const {
   return Eigen::VectorXd::Map(options_.to.data(), from.size());
 }
 
-SynchronisedMove MoveRun::planned_move(const Eigen::VectorXd& from) const {
+std::optional<SynchronisedMove> MoveRun::planned_move(const Eigen::VectorXd& from) {
   std::vector<MotionLimits> limits(sizes_.size());
   std::ranges::transform(sizes_, limits.begin(), &MoveSizes::limits);
-  return {from, target(from), limits};
+  auto move = SynchronisedMove::plan(from, target(from), limits);
+  if (!move) {
+    progress_.say(
+        "no move was found: the distance, --velocity, --acceleration and --jerk are too far apart, "
+        "or a position is not a number");
+  }
+  return move;
 }
 
-/// Returns true if the motion ends within --for. No axis is enabled for a motion that does not.
+/// Returns true if there is a plan for the move, and if the motion ends within --for. Otherwise no
+/// axis is enabled.
 bool MoveRun::fits_time() {
+  MotionTime time{.sine = options_.sine ? 1.0 / options_.frequency : 0.0};
+  if (options_.point) {
+    const auto move = planned_move(axes_.positions());
+    if (!move) return false;
+    time.move = move->duration();
+  }
   if (!options_.seconds) return true;
-  const MotionTime time{.move = options_.point ? planned_move(axes_.positions()).duration() : 0.0,
-                        .sine = options_.sine ? 1.0 / options_.frequency : 0.0};
   const std::string why = too_long(time, *options_.seconds);
   if (!why.empty()) progress_.say(why);
   return why.empty();
@@ -184,10 +194,13 @@ bool MoveRun::fits_time() {
 bool MoveRun::move() {
   double left = options_.seconds.value_or(usual_seconds);
   if (options_.point) {
-    const SynchronisedMove move = planned_move(axes_.target_positions());
-    progress_.say(fmt::format("moving all axes together, {:.2f} s", move.duration()));
-    if (!follow("move", move.duration(), [&](double t) { return move.position(t); })) return false;
-    left -= move.duration();
+    const auto move = planned_move(axes_.target_positions());
+    if (!move) return false;
+    progress_.say(fmt::format("moving all axes together, {:.2f} s", move->duration()));
+    if (!follow("move", move->duration(), [&](double t) { return move->position(t); })) {
+      return false;
+    }
+    left -= move->duration();
   }
   if (!options_.sine || stop_ != 0) return true;
   return swing(left);

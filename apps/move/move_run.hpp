@@ -1,6 +1,7 @@
 #pragma once
 #include <csignal>
 #include <functional>
+#include <optional>
 #include <string>
 #include <takt/axis.hpp>
 #include <vector>
@@ -8,7 +9,6 @@
 #include "apps/move/following.hpp"
 #include "apps/move/move_options.hpp"
 #include "apps/move/move_sizes.hpp"
-#include "apps/move/pace.hpp"
 #include "apps/move/paced_motion.hpp"
 #include "apps/move/progress.hpp"
 #include "apps/move/synchronised_move.hpp"
@@ -35,7 +35,7 @@ class MoveRun {
   bool devices_answer();
   bool fits_time();
   bool enable();
-  SynchronisedMove planned_move(const Eigen::VectorXd& from) const;
+  std::optional<SynchronisedMove> planned_move(const Eigen::VectorXd& from);
   bool move();
   bool swing(double seconds);
   bool follow(const char* what, double duration, const Trajectory& trajectory);

@@ -1,5 +1,8 @@
 #include "apps/move/move_sizes.hpp"
 
+#include <cmath>
+#include <fmt/format.h>
+
 namespace takt {
 namespace {
 
@@ -22,6 +25,19 @@ MoveSizes sizes_for(const MoveOptions& options, const std::string& unit) {
           .limits = {.velocity = options.velocity.value_or(distance * 0.8),
                      .acceleration = options.acceleration.value_or(distance * 2.0),
                      .jerk = options.jerk.value_or(distance * 10.0)}};
+}
+
+std::string too_long(const MotionTime& time, double limit) {
+  const double whole = time.move + time.sine;
+  if (whole <= limit) return {};
+  std::string parts;
+  if (time.move > 0.0) parts = fmt::format("the move takes {:.2f} s", time.move);
+  if (time.sine > 0.0) {
+    parts += fmt::format("{}one period of the sine takes {:.2f} s", parts.empty() ? "" : " and ",
+                         time.sine);
+  }
+  return fmt::format("{}, but --for allows {:g} s: no axis moves. Give --for {:.2f}s or more",
+                     parts, limit, std::ceil(whole * 100.0) / 100.0);
 }
 
 }  // namespace takt

@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 
+#include "apps/move/motion_limits.hpp"
 #include "apps/move/move_options.hpp"
 
 namespace takt {
@@ -16,5 +17,16 @@ struct MoveSizes {
 /// Returns the sizes that the user asked for, and defaults for all others. The defaults depend on
 /// the unit of the axis; an empty unit stands for raw counts.
 MoveSizes sizes_for(const MoveOptions& options, const std::string& unit);
+
+/// Shortest durations of the parts of a motion, in seconds. 0 means that the motion does not have
+/// this part.
+struct MotionTime {
+  double move = 0.0;  ///< the move to the point
+  double sine = 0.0;  ///< one period of the sine
+};
+
+/// Returns a sentence about a motion that does not end within `limit` seconds. The sentence is
+/// empty if the motion fits.
+std::string too_long(const MotionTime& time, double limit);
 
 }  // namespace takt

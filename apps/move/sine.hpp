@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 
-#include "apps/move/jerk_limited.hpp"
+#include "apps/move/motion_limits.hpp"
 
 namespace takt {
 

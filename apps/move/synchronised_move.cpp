@@ -2,41 +2,52 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <utility>
+#include <functional>
 
 namespace takt {
 namespace {
 
-/// Returns the profile of the covered share of the way, 0 to 1. Its limits keep every axis within
-/// the limits of that axis.
-JerkLimited profile_of(const Eigen::VectorXd& way, std::span<const MotionLimits> limits) {
-  constexpr double none = std::numeric_limits<double>::infinity();
-  MotionLimits strictest{.velocity = none, .acceleration = none, .jerk = none};
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    const double distance = std::abs(way(static_cast<Eigen::Index>(i)));
-    if (distance == 0.0) continue;
-    strictest.velocity = std::min(strictest.velocity, limits[i].velocity / distance);
-    strictest.acceleration = std::min(strictest.acceleration, limits[i].acceleration / distance);
-    strictest.jerk = std::min(strictest.jerk, limits[i].jerk / distance);
-  }
-  return {way.isZero(0.0) ? 0.0 : 1.0, strictest};
+/// Returns true if the motion ends elsewhere than at its target, because the limits are too far
+/// apart for the planner.
+bool misses(const motion::AxisTask& task, const motion::PlannedAxis& axis) noexcept {
+  const double most = std::max(std::abs(task.from.position), std::abs(task.to.position));
+  return !(std::abs(axis.profile.end(task.from).position - task.to.position) <= 1e-7 * most);
 }
 
 }  // namespace
 
-SynchronisedMove::SynchronisedMove(Eigen::VectorXd from, Eigen::VectorXd to,
-                                   std::span<const MotionLimits> limits)
-    : from_{std::move(from)}, to_{std::move(to)}, profile_{profile_of(to_ - from_, limits)} {}
-
-Eigen::VectorXd SynchronisedMove::position(double seconds) const {
-  if (seconds >= duration()) return to_;
-  return from_ + (to_ - from_) * profile_.at(seconds).position;
+std::optional<SynchronisedMove> SynchronisedMove::plan(const Eigen::VectorXd& from,
+                                                       const Eigen::VectorXd& to,
+                                                       std::span<const MotionLimits> limits) {
+  SynchronisedMove move;
+  for (Eigen::Index i = 0; i < from.size(); ++i) {
+    const auto& [velocity, acceleration, jerk] = limits[static_cast<std::size_t>(i)];
+    move.tasks_.push_back({.from = {.position = from(i)},
+                           .to = {.position = to(i)},
+                           .limits = {.max_velocity = velocity,
+                                      .min_velocity = -velocity,
+                                      .max_acceleration = acceleration,
+                                      .min_acceleration = -acceleration,
+                                      .jerk = jerk}});
+  }
+  move.planned_.resize(move.tasks_.size());
+  const auto duration = motion::plan_trajectory(
+      move.tasks_, {.synchronisation = motion::Synchronisation::phase}, move.planned_);
+  if (!duration || !std::ranges::equal(move.tasks_, move.planned_, std::not_fn(misses))) {
+    return std::nullopt;
+  }
+  move.duration_ = *duration;
+  return move;
 }
 
-Eigen::VectorXd SynchronisedMove::velocity(double seconds) const {
-  if (seconds >= duration()) return Eigen::VectorXd::Zero(to_.size());
-  return (to_ - from_) * profile_.at(seconds).velocity;
+Eigen::VectorXd SynchronisedMove::position(double seconds) const {
+  Eigen::VectorXd point{static_cast<Eigen::Index>(tasks_.size())};
+  std::ranges::transform(tasks_, planned_, point.begin(),
+                         [&](const motion::AxisTask& task, const auto& axis) {
+                           if (seconds >= duration_) return task.to.position;
+                           return axis.profile.at(task.from, std::max(seconds, 0.0)).position;
+                         });
+  return point;
 }
 
 }  // namespace takt

@@ -1,8 +1,11 @@
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 #include <span>
+#include <vector>
 
-#include "apps/move/jerk_limited.hpp"
+#include "apps/move/motion_limits.hpp"
+#include "master/motion/trajectory.hpp"
 
 namespace takt {
 
@@ -10,17 +13,19 @@ namespace takt {
 /// start together and arrive together, and each axis stays within its own limits.
 class SynchronisedMove {
  public:
-  /// `limits` holds the limits of each axis.
-  SynchronisedMove(Eigen::VectorXd from, Eigen::VectorXd to, std::span<const MotionLimits> limits);
+  /// Plans the move. `limits` holds the limits of each axis. Returns std::nullopt if a number is
+  /// infinite or NaN, or if the limits are too far apart.
+  static std::optional<SynchronisedMove> plan(const Eigen::VectorXd& from,
+                                              const Eigen::VectorXd& to,
+                                              std::span<const MotionLimits> limits);
 
-  double duration() const noexcept { return profile_.duration(); }
+  double duration() const noexcept { return duration_; }
   Eigen::VectorXd position(double seconds) const;
-  Eigen::VectorXd velocity(double seconds) const;
 
  private:
-  Eigen::VectorXd from_;
-  Eigen::VectorXd to_;
-  JerkLimited profile_;  // the covered share of the way, 0 to 1
+  std::vector<motion::AxisTask> tasks_;
+  std::vector<motion::PlannedAxis> planned_;
+  double duration_ = 0.0;
 };
 
 }  // namespace takt

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <tuple>
 
-#include "apps/move/pace.hpp"
+#include "apps/move/paced_motion.hpp"
 #include "apps/move/sine.hpp"
 
 namespace takt {

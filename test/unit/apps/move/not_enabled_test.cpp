@@ -1,4 +1,4 @@
-#include "apps/move/mode_hint.hpp"
+#include "apps/move/not_enabled.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
