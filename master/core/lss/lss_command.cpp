@@ -9,33 +9,34 @@
 namespace takt {
 namespace {
 
-struct ServiceName {
+struct KnownService {
   LssOp op;
   std::string_view name;
+  Time timeout = waits::lss_answer;
 };
 
-constexpr std::array service_names{
-    ServiceName{LssOp::switch_global, "switch the state of all devices"},
-    ServiceName{LssOp::configure_node_id, "configure node id"},
-    ServiceName{LssOp::configure_bit_timing, "configure bit timing"},
-    ServiceName{LssOp::activate_bit_timing, "activate bit timing"},
-    ServiceName{LssOp::store, "store configuration"},
-    ServiceName{LssOp::switch_selective, "switch one device to configuration state"},
-    ServiceName{LssOp::identify, "identify by ranges"},
-    ServiceName{LssOp::identify_unconfigured, "look for devices without node id"},
-    ServiceName{LssOp::fast_scan, "fastscan"},
-    ServiceName{LssOp::inquire_vendor, "inquire vendor id"},
-    ServiceName{LssOp::inquire_product, "inquire product code"},
-    ServiceName{LssOp::inquire_revision, "inquire revision"},
-    ServiceName{LssOp::inquire_serial, "inquire serial number"},
-    ServiceName{LssOp::inquire_node_id, "inquire node id"},
-    ServiceName{LssOp::slow_scan, "scan by ranges"},
+constexpr std::array known_services{
+    KnownService{LssOp::switch_global, "switch the state of all devices"},
+    KnownService{LssOp::configure_node_id, "configure node id"},
+    KnownService{LssOp::configure_bit_timing, "configure bit timing"},
+    KnownService{LssOp::activate_bit_timing, "activate bit timing"},
+    KnownService{LssOp::store, "store configuration", waits::lss_store},
+    KnownService{LssOp::switch_selective, "switch one device to configuration state"},
+    KnownService{LssOp::identify, "identify by ranges", waits::lss_all},
+    KnownService{LssOp::identify_unconfigured, "look for devices without node id", waits::lss_all},
+    KnownService{LssOp::fast_scan, "fastscan", waits::lss_all},
+    KnownService{LssOp::inquire_vendor, "inquire vendor id"},
+    KnownService{LssOp::inquire_product, "inquire product code"},
+    KnownService{LssOp::inquire_revision, "inquire revision"},
+    KnownService{LssOp::inquire_serial, "inquire serial number"},
+    KnownService{LssOp::inquire_node_id, "inquire node id"},
+    KnownService{LssOp::slow_scan, "scan by ranges", waits::lss_all},
 };
 
 /// Returns nullptr if there is no such service.
-constexpr const ServiceName* find_service(LssOp op) noexcept {
-  const auto found = std::ranges::find(service_names, op, &ServiceName::op);
-  return found == service_names.end() ? nullptr : &*found;
+constexpr const KnownService* find_service(LssOp op) noexcept {
+  const auto found = std::ranges::find(known_services, op, &KnownService::op);
+  return found == known_services.end() ? nullptr : &*found;
 }
 
 bool has_sense(const LssCommand& command) noexcept {
@@ -96,17 +97,8 @@ std::string nobody(LssOp op) {
 }  // namespace
 
 Time default_timeout(LssOp op) noexcept {
-  switch (op) {
-    case LssOp::store:
-      return waits::lss_store;
-    case LssOp::identify:
-    case LssOp::identify_unconfigured:
-    case LssOp::fast_scan:
-    case LssOp::slow_scan:
-      return waits::lss_all;
-    default:
-      return waits::lss_answer;
-  }
+  const KnownService* const service = find_service(op);
+  return service == nullptr ? waits::lss_answer : service->timeout;
 }
 
 void pack(const LssCommand& command, std::span<std::byte, lss_command_bytes> bytes) noexcept {
@@ -175,7 +167,7 @@ std::string lss_failure_text(const LssResult& result) {
     return "unknown outcome";
   }();
   if (why.empty()) return {};
-  const ServiceName* const service = find_service(result.op);
+  const KnownService* const service = find_service(result.op);
   return std::string{service ? service->name : "unknown service"} + ": " + why;
 }
 

@@ -1,5 +1,8 @@
 #include "master/core/node/boot_course.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace takt {
 namespace {
 
@@ -27,20 +30,11 @@ bool makes_node_report(const BootStep& step) noexcept {
 
 /// Returns true if the step may change the node.
 bool changes_node(BootAction action) noexcept {
-  switch (action) {
-    case BootAction::nmt:
-    case BootAction::await_bootup:
-    case BootAction::pause:
-    case BootAction::write:
-    case BootAction::write_if_changed:
-    case BootAction::download_program:
-    case BootAction::disable_pdo:
-    case BootAction::enable_pdo:
-    case BootAction::verify:
-      return true;
-    default:
-      return false;
-  }
+  using enum BootAction;
+  constexpr BootAction changing[] = {
+      nmt,    await_bootup,     pause,       write,     write_if_changed,
+      verify, download_program, disable_pdo, enable_pdo};
+  return std::ranges::find(changing, action) != std::end(changing);
 }
 
 }  // namespace

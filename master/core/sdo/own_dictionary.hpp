@@ -61,7 +61,6 @@ class OwnDictionary {
   Value read_variable(std::uint16_t index) const noexcept;
   Value read_consumers(std::uint8_t sub) const noexcept;
   Value read_nodes(ObjectKey key) const noexcept;
-  std::uint32_t node_value(std::uint16_t index, std::size_t node) const noexcept;
 
   const BusPlan& plan_;
   std::span<const NodeStatus> statuses_;

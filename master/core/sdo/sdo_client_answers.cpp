@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <iterator>
+
 #include "eds_parser/table/waits.hpp"
 #include "master/core/sdo/sdo_client.hpp"
 #include "master/wire/sdo_abort.hpp"
@@ -11,20 +14,11 @@ namespace {
 /// Returns true if the abort code says that the server does not support block transfer at all,
 /// rather than that it refuses this one.
 bool refuses_block(std::uint32_t code) noexcept {
-  switch (code) {
-    case abort_code::command_unknown:
-    case abort_code::block_size:
-    case abort_code::sequence:
-    case abort_code::crc:
-    case abort_code::out_of_memory:
-    case abort_code::access_unsupported:
-    case abort_code::length_mismatch:
-    case abort_code::resource_unavailable:
-    case abort_code::general_error:
-      return true;
-    default:
-      return false;
-  }
+  using namespace abort_code;
+  constexpr std::uint32_t codes[] = {
+      command_unknown, block_size,           sequence,     crc, out_of_memory, access_unsupported,
+      length_mismatch, resource_unavailable, general_error};
+  return std::ranges::find(codes, code) != std::end(codes);
 }
 
 }  // namespace
