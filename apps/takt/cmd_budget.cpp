@@ -11,7 +11,7 @@
 #include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/known_words.hpp"
 #include "apps/command_line/live_arguments.hpp"
-#include "eds_parser/budget/left_out.hpp"
+#include "eds_parser/budget/traffic.hpp"
 #include "eds_parser/network_file/changed_network.hpp"
 #include "eds_parser/print/print_budget.hpp"
 

@@ -65,4 +65,9 @@ BusBudget bus_budget(const BusPlan& plan, const BudgetOptions& options = {});
 /// Returns only the verdict of bus_budget(), which takes less time.
 bool bus_fits(const BusPlan& plan, const BudgetOptions& options = {});
 
+/// Returns the greatest number of service frames in a cycle with which everything fits, from 1 to
+/// that of the plan. Returns std::nullopt if not even one service frame fits.
+std::optional<std::uint16_t> fitting_service_frames(const BusPlan& plan,
+                                                    const BudgetOptions& options = {});
+
 }  // namespace takt

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "eds_parser/budget/budget.hpp"
 #include "eds_parser/budget/combinations.hpp"
-#include "eds_parser/budget/fitting_services.hpp"
 #include "eds_parser/report/message.hpp"
 
 namespace takt {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "eds_parser/budget/response_time.hpp"
+#include "eds_parser/report/source.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 
 namespace takt {
@@ -90,5 +91,10 @@ struct BusLoad {
 BusTraffic bus_traffic(const BusPlan& plan, const BudgetOptions& options);
 
 BusLoad bus_load(const BusTraffic& traffic, std::uint32_t bitrate) noexcept;
+
+/// Returns one sentence for each TPDO that is enabled in its device but that the master does not
+/// exchange. The device may send it, but the plan does not contain it and the budget does not count
+/// it.
+std::vector<std::string> left_out_tpdos(const Findings& findings);
 
 }  // namespace takt

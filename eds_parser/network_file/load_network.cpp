@@ -9,7 +9,7 @@
 #include <system_error>
 #include <tuple>
 
-#include "eds_parser/budget/fitting_services.hpp"
+#include "eds_parser/budget/budget.hpp"
 #include "eds_parser/check/check.hpp"
 #include "eds_parser/dictionary/concise_dcf.hpp"
 #include "eds_parser/dictionary/pdo_description.hpp"

@@ -1,7 +1,6 @@
-#include "eds_parser/budget/fitting_services.hpp"
-
 #include <gtest/gtest.h>
 
+#include "eds_parser/budget/budget.hpp"
 #include "eds_parser/budget/suggestions.hpp"
 #include "test/budget/changed_plan.hpp"
 

@@ -1,9 +1,10 @@
+#include "eds_parser/budget/traffic.hpp"
+
 #include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "eds_parser/budget/budget.hpp"
-#include "eds_parser/budget/left_out.hpp"
 #include "test/budget/hand_made_bus.hpp"
 
 namespace takt {
