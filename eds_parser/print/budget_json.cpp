@@ -48,12 +48,9 @@ Json row_json(const BudgetRow& row) {
 
 void print_budget_json(std::ostream& out, const BusPlan& plan, const BusBudget& budget,
                        std::span<const Suggestion> suggestions) {
-  Json would_fit = Json::array();
-  for (const auto& suggestion : suggestions) {
-    would_fit.push_back({{"change", suggestion.text}, {"what_if", to_string(suggestion.changes)}});
-  }
-  Json rows = Json::array();
-  for (const auto& row : budget.rows) rows.push_back(row_json(row));
+  Json would_fit = list_of(suggestions, [](const Suggestion& suggestion) {
+    return Json{{"change", suggestion.text}, {"what_if", to_string(suggestion.changes)}};
+  });
   const Json document{
       {"bus", plan.name},
       {"bitrate", plan.bitrate},
@@ -73,7 +70,7 @@ void print_budget_json(std::ostream& out, const BusPlan& plan, const BusBudget& 
       {"sync_delay_behind_services_us", bound_json(budget.sync_delay_behind_services())},
       {"assumptions", budget.assumptions},
       {"would_fit", std::move(would_fit)},
-      {"frames", std::move(rows)}};
+      {"frames", list_of(budget.rows, row_json)}};
   out << document.dump(2) << '\n';
 }
 

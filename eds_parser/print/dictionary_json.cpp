@@ -131,9 +131,7 @@ Json json_of(const Object& object) {
             {"object_type", static_cast<unsigned>(object.type)},
             {"list", list_name(object)}};
   if (!object.denotation.empty()) json["denotation"] = object.denotation;
-  auto subs = Json::array();
-  for (const auto& sub : object.subs) subs.push_back(json_of(sub));
-  json["subs"] = std::move(subs);
+  json["subs"] = list_of(object.subs, [](const SubObject& sub) { return json_of(sub); });
   return json;
 }
 
@@ -156,9 +154,7 @@ Json json_of(const PdoDescription& pdo) {
             {"event_timer_ms", pdo.event_timer_ms},
             {"sync_start", or_null(pdo.sync_start)},
             {"bits", pdo.bits}};
-  auto mapping = Json::array();
-  for (const auto& entry : pdo.mapping) mapping.push_back(json_of(entry));
-  json["mapping"] = std::move(mapping);
+  json["mapping"] = list_of(pdo.mapping, [](const MappedObject& entry) { return json_of(entry); });
   return json;
 }
 

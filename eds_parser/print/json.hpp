@@ -14,6 +14,14 @@ Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
+/// Returns a list of what `make` returns for each item.
+template <class Items, class Make>
+Json list_of(const Items& items, Make make) {
+  Json list = Json::array();
+  for (const auto& item : items) list.push_back(make(item));
+  return list;
+}
+
 inline Json json_of(const Finding& finding) {
   return {{"line", finding.pos.line},
           {"column", finding.pos.column},

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "apps/takt/trajectory/trajectory_line.hpp"
+#include "eds_parser/table/name_of.hpp"
 
 namespace takt {
 namespace {
@@ -9,27 +10,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string defect_text(motion::Defect defect) {
-  using motion::Defect;
-  switch (defect) {
-    case Defect::not_finite:
-      return "a number is infinite";
-    case Defect::velocity_limits:
-      return "the velocity limits do not enclose 0";
-    case Defect::acceleration_limits:
-      return "the acceleration limits do not enclose 0";
-    case Defect::jerk_limit:
-      return "the jerk limit is not greater than 0";
-    case Defect::target_velocity:
-      return "the target velocity is outside the limits";
-    case Defect::target_acceleration:
-      return "the target acceleration is outside the limits";
-    case Defect::velocity_before_target:
-      return "with its target acceleration, the axis would have to exceed the velocity limits "
-             "before it arrives";
-    case Defect::position_range:
-      return "no motion was found that stays inside the range of positions";
-  }
-  return {};
+  static constexpr std::string_view texts[]{
+      "a number is infinite",
+      "the velocity limits do not enclose 0",
+      "the acceleration limits do not enclose 0",
+      "the jerk limit is not greater than 0",
+      "the target velocity is outside the limits",
+      "the target acceleration is outside the limits",
+      "with its target acceleration, the axis would have to exceed the velocity limits before it "
+      "arrives",
+      "no motion was found that stays inside the range of positions"};
+  return std::string{name_of(defect, texts)};
 }
 
 Json segments_of(const motion::Profile& profile) {
@@ -41,19 +32,14 @@ Json segments_of(const motion::Profile& profile) {
 }
 
 Json sample_at(const TrajectoryAnswer& answer, double time) {
-  Json position = Json::array();
-  Json velocity = Json::array();
-  Json acceleration = Json::array();
+  Json sample{{"time", time}};
   for (std::size_t i = 0; i < answer.axes.size(); ++i) {
     const auto state = answer.axes[i].profile.at(answer.request.tasks[i].from, time);
-    position.push_back(state.position);
-    velocity.push_back(state.velocity);
-    acceleration.push_back(state.acceleration);
+    sample["position"].push_back(state.position);
+    sample["velocity"].push_back(state.velocity);
+    sample["acceleration"].push_back(state.acceleration);
   }
-  return {{"time", time},
-          {"position", std::move(position)},
-          {"velocity", std::move(velocity)},
-          {"acceleration", std::move(acceleration)}};
+  return sample;
 }
 
 }  // namespace

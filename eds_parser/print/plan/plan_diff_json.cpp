@@ -29,26 +29,23 @@ std::string name_of(std::optional<NodeId> node, const PlanSide& before, const Pl
 
 void print_plan_diff_json(std::ostream& out, const PlanSide& before, const PlanSide& after,
                           std::optional<NodeId> only) {
-  auto changes = Json::array();
-  for (const PlanChange& change : plan_changes(before, after, only)) {
-    changes.push_back(json_of(change, name_of(change.node, before, after)));
-  }
+  auto changes = list_of(plan_changes(before, after, only), [&](const PlanChange& change) {
+    return json_of(change, name_of(change.node, before, after));
+  });
   print_document(out,
                  {{"before", before.name}, {"after", after.name}, {"changes", std::move(changes)}});
 }
 
 void print_device_changes_json(std::ostream& out, const std::string& file,
                                std::span<const DeviceChanges> nodes) {
-  auto list = Json::array();
-  for (const DeviceChanges& each : nodes) {
-    auto changes = Json::array();
-    for (const PlanChange& change : each.changes) changes.push_back(json_of(change, each.name));
-    list.push_back({{"node", each.node.value()},
-                    {"name", each.name},
-                    {"device_data", each.entry},
-                    {"device_data_file", each.entry_file},
-                    {"changes", std::move(changes)}});
-  }
+  auto list = list_of(nodes, [](const DeviceChanges& each) {
+    const auto change_json = [&](const PlanChange& change) { return json_of(change, each.name); };
+    return Json{{"node", each.node.value()},
+                {"name", each.name},
+                {"device_data", each.entry},
+                {"device_data_file", each.entry_file},
+                {"changes", list_of(each.changes, change_json)}};
+  });
   print_document(out, {{"file", file}, {"nodes", std::move(list)}});
 }
 

@@ -204,11 +204,9 @@ Json limit_json(const BusPlan& plan, const LimitLine& line) {
 }
 
 Json waits_json(const BusPlan& plan) {
-  Json list = Json::array();
-  for (const PlanWait& wait : plan_waits(plan)) {
-    list.push_back({{"wait", wait.wait}, {"limit_us", us(wait.limit)}, {"what", wait.what}});
-  }
-  return list;
+  return list_of(plan_waits(plan), [](const PlanWait& wait) {
+    return Json{{"wait", wait.wait}, {"limit_us", us(wait.limit)}, {"what", wait.what}};
+  });
 }
 
 }  // namespace
@@ -218,7 +216,6 @@ void print_plan_json(std::ostream& out, const BusPlan& plan, const PlanPrint& wh
   Json nodes = Json::array();
   Json signals = Json::array();
   Json limits = Json::array();
-  Json channels = Json::array();
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     if (wanted(plan.nodes[i].id)) nodes.push_back(node_json(plan, i));
   }
@@ -228,9 +225,9 @@ void print_plan_json(std::ostream& out, const BusPlan& plan, const PlanPrint& wh
   for (const LimitLine& line : plan.limits.lines) {
     if (wanted(plan.nodes[line.node_index].id)) limits.push_back(limit_json(plan, line));
   }
-  for (const LcmChannel& channel : lcm_channels(plan, what.lcm)) {
-    channels.push_back({{"channel", channel.name}, {"type", channel.type}});
-  }
+  Json channels = list_of(lcm_channels(plan, what.lcm), [](const LcmChannel& channel) {
+    return Json{{"channel", channel.name}, {"type", channel.type}};
+  });
   print_document(out, Json{{"bus", plan.name},
                            {"interface", plan.interface},
                            {"bitrate", plan.bitrate},
