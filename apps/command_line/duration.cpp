@@ -35,7 +35,7 @@ std::optional<Time> parse_duration(std::string_view text) noexcept {
   return std::nullopt;
 }
 
-std::string duration_trouble(const std::string& text) {
+std::string duration_error(const std::string& text) {
   return parse_duration(text) ? "" : "'" + text + "' is not a time like 10s, 500ms or 2h";
 }
 

@@ -13,6 +13,6 @@ namespace takt {
 std::optional<Time> parse_duration(std::string_view text) noexcept;
 
 /// Returns the reason why an option refuses a text as a duration, or an empty string.
-std::string duration_trouble(const std::string& text);
+std::string duration_error(const std::string& text);
 
 }  // namespace takt

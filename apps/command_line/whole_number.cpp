@@ -6,7 +6,7 @@
 
 namespace takt {
 
-std::string octal_trouble(const std::string& text) {
+std::string octal_error(const std::string& text) {
   const std::size_t begin = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
   const auto digit_at = [&](std::size_t at) {
     return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;

@@ -7,7 +7,7 @@ namespace takt {
 
 std::string mode_hint(const AxisSignals& signals, const ImageInput& input, DriveMode mode) {
   const std::string wanted = std::to_string(std::to_underlying(mode));
-  const std::string mend =
+  const std::string remedy =
       "map 0x6060 into an RPDO, or write " + wanted + " to 0x6060 under `sdo:` of the network file";
   if (!signals.mode_display) {
     if (signals.mode) return {};
@@ -16,7 +16,7 @@ std::string mode_hint(const AxisSignals& signals, const ImageInput& input, Drive
   }
   if (input.stale(*signals.mode_display)) {
     const std::string unknown = "the mode of operation is unknown: 0x6061 has not arrived";
-    return signals.mode ? unknown : unknown + ", and no RPDO contains 0x6060: " + mend;
+    return signals.mode ? unknown : unknown + ", and no RPDO contains 0x6060: " + remedy;
   }
   const auto shown = static_cast<std::int8_t>(input.values()[*signals.mode_display]);
   if (shown == std::to_underlying(mode)) return {};
@@ -25,8 +25,8 @@ std::string mode_hint(const AxisSignals& signals, const ImageInput& input, Drive
     return now + ", which 0x6060 commands: does the drive support this mode (0x6502), and accept " +
            "it in its present state?";
   }
-  if (shown != 0) return now + ", and no RPDO contains 0x6060: " + mend;
-  return "no mode of operation is set (0x6061 shows 0), and no RPDO contains 0x6060: " + mend;
+  if (shown != 0) return now + ", and no RPDO contains 0x6060: " + remedy;
+  return "no mode of operation is set (0x6061 shows 0), and no RPDO contains 0x6060: " + remedy;
 }
 
 std::vector<std::string> why_not_ready(AxisGroup& group) {

@@ -30,16 +30,16 @@ void Progress::states(AxisGroup& group) {
                     axes.statusword(i)));
   }
   for (const event_t& event : group.take_events()) {
-    if (event.severity > 0 && !reported_lately(event)) say(event.text);
+    if (event.severity > 0 && !reported_recently(event)) say(event.text);
   }
 }
 
-bool Progress::reported_lately(const event_t& event) {
+bool Progress::reported_recently(const event_t& event) {
   const auto now = Clock::now();
   auto& last = last_of_kind_[{event.node_id, event.kind}];
-  const bool lately = last != Clock::time_point{} && now - last < std::chrono::seconds{2};
-  if (!lately) last = now;
-  return lately;
+  const bool recently = last != Clock::time_point{} && now - last < std::chrono::seconds{2};
+  if (!recently) last = now;
+  return recently;
 }
 
 void Progress::positions(const AxisControl& axes, const Following& following,

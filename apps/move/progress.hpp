@@ -30,7 +30,7 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
-  bool reported_lately(const event_t& event);
+  bool reported_recently(const event_t& event);
 
   Clock::time_point start_ = Clock::now();
   Clock::time_point next_positions_{};

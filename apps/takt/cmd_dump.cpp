@@ -64,7 +64,7 @@ std::string in_capitals(std::string text) {
 }
 
 /// Returns an error text, or an empty string if the service exists.
-std::string service_trouble(const std::string& text) {
+std::string service_error(const std::string& text) {
   if (std::ranges::find(services, text) != services.end()) return {};
   return fmt::format("no service '{}'; there are {}", text, fmt::join(services, ", "));
 }
@@ -281,7 +281,7 @@ void add_dump(CLI::App& app, int& exit_code) {
   dump.add_option("--only", options.only, "print only these services, for example SDO,EMCY")
       ->delimiter(',')
       ->transform([](std::string text) { return in_capitals(std::move(text)); })
-      ->check(service_trouble)
+      ->check(service_error)
       ->type_name("SERVICE,...");
   dump.add_option("--node", options.node, "print only frames of this node, by id or name")
       ->type_name("NODE");

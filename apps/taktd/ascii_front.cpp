@@ -32,7 +32,7 @@ std::expected<std::unique_ptr<AsciiFront>, std::string> AsciiFront::open(
            },
        .too_long = [&gateway](int client) { gateway.refuse_long_line(client); },
        .gone = [&gateway](int client) { gateway.disconnect(client); },
-       .owed = [&gateway](int client) { return gateway.owes(client); },
+       .awaits_reply = [&gateway](int client) { return gateway.awaits_reply(client); },
        .warn = std::move(warn)});
   if (!server) return std::unexpected{server.error()};
   front->server_ = std::move(*server);
@@ -50,7 +50,7 @@ void AsciiFront::serve() {
 void AsciiFront::attach(MasterRun& master, Bridge& bridge) {
   master_ = &master;
   bridge_ = &bridge;
-  bridge.welcome(gateway_);
+  bridge.register_guest(gateway_);
 }
 
 }  // namespace takt

@@ -15,7 +15,7 @@
 namespace takt {
 namespace {
 
-constexpr Time patience = std::chrono::seconds{1};  // beyond the limit of the ordered stop
+constexpr Time stop_margin = std::chrono::seconds{1};  // beyond the limit of the ordered stop
 constexpr std::size_t heap_bytes = 8 << 20;
 
 }  // namespace
@@ -41,7 +41,7 @@ std::optional<Exit> BusRun::start() {
   if (!started) {
     say(Weight::error,
         std::string{"the bus thread can't be created: "} + std::strerror(started.error()));
-    return Exit::bus_trouble;
+    return Exit::bus_failure;
   }
   say(realtime_.complete() ? Weight::note : Weight::warning, "real time: " + to_string(realtime_));
   if (!realtime_.may_run()) {
@@ -130,7 +130,7 @@ void BusRun::on_refused_envelope(const std::string& sentence) {
 
 void BusRun::stop(Exit reason, const std::string& why) {
   if (stopping_) return;
-  const Time limit = network_.plan.stop_timeout + patience;
+  const Time limit = network_.plan.stop_timeout + stop_margin;
   stopping_ = true;
   exit_ = reason;
   why_ = why;
@@ -162,7 +162,7 @@ bool BusRun::complete() {
   master_->join();
   do {
     bridge_->serve();
-  } while (bridge_->owes_news());
+  } while (bridge_->has_unsent_reports());
   judge_stop();
   const bool recorded = recorder_.finish(exit_ == Exit::good ? "" : why_, last_recording);
   say(Weight::note, run_summary(*master_, *bridge_, front_.reporter.reported(Weight::error),
@@ -197,7 +197,7 @@ Exit BusRun::exit_of_cut_stop() const {
       std::ranges::any_of(network_.plan.nodes, has_axes)) {
     return Exit::not_stopped;
   }
-  return exit_ == Exit::good ? Exit::bus_trouble : exit_;
+  return exit_ == Exit::good ? Exit::bus_failure : exit_;
 }
 
 }  // namespace takt

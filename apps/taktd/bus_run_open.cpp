@@ -12,14 +12,14 @@
 #include "eds_parser/lcm/lcm_channel.hpp"
 #include "eds_parser/print/plan/plan_fingerprint.hpp"
 #include "master/linux/clock.hpp"
-#include "master/linux/passing_trouble.hpp"
+#include "master/linux/transient_error.hpp"
 
 namespace takt {
 namespace {
 
 // Times of the search for another master. LCM may need a moment to connect; a master publishes its
 // status at 10 Hz.
-constexpr Time lcm_patience = std::chrono::seconds{1};
+constexpr Time lcm_connect_timeout = std::chrono::seconds{1};
 constexpr Time status_listening = std::chrono::milliseconds{250};
 constexpr Time look = std::chrono::milliseconds{10};
 
@@ -28,12 +28,12 @@ constexpr Time look = std::chrono::milliseconds{10};
 std::optional<Exit> BusRun::open() {
   auto url = parse_lcm_url(choose_lcm_url(front_.options.lcm_url, network_.lcm.url));
   if (!url) return refuse(Exit::wrong_use, url.error());
-  if (const auto trouble = open_gateway()) return trouble;
+  if (const auto failure = open_gateway()) return failure;
   auto bus = OpenedBus::open(bus_name_, network_.plan, network_.devices, network_.realtime.spin);
-  if (!bus) return refuse(Exit::bus_trouble, bus.error().message);
+  if (!bus) return refuse(Exit::bus_failure, bus.error().message);
   bus_ = std::move(*bus);
   for (const std::string& warning : bus_->warnings()) say(Weight::warning, warning);
-  if (const auto trouble = open_black_box()) return trouble;
+  if (const auto failure = open_black_box()) return failure;
   return open_lcm(std::move(*url));
 }
 
@@ -64,7 +64,7 @@ std::optional<Exit> BusRun::open_lcm(LcmUrl url) {
   link_ = std::make_unique<LcmLink>(
       std::move(url), hub, std::move(heard),
       [this](Weight weight, const std::string& sentence) { say(weight, sentence); });
-  if (const auto trouble = open_keys(guarded)) return trouble;
+  if (const auto failure = open_keys(guarded)) return failure;
   return look_for_master();
 }
 
@@ -88,7 +88,7 @@ std::optional<Exit> BusRun::open_keys(std::vector<std::string> guarded) {
 std::optional<Exit> BusRun::claim() {
   if (front_.options.observe) return std::nullopt;
   auto claim = BusClaim::take(BusName::parse(bus_name_));
-  if (!claim) return refuse(Exit::bus_trouble, claim.error().message);
+  if (!claim) return refuse(Exit::bus_failure, claim.error().message);
   claim_.emplace(std::move(*claim));
   return std::nullopt;
 }
@@ -100,7 +100,7 @@ std::optional<Exit> BusRun::look_for_master() {
   OtherMaster other{network_.plan, bus_name_, session_, secured_ ? as_warning : as_refusal};
   listen(other);
   for (const std::string& warning : other.warnings()) say(Weight::warning, warning);
-  if (other.refusal()) return refuse(Exit::bus_trouble, *other.refusal());
+  if (other.refusal()) return refuse(Exit::bus_failure, *other.refusal());
   if (StopSignal::count() == 0) return std::nullopt;
   say(Weight::note, "a stop was requested before the start");
   return Exit::good;
@@ -112,7 +112,7 @@ void BusRun::listen(OtherMaster& other) {
   DiagnosticSocket* const listener = bus_->diagnostics();
   const std::string status = Channels{network_.plan.name}.status;
   const Time begin = front_.clocks.now();
-  Time until = begin + lcm_patience;
+  Time until = begin + lcm_connect_timeout;
   const Time frames_until = listener != nullptr ? begin + other.listening_time() : begin;
   bool lcm_is_there = false;
   std::vector<pollfd> descriptors;

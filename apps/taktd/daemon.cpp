@@ -8,8 +8,8 @@
 
 #include "apps/taktd/process/time_limits.hpp"
 #include "master/gateway/front_round.hpp"
-#include "master/linux/passing_trouble.hpp"
 #include "master/linux/rt_thread.hpp"
+#include "master/linux/transient_error.hpp"
 
 namespace takt {
 namespace {
@@ -33,8 +33,8 @@ Daemon::~Daemon() {
 }
 
 Exit Daemon::run() {
-  if (const auto trouble = open()) return *trouble;
-  if (const auto trouble = start()) return *trouble;
+  if (const auto failure = open()) return *failure;
+  if (const auto failure = start()) return *failure;
   loop();
   if (StopSignal::count() > 0) stop(Exit::good, "a stop was requested");
   if (!finished()) {
@@ -51,11 +51,11 @@ Exit Daemon::run() {
 
 std::optional<Exit> Daemon::open() {
   for (const auto& bus : buses_) {
-    if (const auto trouble = bus->claim()) return trouble;
+    if (const auto failure = bus->claim()) return failure;
   }
-  if (const auto trouble = open_events()) return trouble;
+  if (const auto failure = open_events()) return failure;
   for (const auto& bus : buses_) {
-    if (const auto trouble = bus->open()) return trouble;
+    if (const auto failure = bus->open()) return failure;
   }
   return std::nullopt;
 }
@@ -64,7 +64,7 @@ std::optional<Exit> Daemon::open_events() {
   if (options_.events_file.empty() || reporter_.open_events(options_.events_file)) {
     return std::nullopt;
   }
-  const bool passing = is_passing_trouble(errno);
+  const bool passing = is_transient_error(errno);
   reporter_.say(passing ? Weight::warning : Weight::error,
                 "--events " + options_.events_file + ": can't be written: " + std::strerror(errno) +
                     (passing ? "; taktd runs without this file" : ""));
@@ -74,7 +74,7 @@ std::optional<Exit> Daemon::open_events() {
 
 std::optional<Exit> Daemon::start() {
   for (const auto& bus : buses_) {
-    if (const auto trouble = bus->start()) return trouble;
+    if (const auto failure = bus->start()) return failure;
     StopSignal::stop_with(bus->stop_requested());
   }
   if (options_.run_for > Time{0}) end_ = clocks_.now() + options_.run_for;
@@ -100,7 +100,7 @@ Time Daemon::next_image() const noexcept {
 }
 
 Time Daemon::serve() {
-  if (StopSignal::take_recording_wish()) {
+  if (StopSignal::take_recording_request()) {
     for (const auto& bus : buses_) bus->record("requested by SIGUSR1");
   }
   Time latest = end_;

@@ -37,7 +37,7 @@ const std::map<std::string, RtMode> rt_modes{
     {"enforce", RtMode::enforce}, {"try", RtMode::attempt}, {"off", RtMode::off}};
 
 /// Returns the reason why LCM does not take this URL. Empty if it does, or if no URL is given.
-std::string lcm_url_trouble(const std::string& text) {
+std::string lcm_url_error(const std::string& text) {
   const auto url = parse_lcm_url(text);
   return url || text.empty() ? "" : url.error();
 }
@@ -60,10 +60,10 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
       ->type_name("MODE");
   app.add_option("--lcm-url", options.lcm_url,
                  "use this URL, not LCM_DEFAULT_URL and `lcm: {url, broker}` of the file")
-      ->check(lcm_url_trouble)
+      ->check(lcm_url_error)
       ->type_name("URL");
   app.add_option("--for", run_for, "start the ordered stop after this time: 10s, 500ms, 2min")
-      ->check(duration_trouble)
+      ->check(duration_error)
       ->type_name("TIME");
   app.add_option("--events", options.events_file, "append events as JSON, one object a line")
       ->type_name("FILE");

@@ -75,6 +75,6 @@ int main(int argc, char** argv) {
     return static_cast<int>(takt::run(*options));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "taktd: %s\n", error.what());
-    return static_cast<int>(takt::Exit::bus_trouble);
+    return static_cast<int>(takt::Exit::bus_failure);
   }
 }

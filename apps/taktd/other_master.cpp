@@ -61,14 +61,15 @@ void OtherMaster::on_status(const status_t& status, Time realtime) {
   const std::string what =
       fmt::format("bus '{}' has a master on LCM already: a taktd on {}, session {}", plan_.name,
                   printable_text(status.interface.substr(0, longest_name)), status.session);
-  constexpr std::string_view mend = "or give one of the two buses another name: `bus: {name: ...}`";
+  constexpr std::string_view remedy =
+      "or give one of the two buses another name: `bus: {name: ...}`";
   if (status_ == StatusCounts::as_refusal) {
-    refusal_ = fmt::format("{}; end that master, {}", what, mend);
+    refusal_ = fmt::format("{}; end that master, {}", what, remedy);
   } else {
     status_warning_ = fmt::format(
         "{}. The message is unsigned, so this master starts all the same; if the other master "
         "exists, end it, {}",
-        what, mend);
+        what, remedy);
   }
 }
 

@@ -21,8 +21,12 @@ bool same_identifier(const TrafficFrame& a, const TrafficFrame& b) noexcept {
 class Others {
  public:
   Others(const BusTraffic& traffic, const CycleBounds& cycle, const BusPlan& plan,
-         const BudgetOptions& options, Company company)
-      : traffic_{traffic}, cycle_{cycle}, plan_{plan}, options_{options}, company_{company} {}
+         const BudgetOptions& options, OtherTraffic other_traffic)
+      : traffic_{traffic},
+        cycle_{cycle},
+        plan_{plan},
+        options_{options},
+        other_traffic_{other_traffic} {}
 
   Bounds run() {
     const auto sync = std::ranges::find(traffic_.frames, Traffic::sync, &TrafficFrame::kind);
@@ -35,7 +39,7 @@ class Others {
     }
     make_streams();
     const Time bit = wire_time(1, plan_.bitrate);
-    if (company_.services == Services::apart)
+    if (other_traffic_.services == Services::apart)
       return worst_responses(streams_, bit, options_.errors);
     // In one queue all service frames wait for the frames that go before the lowest of them.
     const auto services = with_services_together();
@@ -60,7 +64,7 @@ class Others {
     for (std::size_t i = 0; i < traffic_.frames.size(); ++i) {
       const auto& frame = traffic_.frames[i];
       if (i == 0 || !same_identifier(traffic_.frames[i - 1], frame)) priority = i;
-      const bool counts = frame.kind != Traffic::emcy || company_.emcys == Emcys::one_of_each;
+      const bool counts = frame.kind != Traffic::emcy || other_traffic_.emcys == Emcys::one_of_each;
       streams_.push_back({.priority = priority,
                           .frame = frame.frame,
                           .period = frame.period,
@@ -94,16 +98,16 @@ class Others {
   const CycleBounds& cycle_;
   const BusPlan& plan_;
   const BudgetOptions& options_;
-  Company company_;
+  OtherTraffic other_traffic_;
   Time sync_end_{};
   Time sync_frame_{};
   std::vector<FrameStream> streams_;
 };
 
 Bounds bounds(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options,
-              Company company) {
-  CycleBounds cycle = cycle_bounds(traffic, plan, options, company);
-  const Bounds others = Others{traffic, cycle, plan, options, company}.run();
+              OtherTraffic other_traffic) {
+  CycleBounds cycle = cycle_bounds(traffic, plan, options, other_traffic);
+  const Bounds others = Others{traffic, cycle, plan, options, other_traffic}.run();
   for (std::size_t i = 0; i < others.size(); ++i) {
     if (!traffic.frames[i].in_cycle) cycle.ends[i] = others[i];
   }

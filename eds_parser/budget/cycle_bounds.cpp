@@ -16,8 +16,8 @@ using Bounds = std::vector<std::optional<Time>>;
 class CycleAnalysis : BusyChains {
  public:
   CycleAnalysis(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options,
-                Company company)
-      : BusyChains{traffic, plan, options, company}, bounds_(frames_.size()) {}
+                OtherTraffic other_traffic)
+      : BusyChains{traffic, plan, options, other_traffic}, bounds_(frames_.size()) {}
 
   CycleBounds run() {
     if (is_overloaded()) return {.ends = std::move(bounds_)};
@@ -243,8 +243,8 @@ class CycleAnalysis : BusyChains {
 }  // namespace
 
 CycleBounds cycle_bounds(const BusTraffic& traffic, const BusPlan& plan,
-                         const BudgetOptions& options, Company company) {
-  return CycleAnalysis{traffic, plan, options, company}.run();
+                         const BudgetOptions& options, OtherTraffic other_traffic) {
+  return CycleAnalysis{traffic, plan, options, other_traffic}.run();
 }
 
 }  // namespace takt

@@ -20,7 +20,7 @@ enum class Services : std::uint8_t {
 };
 
 /// The frames that the analysis counts besides those of the cycle.
-struct Company {
+struct OtherTraffic {
   Emcys emcys = Emcys::none;
   Services services = Services::apart;
 };
@@ -39,6 +39,6 @@ struct CycleBounds {
 /// left, all TPDOs become ready together, and the outputs are sent at the output deadline. All
 /// other frames may come at any time.
 CycleBounds cycle_bounds(const BusTraffic& traffic, const BusPlan& plan,
-                         const BudgetOptions& options, Company company);
+                         const BudgetOptions& options, OtherTraffic other_traffic);
 
 }  // namespace takt

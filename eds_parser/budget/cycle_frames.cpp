@@ -9,11 +9,11 @@ namespace takt {
 namespace {}  // namespace
 
 CycleFrames::CycleFrames(const BusTraffic& traffic, const BusPlan& plan,
-                         const BudgetOptions& options, Company company)
+                         const BudgetOptions& options, OtherTraffic other_traffic)
     : frames_{traffic.frames},
       plan_{plan},
       options_{options},
-      company_{company},
+      other_traffic_{other_traffic},
       bit_{wire_time(1, plan.bitrate)} {
   count_turns();
   find_ends_of_cycle();

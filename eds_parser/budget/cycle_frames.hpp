@@ -19,11 +19,11 @@ class CycleFrames {
   static constexpr std::size_t any_cycle = 1'000'000;
 
   CycleFrames(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options,
-              Company company);
+              OtherTraffic other_traffic);
 
   bool comes_by_itself(const TrafficFrame& frame) const noexcept {
     return frame.by_itself() &&
-           (frame.kind != Traffic::emcy || company_.emcys == Emcys::one_of_each);
+           (frame.kind != Traffic::emcy || other_traffic_.emcys == Emcys::one_of_each);
   }
 
   /// Bus time of the frames before position `end` that `counts` selects.
@@ -76,7 +76,7 @@ class CycleFrames {
   /// Bus time of the SDO answers to requests of an earlier round: at most one from each node.
   Time late_answers() const noexcept;
   bool services_in_queue() const noexcept {
-    return company_.services == Services::in_queue && services_work_ > Time{0};
+    return other_traffic_.services == Services::in_queue && services_work_ > Time{0};
   }
   Time sync_frame() const noexcept { return sync_ ? frames_[*sync_].frame : Time{0}; }
   /// What to subtract from times so that they count from the arrival of a SYNC that the master
@@ -89,7 +89,7 @@ class CycleFrames {
   const std::vector<TrafficFrame>& frames_;
   const BusPlan& plan_;
   const BudgetOptions& options_;
-  Company company_;
+  OtherTraffic other_traffic_;
   Time bit_;
   std::optional<std::size_t> sync_;
   std::vector<std::size_t> queue_;  ///< outputs in the order of sending

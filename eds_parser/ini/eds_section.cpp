@@ -196,7 +196,7 @@ void report_blank_in_name(const IniSection& section, Report& report) {
                  " has a blank in its name or around it; it was read, other tools lose it");
 }
 
-void report_lonely_list(const IniSection& list, Report& report) {
+void report_list_without_object(const IniSection& list, Report& report) {
   report.warning(list.pos, "object-section-missing", "section ", Quoted{list.name},
                  " belongs to an object that has no section; it was left out");
 }

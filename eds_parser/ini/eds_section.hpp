@@ -59,7 +59,7 @@ SectionName classify_section(const IniSection& section) noexcept;
 /// Reports that a name has a blank in it or around it.
 void report_blank_in_name(const IniSection& section, Report& report);
 /// Reports that [xxxxName], [xxxxValue] or [xxxxDenotation] has no object to belong to.
-void report_lonely_list(const IniSection& list, Report& report);
+void report_list_without_object(const IniSection& list, Report& report);
 /// Reports that CiA 306 does not have such a key in `section`.
 void report_unknown_key(const IniEntry& entry, std::string_view section, Report& report);
 /// Reports that an entry that counts others (`NrOfEntries`, `Lines` ...) differs from the number

@@ -212,7 +212,7 @@ class EdsReader {
     for (const auto& link : outline_.links) {
       const auto& section = file_.sections[link.section];
       if (!is_described(link.index())) {
-        report_lonely_list(section, report_);
+        report_list_without_object(section, report_);
         continue;
       }
       auto links = read_links(section, file_.entries(section), is_described, report_);
@@ -257,7 +257,7 @@ class EdsReader {
       std::size_t end = at + 1;
       while (end < all.size() && all[end].index() == all[at].index()) ++end;
       if (all[at].is_list()) {
-        report_lonely_list(file_.sections[all[at].section], report_);
+        report_list_without_object(file_.sections[all[at].section], report_);
       } else {
         auto& object = dictionary.objects.emplace_back(reader.read(all.subspan(at, end - at)));
         object.list = lists.list_of(object.index);

@@ -155,7 +155,7 @@ class ModuleSections::Expansion {
       if (at + 1 < all.size() && all[at + 1].object.index() == index) continue;
       const bool is_new = dictionary_.find(index) == nullptr && !made_.contains(index);
       if (is_new && group.front().is_list()) {
-        report_lonely_list(file_.sections[group.front().section], report_);
+        report_list_without_object(file_.sections[group.front().section], report_);
       } else if (is_new) {
         auto object = reader_.read(group);
         object.list =

@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 11> object_keys{
 
 /// Misspellings of these keys are mended. With the other keys, values that had no effect before
 /// would take effect.
-constexpr auto mended_keys = std::span{object_keys}.first<2>();
+constexpr auto corrected_keys = std::span{object_keys}.first<2>();
 
 /// Which errors of an object are not mended, because mending them would change the meaning of the
 /// file.
@@ -251,7 +251,7 @@ class FixPass {
     if (left_.contains(name.index) || at.section->count > most_keys) return false;
     if (at.entry.key.find_first_of("0123456789") != std::string_view::npos) return false;
     const std::string_view meant = nearest(at.entry.key, object_keys);
-    if (std::ranges::find(mended_keys, meant) == mended_keys.end()) return false;
+    if (std::ranges::find(corrected_keys, meant) == corrected_keys.end()) return false;
     for (const IniEntry& entry : file_.entries(*at.section)) {
       if (classify_key(entry.key) == classify_key(meant)) return false;
     }

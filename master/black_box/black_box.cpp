@@ -14,15 +14,15 @@
 
 #include "master/black_box/recording_format.hpp"
 #include "master/linux/clock.hpp"
-#include "master/linux/passing_trouble.hpp"
 #include "master/linux/start_thread.hpp"
+#include "master/linux/transient_error.hpp"
 
 namespace takt {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time aftermath = 1s;
+constexpr Time time_after_fault = 1s;
 constexpr Time distance = 10s;  // shortest time between two recordings
 constexpr Time silence = 5min;  // shortest time between two recordings of one kind of fault
 
@@ -71,12 +71,12 @@ std::expected<std::unique_ptr<BlackBox>, std::string> BlackBox::open(const Black
   };
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);
-  if (error && !is_passing_trouble(error.value())) return refused(error.message());
+  if (error && !is_transient_error(error.value())) return refused(error.message());
   const auto probe = options.folder / ".takt";
   if (std::FILE* const file = std::fopen(probe.c_str(), "wb")) {
     std::fclose(file);
     std::filesystem::remove(probe, error);
-  } else if (const int why = errno; !is_passing_trouble(why)) {
+  } else if (const int why = errno; !is_transient_error(why)) {
     return refused(std::error_code{why, std::generic_category()}.message());
   }
   forget_incomplete(options.folder, file_name(head.bus));
@@ -99,7 +99,7 @@ void BlackBox::on_fault(const std::string& kind, std::uint8_t node, const std::s
   const auto [fault, first] = faults_.try_emplace({kind, node}, now);
   if (!first && now - fault->second < silence) return;
   fault->second = now;
-  ask(first_line(text), now + aftermath);
+  ask(first_line(text), now + time_after_fault);
 }
 
 void BlackBox::on_request(const std::string& reason, Time now) { ask(reason, now); }

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "master/black_box/recording_format.hpp"
-#include "master/black_box/unravel.hpp"
+#include "master/black_box/decode_tape.hpp"
 #include "master/explain/boot_report.hpp"
 #include "master/linux/file_descriptor.hpp"
 
@@ -22,7 +22,7 @@ std::string log_text(const Frame& frame) {
   return fmt::format("{}{:02X}", id, fmt::join(frame.payload(), ""));
 }
 
-void write_log(std::ostream& out, const UnravelledTape& tape, const std::string& interface) {
+void write_log(std::ostream& out, const DecodedTape& tape, const std::string& interface) {
   for (const LoggedFrame& logged : tape.frames) {
     const std::int64_t us = (logged.when + tape.since_1970).count() / 1000;
     out << fmt::format("({:010}.{:06}) {} {}\n", us / 1'000'000, us % 1'000'000, interface,
@@ -43,7 +43,7 @@ void write(nlohmann::ordered_json& json, const T& in, const auto& fields) {
 }
 
 void write_events(std::ostream& out, const BusPlan& plan, const RecordingHead& head,
-                  const UnravelledTape& tape) {
+                  const DecodedTape& tape) {
   nlohmann::ordered_json json{{"format", recording_format::version}};
   write(json, head, recording_format::head_fields);
   json["frames"] = tape.frames.size();
@@ -79,8 +79,8 @@ class UnfinishedFiles {
                      (std::string{recording_format::incomplete} + stem.filename().string()))
                         .string()} {}
   ~UnfinishedFiles() {
-    std::error_code in_vain;
-    for (const std::string& path : made_) std::filesystem::remove(path, in_vain);
+    std::error_code ignored;
+    for (const std::string& path : made_) std::filesystem::remove(path, ignored);
   }
   UnfinishedFiles(const UnfinishedFiles&) = delete;
   UnfinishedFiles& operator=(const UnfinishedFiles&) = delete;
@@ -138,7 +138,7 @@ Decision to_decision(const BusPlan& plan, const Event& event) {
 std::expected<void, std::string> write_recording(const std::filesystem::path& stem,
                                                  const BusPlan& plan, const RecordingHead& head,
                                                  const std::vector<std::uint64_t>& records) {
-  const UnravelledTape tape = unravel(records);
+  const DecodedTape tape = decode_tape(records);
   RecordingHead reported = head;
   reported.from_start = !records.empty() && journal::mark_of(records.front()) == Mark::now;
   UnfinishedFiles files{stem};

@@ -141,7 +141,7 @@ enum class EventKind : std::uint8_t {
   bus_error_active,
   bus_off,
   bus_recovered,
-  send_buffer_full,  ///< ENOBUFS; value: number of frames that were not sent, detail: SendTrouble
+  send_buffer_full,  ///< ENOBUFS; value: number of frames that were not sent, detail: SendFailure
   interface_down,    ///< detail: errno
   interface_up,
   foreign_sync,
@@ -174,7 +174,7 @@ enum class LimitVerdict : std::uint8_t {
 
 /// The reason why the CAN interface accepted no more frames. It is Event::detail of
 /// `send_buffer_full`.
-enum class SendTrouble : std::uint32_t {
+enum class SendFailure : std::uint32_t {
   queue_too_short,  ///< The bus is healthy, but txqueuelen is below the number of frames that one
                     ///< cycle sends.
   nobody_acknowledges,  ///< The controller is error passive: cable, bit rate, or no other node.

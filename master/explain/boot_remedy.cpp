@@ -54,7 +54,8 @@ const BootStep* reset_of_a_node_that_was_there(const NodePlan& node, const BootF
   return reset;
 }
 
-std::string against_silence(const BusPlan& plan, const NodePlan& node, const BootFailure& failure) {
+std::string remedy_for_silence(const BusPlan& plan, const NodePlan& node,
+                               const BootFailure& failure) {
   const BootStep* const reset = reset_of_a_node_that_was_there(node, failure);
   if (failure.node_state == NmtState::unknown && reset != nullptr) {
     return fmt::format(
@@ -259,7 +260,7 @@ std::string against_timeout(const BusPlan& plan, const NodePlan& node, const Boo
         "might act twice",
         time_text(step.timeout), to_string(failure.object));
   }
-  const std::string silence = against_silence(plan, node, failure);
+  const std::string silence = remedy_for_silence(plan, node, failure);
   const std::string late = about_earlier_lateness(node, failure);
   return late.empty() || silence.ends_with('?') ? silence + late : silence + "." + late;
 }

@@ -31,14 +31,14 @@ std::string missed_line(const Event& event) {
                      name_of(static_cast<MissedBecause>(event.detail), causes, causes[0]));
 }
 
-std::string send_trouble_text(const BusPlan& plan, const Event& event) {
-  switch (static_cast<SendTrouble>(event.detail)) {
-    case SendTrouble::bus_off:
+std::string send_failure_text(const BusPlan& plan, const Event& event) {
+  switch (static_cast<SendFailure>(event.detail)) {
+    case SendFailure::bus_off:
       return "the CAN controller is bus-off";
-    case SendTrouble::nobody_acknowledges:
+    case SendFailure::nobody_acknowledges:
       return "no node acknowledges on the bus; check the cable, the termination, the bit rate and "
              "the power supply of the devices";
-    case SendTrouble::queue_too_short:
+    case SendFailure::queue_too_short:
       break;
   }
   return fmt::format(
@@ -63,7 +63,7 @@ std::string_view when_back(std::uint32_t reaction) noexcept {
 
 /// Describes an event of the SYNC of another device.
 std::string sync_line(const BusPlan& plan, const Event& event) {
-  const std::string maker =
+  const std::string producer =
       plan.cycle.sync_producer ? subject(plan, plan.cycle.sync_producer->value()) : "its producer";
   const std::string time = time_text(Time{event.value});
   switch (event.kind) {
@@ -71,7 +71,7 @@ std::string sync_line(const BusPlan& plan, const Event& event) {
       return fmt::format(
           "{}; {}. Check {}: does it run, is its 0x1006 set, and bit 30 of its 0x1005?",
           event.value == 0 ? "no SYNC has come" : "SYNC lost: no SYNC for " + time,
-          while_lost(event.detail), maker);
+          while_lost(event.detail), producer);
     case EventKind::sync_back:
       return event.value == 0
                  ? "SYNC has come: the cycle follows it"
@@ -82,7 +82,7 @@ std::string sync_line(const BusPlan& plan, const Event& event) {
           event.value < 0 ? "SYNC without counter" : fmt::format("SYNC counter {}", event.value),
           event.detail == 0 ? "but `sync_overflow` says that SYNC has no counter"
                             : fmt::format("expected {}", event.detail),
-          maker);
+          producer);
     case EventKind::sync_early:
       return fmt::format(
           "a SYNC came only {} after the previous one, in a period of {}: the master ignores it; "
@@ -92,7 +92,7 @@ std::string sync_line(const BusPlan& plan, const Event& event) {
       return fmt::format(
           "SYNC comes every {}, but `sync_period` says {}: correct the network file, or 0x1006 of "
           "{}",
-          time, time_text(plan.cycle.period), maker);
+          time, time_text(plan.cycle.period), producer);
     default:
       return {};
   }
@@ -143,7 +143,7 @@ std::string bus_line(const BusPlan& plan, const Event& event) {
       return "the CAN controller has recovered from bus-off";
     case EventKind::send_buffer_full:
       return fmt::format("{} frames were not sent, because the send buffer is full (ENOBUFS): {}",
-                         event.value, send_trouble_text(plan, event));
+                         event.value, send_failure_text(plan, event));
     case EventKind::interface_down:
       return fmt::format("{} is down (error {})", interface_name(plan), event.detail);
     case EventKind::interface_up:

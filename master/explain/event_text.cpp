@@ -74,7 +74,7 @@ std::string boot_done_text(const Event& event) {
                      to_string(first));
 }
 
-std::string twin_text(const Event& event) {
+std::string duplicate_node_text(const Event& event) {
   const bool answers = event.value == static_cast<std::int64_t>(DuplicateSign::answers);
   return fmt::format(
       "{}; switch one device off, or give it another id (`takt lss`)",
@@ -175,7 +175,7 @@ std::string node_line(const BusPlan& plan, const Event& event) {
     case EventKind::program_progress:
       return fmt::format("program download: {} of {} bytes", event.value, event.detail);
     case EventKind::duplicate_node:
-      return twin_text(event);
+      return duplicate_node_text(event);
     case EventKind::loss_reaction:
       return "the node was lost: " + reaction_text(event);
     case EventKind::emcy:

@@ -128,7 +128,7 @@ bool Bridge::serve() {
 }
 
 Time Bridge::next_message() const noexcept {
-  if (owes_news() || transfers_left_) return Time{};
+  if (has_unsent_reports() || transfers_left_) return Time{};
   return first_state().next + image_wait_;
 }
 

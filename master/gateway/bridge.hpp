@@ -55,7 +55,7 @@ class Bridge {
 
   /// Registers a guest that receives images, events and the replies to requests with
   /// FrontGuest::mark. The guest must outlive this object.
-  void welcome(FrontGuest& guest) noexcept { guest_ = &guest; }
+  void register_guest(FrontGuest& guest) noexcept { guest_ = &guest; }
   /// Commands outputs as a command_t computed in this cycle would. Returns false if the command is
   /// refused. Refusals are reported; commands that may have waited during a gap are only counted.
   bool command(const std::string& sender, std::span<const SignalIndex> signals,
@@ -71,7 +71,7 @@ class Bridge {
   /// Does everything that can be done now. Returns true if there was an image.
   bool serve();
   /// Returns true if events or replies of the bus thread are, or may be, left for the next round.
-  bool owes_news() const noexcept { return replies_left_ || events_left_; }
+  bool has_unsent_reports() const noexcept { return replies_left_ || events_left_; }
   /// Latest time of the next serve() call: at once if anything is left over, otherwise when
   /// status_t, pdo_status_t, layout_t or timing_t is due.
   Time next_message() const noexcept;
@@ -109,7 +109,7 @@ class Bridge {
   bool waited(std::int64_t cycle, Time now) const noexcept;
   void publish_outputs();
   /// Returns why a request is too old to be executed; empty if it is not too old.
-  std::string age_trouble(std::int64_t utime, Time now) const;
+  std::string age_error(std::int64_t utime, Time now) const;
   void take_events();
   void take_event(const Event& event);
   /// Events lost in the bus thread and on the way from it.

@@ -50,16 +50,16 @@ void Bridge::on_request(Bytes data) {
   const Time now = clocks_.now();
   if (requests_.is_echo(*request, now)) return;
   const bool fits = !Requests::oversize(*request);
-  const std::string trouble = age_trouble(request->utime, now);
-  const bool old = fits && request->schema == message_schema && !trouble.empty();
-  if (old) return answer(requests_.refusal(*request, trouble));
+  const std::string failure = age_error(request->utime, now);
+  const bool old = fits && request->schema == message_schema && !failure.empty();
+  if (old) return answer(requests_.refusal(*request, failure));
   if (fits && request->service == "emcy_history") return answer_history(*request);
   const bool records = fits && request->service == "record" && record_;
   auto reply = records ? requests_.take(*request, now, record_) : requests_.take(*request, now);
   if (reply) answer(std::move(*reply));
 }
 
-std::string Bridge::age_trouble(std::int64_t utime, Time now) const {
+std::string Bridge::age_error(std::int64_t utime, Time now) const {
   const auto wall = [this](Time monotonic) {
     return (monotonic + clocks_.wall_offset()) / std::chrono::microseconds{1};
   };
@@ -110,9 +110,9 @@ void Bridge::on_transfer(Bytes data) {
   const auto transfer = decode<transfer_t>(data);
   if (!transfer) return report_damaged(channels_.transfer, transfer.error());
   const Time now = clocks_.now();
-  const std::string trouble = age_trouble(transfer->utime, now);
-  if (trouble.empty()) return transfers_.take(*transfer, now);
-  transfers_.take_old(*transfer, trouble);
+  const std::string failure = age_error(transfer->utime, now);
+  if (failure.empty()) return transfers_.take(*transfer, now);
+  transfers_.take_old(*transfer, failure);
 }
 
 }  // namespace takt

@@ -153,7 +153,7 @@ template <Port P, FrontLink L, Services S>
 bool BusLoop<P, L, S>::send_sync() noexcept {
   if (!bus_.plan.cycle.sync || bus_.observe) return true;
   if (bus_.services.take_sync_restart()) beat_.restart_counter();
-  if (stop_.silences_master() || !beat_.permits_sync(bus_.services)) return false;
+  if (stop_.withholds_sync() || !beat_.permits_sync(bus_.services)) return false;
   const Frame sync = beat_.sync();
   if (sender_.send({&sync, 1}) != 1) return false;
   beat_.on_sync_sent();
@@ -178,7 +178,7 @@ void BusLoop<P, L, S>::run_motions() noexcept {
 /// Runs the services and the requests, then advances the stops.
 template <Port P, FrontLink L, Services S>
 void BusLoop<P, L, S>::use_slack() noexcept {
-  slack_.excuse_absence();
+  slack_.extend_deadlines();
   stop_.end_halt();
   serve_round();
   while (slack_.has_many_rounds() && slack_.rest_until_next_round()) {

@@ -33,9 +33,9 @@ void PortWatch::on_send(std::size_t unsent, int error, Time now) noexcept {
   constexpr Time silence = std::chrono::seconds{1};
   if (unsent == 0 || (error != ENOBUFS && error != EAGAIN)) return;
   if (full_reported_ && now - last_full_ < silence) return;
-  const SendTrouble cause = seen_.bus_off         ? SendTrouble::bus_off
-                            : seen_.error_passive ? SendTrouble::nobody_acknowledges
-                                                  : SendTrouble::queue_too_short;
+  const SendFailure cause = seen_.bus_off         ? SendFailure::bus_off
+                            : seen_.error_passive ? SendFailure::nobody_acknowledges
+                                                  : SendFailure::queue_too_short;
   events_.push({.when = now,
                 .kind = EventKind::send_buffer_full,
                 .detail = static_cast<std::uint32_t>(cause),

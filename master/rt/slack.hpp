@@ -32,11 +32,11 @@ class Slack {
   /// While this thread stood still, it received nothing. By now it has received all frames that the
   /// socket has kept. Frames that the socket could not keep must not count as silence of a device.
   /// Call this once a cycle.
-  void excuse_absence() noexcept {
+  void extend_deadlines() noexcept {
     const Time away = beat_.take_absence();
     if (away == Time{}) return;
     bus_.services.on_absence(away);
-    bus_.pdo_requests.excuse(away);
+    bus_.pdo_requests.extend_deadlines(away);
   }
   /// Runs one round of services: TIME, PDO requests and the state machines, until nothing more fits
   /// or is awaited.
@@ -54,12 +54,12 @@ class Slack {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(time_, wire_free_, asked_, starved_);
+    state(time_, wire_free_, asked_, cycles_without_room_);
   }
 
  private:
   /// Cycles without room for service frames before one is forced out.
-  static constexpr unsigned patience = 2;
+  static constexpr unsigned forced_after = 2;
   /// Most frames handed over at once, because interface queues are short.
   static constexpr std::size_t burst_frames = 6;
   /// Frames still in the queue when the next ones follow.
@@ -89,7 +89,7 @@ class Slack {
   std::size_t hand_over(std::size_t most) noexcept;
   bool await_answers(Round& round, Handed handed) noexcept;
   bool before_stream_end(Time now) const noexcept;
-  Time owed_wire_time(std::size_t open) const noexcept;
+  Time awaited_wire_time(std::size_t open) const noexcept;
 
   P& port_;
   Beat& beat_;
@@ -99,16 +99,16 @@ class Slack {
   TimeProducer time_;
   /// Time at which the service frames handed over in this cycle have left the wire.
   Time wire_free_{};
-  std::size_t asked_ = 0;  ///< SDO requests handed over since the last round
-  Time stream_end_{};      ///< latest end of the newest sub-block that was requested
-  unsigned starved_ = 0;   ///< cycles in which service frames found no room
+  std::size_t asked_ = 0;             ///< SDO requests handed over since the last round
+  Time stream_end_{};                 ///< latest end of the newest sub-block that was requested
+  unsigned cycles_without_room_ = 0;  ///< cycles in which service frames found no room
 };
 
 template <Port P, Services S>
 void Slack<P, S>::relieve_services() noexcept {
-  if (starved_ < patience || before_stream_end(port_.now())) return;
+  if (cycles_without_room_ < forced_after || before_stream_end(port_.now())) return;
   hand_over(1);
-  starved_ = 0;
+  cycles_without_room_ = 0;
 }
 
 template <Port P, Services S>
@@ -130,7 +130,8 @@ void Slack<P, S>::run_round() noexcept {
     more = await_answers(round, handed);
   }
   asked_ = 0;
-  starved_ += round.idle && !bus_.service_frames.empty() && !before_stream_end(port_.now());
+  cycles_without_room_ +=
+      round.idle && !bus_.service_frames.empty() && !before_stream_end(port_.now());
 }
 
 /// TIME carries the moment at which it is sent, so it never waits in a queue.
@@ -195,12 +196,12 @@ auto Slack<P, S>::send_frames(Round& round) noexcept -> Handed {
   const Time now = port_.now();
   if (before_stream_end(now)) return Handed::nothing;
   wire_free_ = std::max(wire_free_, now);
-  const Time room = round.outputs - wire_free_ - owed_wire_time(round.open);
+  const Time room = round.outputs - wire_free_ - awaited_wire_time(round.open);
   std::size_t fitting = frames.fitting(round.budget, room, bus_.wire);
   const bool burst = frames.unanswered(std::min(fitting, burst_frames));
   if (burst) fitting = std::min(fitting, burst_frames);
   if (frames.first(fitting).empty()) return Handed::nothing;
-  starved_ = 0;
+  cycles_without_room_ = 0;
   const std::size_t count = hand_over(fitting);
   round.budget -= count;
   if (count == 0) return Handed::nothing;
@@ -266,7 +267,7 @@ bool Slack<P, S>::before_stream_end(Time now) const noexcept {
 /// that servers owe, so that it fits before the outputs even if it comes at once. `open` counts the
 /// unanswered dialogues of this round.
 template <Port P, Services S>
-Time Slack<P, S>::owed_wire_time(std::size_t open) const noexcept {
+Time Slack<P, S>::awaited_wire_time(std::size_t open) const noexcept {
   const Time dialogue = bus_.wire.worst_dialogue();
   if (!bus_.takes_pdos) return dialogue * open;
   const std::size_t queued = bus_.service_frames.to_servers(bus_.service_frames.size());

@@ -127,7 +127,7 @@ class WorstPhase {
       sync_ = end;
       served_ = outputs_queued_ = false;
     }
-    if (starved_ >= patience) relieve(end);
+    if (cycles_without_room_ >= patience) relieve(end);
     queue_inputs(end);
   }
 
@@ -142,7 +142,7 @@ class WorstPhase {
     const std::size_t i = due[random_.below(static_cast<std::uint32_t>(due.size()))];
     queue(i, sync_end, sync_end);
     streams_[i].next = sync_end + traffic_[i].distance;
-    starved_ = 0;
+    cycles_without_room_ = 0;
   }
 
   void queue_inputs(Time sync_end) {
@@ -186,7 +186,7 @@ class WorstPhase {
       if (frame.sent != Sent::in_slack || now < stream.next) continue;
       if (frame.kind == Traffic::sdo && !may_request()) continue;
       if (room < dialogue) {
-        starved_ += served == 0;
+        cycles_without_room_ += served == 0;
         return;
       }
       ++served;
@@ -377,10 +377,10 @@ class WorstPhase {
   SeenBus seen_;
   unsigned cycle_ = 0;
   Time sync_{};
-  Time next_error_{};     ///< earliest time of the next error
-  int awaited_ = 0;       ///< TPDOs of this cycle that have not arrived
-  unsigned starved_ = 0;  ///< number of cycles without room for service frames
-  bool served_ = false;   ///< the service frames of this cycle are queued
+  Time next_error_{};                 ///< earliest time of the next error
+  int awaited_ = 0;                   ///< TPDOs of this cycle that have not arrived
+  unsigned cycles_without_room_ = 0;  ///< number of cycles without room for service frames
+  bool served_ = false;               ///< the service frames of this cycle are queued
   bool outputs_queued_ = false;
   bool calm_ = false;  ///< no frames come by themselves in this cycle
 };

@@ -47,7 +47,7 @@ NOT_KEPT = {
     "PdoOutputs": {PLAN: "plan_ inputs_count_ fields_", SHARED: "image_ inputs_ events_",
                    ANEW: "frames_ packed_ packed_count_ fresh_commands_"},
     "PdoOutputs::Row": {ANEW: "first_fallen first_risen fallen risen"},
-    "PdoRequests": {PLAN: "plan_", IDLE: "slots_ used_ waiting_ owed_until_ owed_"},
+    "PdoRequests": {PLAN: "plan_", IDLE: "slots_ used_ waiting_ late_answer_until_ late_answers_"},
     "PortWatch": {SHARED: "events_"},
     "PreviousTransfer": {ANEW: "last_answer"},
     "RequestTable": {IDLE: "slots_ waiting_ answered_"},
@@ -61,7 +61,7 @@ NOT_KEPT = {
     "SyncHold": {PLAN: "steps_"},
     "SyncLossReaction": {SHARED: "bus_ stops_", IDLE: "fallbacks_"},
     "TimeProducer": {PLAN: "plan_"},
-    "TwinWatch": {PLAN: "period_ sdo_request_"},
+    "DuplicateNodeWatch": {PLAN: "period_ sdo_request_"},
 }
 
 STATEMENTS_OF_OTHER_KINDS = re.compile(

@@ -30,16 +30,16 @@ TEST(FrontSoak, GivesTheSameRunForTheSameSeed) {
 }
 
 /// Each run disables one safety function of takt, and a judge must report this.
-class FrontMeddled : public testing::Test {
+class FrontDefects : public testing::Test {
  protected:
   std::uint64_t first = 1;
   std::uint64_t seeds = 12;
 
   /// Returns the first invariant that one of the seeds breaks; empty if none does.
-  std::string broken(const FrontMeddle& meddle) {
+  std::string broken(const FrontDefect& defect) {
     for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
       const SoakOutcome outcome =
-          soak_front(network, {.seed = seed, .duration = 20s, .front = meddle});
+          soak_front(network, {.seed = seed, .duration = 20s, .front = defect});
       if (!outcome.violation) continue;
       RecordProperty("seed", static_cast<int>(seed));
       RecordProperty("what", outcome.violation->what);
@@ -53,25 +53,25 @@ class FrontMeddled : public testing::Test {
   std::string what;
 };
 
-TEST_F(FrontMeddled, NotAtAllBreaksNothing) { EXPECT_EQ(broken({}), ""); }
+TEST_F(FrontDefects, NotAtAllBreaksNothing) { EXPECT_EQ(broken({}), ""); }
 
 /// A second program with the same name counts as the first one.
-TEST_F(FrontMeddled, ASenderIsAName) {
+TEST_F(FrontDefects, ASenderIsAName) {
   const auto same = [](unsigned program, std::int64_t own) {
     return program == 7 ? 1 : program == 0 ? 1 : own;
   };
   EXPECT_EQ(broken({.instance = same}), "no sender moves what another holds");
 }
 
-TEST_F(FrontMeddled, OutputsHaveNoLimits) {
+TEST_F(FrontDefects, OutputsHaveNoLimits) {
   EXPECT_EQ(broken({.plan = [](BusPlan& plan) { plan.limits = {}; }}),
             "no output leaves its limits");
 }
 
 /// Each axis of the network has one kind of limit, which the master does not check.
-class LimitMeddled : public FrontMeddled {
+class LimitDefects : public FrontDefects {
  protected:
-  LimitMeddled() {
+  LimitDefects() {
     network = load_network(TAKT_SOURCE_DIR "/test/soak/data/limited.yaml");
     seeds = 60;  // an application seldom jumps
   }
@@ -97,34 +97,34 @@ class LimitMeddled : public FrontMeddled {
   }
 };
 
-TEST_F(LimitMeddled, NotAtAllBreaksNothing) { EXPECT_EQ(broken({}), "") << what; }
-TEST_F(LimitMeddled, PositionsHaveNoRange) {
+TEST_F(LimitDefects, NotAtAllBreaksNothing) { EXPECT_EQ(broken({}), "") << what; }
+TEST_F(LimitDefects, PositionsHaveNoRange) {
   expect(unchecked(0x607A, &OutputLimit::low), "ranged.", "position");
 }
-TEST_F(LimitMeddled, StepsHaveNoLimit) {
+TEST_F(LimitDefects, StepsHaveNoLimit) {
   expect(unchecked(0x607A, &OutputLimit::step), "stepped.", "step");
 }
-TEST_F(LimitMeddled, PositionsHaveNoLimitOfVelocity) {
+TEST_F(LimitDefects, PositionsHaveNoLimitOfVelocity) {
   // Two axes have this number; `spun` uses it to limit target velocities.
   const std::string reported = unchecked(0x607A, &OutputLimit::rate);
   const bool spun = reported.starts_with("spun.");
   expect(reported, spun ? "spun.target_position" : "paced.target_position", "velocity");
 }
-TEST_F(LimitMeddled, PositionsHaveNoLimitOfAcceleration) {
+TEST_F(LimitDefects, PositionsHaveNoLimitOfAcceleration) {
   expect(unchecked(0x607A, &OutputLimit::bend), "bent.", "acceleration");
 }
-TEST_F(LimitMeddled, TargetVelocitiesHaveNoLimit) {
+TEST_F(LimitDefects, TargetVelocitiesHaveNoLimit) {
   expect(unchecked(0x60FF, &OutputLimit::low), "spun.", "velocity");
 }
-TEST_F(LimitMeddled, TorquesHaveNoLimit) {
+TEST_F(LimitDefects, TorquesHaveNoLimit) {
   expect(unchecked(0x6071, &OutputLimit::low), "pushed.", "torque");
 }
 
 /// The limits of each axis hold for the sum of a target and its offset. The master does not add the
 /// offset.
-class SumMeddled : public LimitMeddled {
+class SumDefects : public LimitDefects {
  protected:
-  SumMeddled() { network = load_network(TAKT_SOURCE_DIR "/test/soak/data/summed.yaml"); }
+  SumDefects() { network = load_network(TAKT_SOURCE_DIR "/test/soak/data/summed.yaml"); }
 
   std::string unadded(std::uint16_t object) {
     const auto forget = [=](BusPlan& plan) {
@@ -138,12 +138,12 @@ class SumMeddled : public LimitMeddled {
   }
 };
 
-TEST_F(SumMeddled, NotAtAllBreaksNothing) { EXPECT_EQ(broken({}), "") << what; }
-TEST_F(SumMeddled, PositionOffsetsAreNotAdded) { expect(unadded(0x607A), "shifted.", "step"); }
-TEST_F(SumMeddled, VelocityOffsetsAreNotAdded) { expect(unadded(0x60FF), "spun.", "velocity"); }
+TEST_F(SumDefects, NotAtAllBreaksNothing) { EXPECT_EQ(broken({}), "") << what; }
+TEST_F(SumDefects, PositionOffsetsAreNotAdded) { expect(unadded(0x607A), "shifted.", "step"); }
+TEST_F(SumDefects, VelocityOffsetsAreNotAdded) { expect(unadded(0x60FF), "spun.", "velocity"); }
 
 /// The front thread predicts the next image only after it has looked for images.
-TEST_F(FrontMeddled, TheFrontThreadSleepsOverAnImage) {
+TEST_F(FrontDefects, TheFrontThreadSleepsOverAnImage) {
   const auto late = [](FrontRound& round) {
     round.wait = [predict = round.next_image, wait = round.wait](Time, Time latest) {
       wait(predict(), latest);
@@ -155,7 +155,7 @@ TEST_F(FrontMeddled, TheFrontThreadSleepsOverAnImage) {
 
 /// The daemon counts the age of a command up to the newest image instead of up to now, so commands
 /// do not age while images stay away.
-TEST_F(FrontMeddled, AgesEndAtTheNewestImage) {
+TEST_F(FrontDefects, AgesEndAtTheNewestImage) {
   const auto younger = [](command_t& command, const SeenCycles& cycles) {
     command.cycle += cycles.now - cycles.newest;
   };
@@ -163,7 +163,7 @@ TEST_F(FrontMeddled, AgesEndAtTheNewestImage) {
 }
 
 /// A command that is computed from no image counts as computed from the newest one.
-TEST_F(FrontMeddled, ACommandFromNoCycleIsTaken) {
+TEST_F(FrontDefects, ACommandFromNoCycleIsTaken) {
   const auto from_none = [](command_t& command, const SeenCycles& cycles) {
     if (command.cycle < 1) command.cycle = cycles.newest;
   };
@@ -171,7 +171,7 @@ TEST_F(FrontMeddled, ACommandFromNoCycleIsTaken) {
 }
 
 /// A command that is computed from an image to come counts as computed from the newest one.
-TEST_F(FrontMeddled, ACommandFromTheFutureIsTaken) {
+TEST_F(FrontDefects, ACommandFromTheFutureIsTaken) {
   const auto from_future = [](command_t& command, const SeenCycles& cycles) {
     if (command.cycle > cycles.now + 1) command.cycle = cycles.newest;
   };
@@ -180,7 +180,7 @@ TEST_F(FrontMeddled, ACommandFromTheFutureIsTaken) {
 }
 
 /// The seeds that find these defects find nothing if the commands are only read.
-TEST_F(FrontMeddled, ReadingEachCommandBreaksNothing) {
+TEST_F(FrontDefects, ReadingEachCommandBreaksNothing) {
   seeds = 1;
   for (const std::uint64_t seed : {1U, 3U, 20U}) {
     first = seed;
@@ -192,7 +192,7 @@ TEST_F(FrontMeddled, ReadingEachCommandBreaksNothing) {
 
 /// A command holds as long as it says, even for years: the network file does not cut it. The
 /// programs of the run ask for 8 cycles and more.
-TEST_F(FrontMeddled, TheTimeToLiveHasNoLimit) {
+TEST_F(FrontDefects, TheTimeToLiveHasNoLimit) {
   const auto limit = [](BusPlan& plan, std::uint32_t cycles) {
     for (Signal& signal : plan.layout.signals) {
       if (signal.output) signal.fallback_cycles = cycles;
@@ -209,7 +209,7 @@ TEST_F(FrontMeddled, TheTimeToLiveHasNoLimit) {
 }
 
 /// A program ignores images that are older than the newest cycle that it has received.
-TEST_F(FrontMeddled, OneForgedImageDeafensAProgram) {
+TEST_F(FrontDefects, OneForgedImageDeafensAProgram) {
   std::array<std::int64_t, 8> newest{};
   const auto hears = [&newest](unsigned program, const image_t& image) {
     if (image.cycle < newest[program]) return false;
@@ -221,7 +221,7 @@ TEST_F(FrontMeddled, OneForgedImageDeafensAProgram) {
 
 /// Any velocity counts as standstill, so axes are disabled while they brake, and the stop is
 /// confirmed.
-TEST_F(FrontMeddled, NothingIsSeenOfTheStop) {
+TEST_F(FrontDefects, NothingIsSeenOfTheStop) {
   network = load_network(TAKT_SOURCE_DIR "/test/soak/data/slow_stop.yaml");
   EXPECT_EQ(broken({}), "");
   const auto blind = [](BusPlan& plan) {

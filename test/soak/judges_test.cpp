@@ -5,7 +5,7 @@
 #include "apps/takt/soak/judge/image_judge.hpp"
 #include "apps/takt/soak/judge/node_judge.hpp"
 #include "apps/takt/soak/judge/output_judge.hpp"
-#include "apps/takt/soak/restless_user.hpp"
+#include "apps/takt/soak/random_user.hpp"
 #include "test/unit/master/core/pdo/small_plan.hpp"
 
 namespace takt::soak {
@@ -279,7 +279,7 @@ class Asked : public testing::Test {
   Verdict verdict;
   OutputJudge outputs{plan, verdict};
   std::unique_ptr<Exchange> exchange = std::make_unique<Exchange>(plan);
-  RestlessUser user{plan, *exchange, outputs, verdict, sim::Random{1}};
+  RandomUser user{plan, *exchange, outputs, verdict, sim::Random{1}};
 };
 
 TEST_F(Asked, IsContentWithOneAnswer) {

@@ -44,14 +44,14 @@ TEST(Soak, HoldsWhereAnotherDeviceMakesTheSync) {
 
 /// Complete runs in which one part is broken. They show that each judge is connected and reports
 /// its invariant.
-class Meddled : public testing::Test {
+class Defects : public testing::Test {
  protected:
-  using Meddle = std::function<void(Exchange&, sim::World&)>;
+  using Defect = std::function<void(Exchange&, sim::World&)>;
 
   /// Returns the invariant that the run breaks; empty if it breaks none.
-  std::string broken(Meddle meddle, Time duration = 2s) {
+  std::string broken(Defect defect, Time duration = 2s) {
     const SoakOutcome outcome =
-        soak(network, {.seed = 5, .duration = duration, .meddle = std::move(meddle)});
+        soak(network, {.seed = 5, .duration = duration, .defect = std::move(defect)});
     return outcome.violation ? outcome.violation->invariant : "";
   }
   /// Publishes one more image, once, as soon as images come.
@@ -75,31 +75,31 @@ class Meddled : public testing::Test {
   bool done_ = false;
 };
 
-TEST_F(Meddled, NotAtAllBreaksNothing) {
+TEST_F(Defects, NotAtAllBreaksNothing) {
   EXPECT_EQ(broken([](Exchange&, sim::World&) {}), "");
 }
 
-TEST_F(Meddled, ImageIsTorn) {
-  const auto meddle = [this](Exchange& exchange, sim::World& world) {
+TEST_F(Defects, ImageIsTorn) {
+  const auto defect = [this](Exchange& exchange, sim::World& world) {
     if (world.now() < 2s) return;
     publish(
         exchange,
         {.cycle = cycle(exchange) + 100, .sync_time = world.now(), .publish_time = world.now()});
   };
-  EXPECT_EQ(broken(meddle), "no torn image");
+  EXPECT_EQ(broken(defect), "no torn image");
 }
 
-TEST_F(Meddled, CycleNumberComesAgain) {
-  const auto meddle = [this](Exchange& exchange, sim::World& world) {
+TEST_F(Defects, CycleNumberComesAgain) {
+  const auto defect = [this](Exchange& exchange, sim::World& world) {
     if (world.now() < 2s) return;
     publish(exchange, {.cycle = 1, .sync_time = world.now(), .publish_time = world.now()});
   };
-  EXPECT_EQ(broken(meddle), "cycle numbers rise");
+  EXPECT_EQ(broken(defect), "cycle numbers rise");
 }
 
 /// Another writer keeps the axes enabled while their application is silent.
-TEST_F(Meddled, OutputOutlivesItsCommand) {
-  const auto meddle = [this](Exchange& exchange, sim::World& world) {
+TEST_F(Defects, OutputOutlivesItsCommand) {
+  const auto defect = [this](Exchange& exchange, sim::World& world) {
     const ImageLayout& layout = network.plan.layout;
     for (std::size_t i = layout.inputs; i < layout.signals.size(); ++i) {
       if (layout.signals[i].object.index != 0x6040) continue;
@@ -107,27 +107,27 @@ TEST_F(Meddled, OutputOutlivesItsCommand) {
     }
     exchange.set_points.publish(world.now());
   };
-  EXPECT_EQ(broken(meddle, 10s), "no stale output");
+  EXPECT_EQ(broken(defect, 10s), "no stale output");
 }
 
-TEST_F(Meddled, ReplyComesTwice) {
-  const auto meddle = [sent = false](Exchange& exchange, sim::World& world) mutable {
+TEST_F(Defects, ReplyComesTwice) {
+  const auto defect = [sent = false](Exchange& exchange, sim::World& world) mutable {
     if (world.now() < 2s || sent) return;
     sent = exchange.replies.push({.id = 1});
   };
-  EXPECT_EQ(broken(meddle), "every request is answered once");
+  EXPECT_EQ(broken(defect), "every request is answered once");
 }
 
-TEST_F(Meddled, ReplyIsLost) {
-  const auto meddle = [lost = false](Exchange& exchange, sim::World&) mutable {
+TEST_F(Defects, ReplyIsLost) {
+  const auto defect = [lost = false](Exchange& exchange, sim::World&) mutable {
     Reply reply;
     if (!lost) lost = exchange.replies.pop(reply);
   };
-  EXPECT_EQ(broken(meddle), "every request is answered once");
+  EXPECT_EQ(broken(defect), "every request is answered once");
 }
 
-TEST_F(Meddled, NodeIsInAStateWithoutName) {
-  const auto meddle = [](Exchange& exchange, sim::World& world) {
+TEST_F(Defects, NodeIsInAStateWithoutName) {
+  const auto defect = [](Exchange& exchange, sim::World& world) {
     if (world.now() < 2s) return;
     StatusSnapshot status;
     exchange.status.read(status);
@@ -136,17 +136,17 @@ TEST_F(Meddled, NodeIsInAStateWithoutName) {
         status.bus, status.nodes, [&](std::size_t i) { return status.tpdos[i]; },
         [&](std::size_t i) { return status.rpdos[i]; });
   };
-  EXPECT_EQ(broken(meddle), "every node is in a named state");
+  EXPECT_EQ(broken(defect), "every node is in a named state");
 }
 
-TEST_F(Meddled, NodeStaysAway) {
-  const auto meddle = [](Exchange&, sim::World& world) {
+TEST_F(Defects, NodeStaysAway) {
+  const auto defect = [](Exchange&, sim::World& world) {
     if (world.now() > 3s) world.power(1_node, false);
   };
-  EXPECT_EQ(broken(meddle), "every node comes back");
+  EXPECT_EQ(broken(defect), "every node comes back");
 }
 
-TEST_F(Meddled, MemoryGrows) {
+TEST_F(Defects, MemoryGrows) {
   std::vector<std::unique_ptr<std::array<char, 1024>>> leak;
   const auto add = [&leak] { leak.push_back(std::make_unique<std::array<char, 1024>>()); };
   const std::size_t before = ::mallinfo2().uordblks;
@@ -156,16 +156,16 @@ TEST_F(Meddled, MemoryGrows) {
   EXPECT_EQ(broken([&](Exchange&, sim::World&) { add(); }), "memory stays flat");
 }
 
-TEST_F(Meddled, StopTakesLongerThanThePlanAllows) {
-  const auto meddle = [this](Exchange&, sim::World&) { network.plan.stop_timeout = Time{}; };
-  EXPECT_EQ(broken(meddle), "the ordered stop ends in time");
+TEST_F(Defects, StopTakesLongerThanThePlanAllows) {
+  const auto defect = [this](Exchange&, sim::World&) { network.plan.stop_timeout = Time{}; };
+  EXPECT_EQ(broken(defect), "the ordered stop ends in time");
 }
 
 TEST(SoakJobs, ReportTheSeedOfAViolationAndOfACrash) {
   const LoadedNetwork network = demo();
   SoakPlan plan{.first = 1, .last = 4, .jobs = 2, .run = {.duration = 500ms}};
   std::vector<SoakReport> reports;
-  plan.run.meddle = [](Exchange& exchange, sim::World& world) {
+  plan.run.defect = [](Exchange& exchange, sim::World& world) {
     if (world.now() > 1s) exchange.replies.push({.id = 1'000'000});
   };
   run_jobs(network, plan, [&](const SoakReport& report) { reports.push_back(report); });
@@ -181,7 +181,7 @@ TEST(SoakJobs, ReportTheSeedOfAViolationAndOfACrash) {
   EXPECT_EQ(seeds, 1U + 2U + 3U + 4U);
 
   reports.clear();
-  plan.run.meddle = [](Exchange&, sim::World& world) {
+  plan.run.defect = [](Exchange&, sim::World& world) {
     if (world.now() > 1s) std::raise(SIGKILL);
   };
   run_jobs(network, plan, [&](const SoakReport& report) { reports.push_back(report); });

@@ -93,12 +93,13 @@ class NodeAuditor {
 
   void advise_supervision() {
     SupervisionRemedy remedy = supervision_remedy(plan_, index_, values_);
-    const bool helpless = remedy.node.empty() && remedy.master.empty() && remedy.removal.empty();
+    const bool without_remedy =
+        remedy.node.empty() && remedy.master.empty() && remedy.removal.empty();
     out_.master_remedy = std::move(remedy.master);
     out_.remedy.insert(out_.remedy.end(), remedy.node.begin(), remedy.node.end());
     if (!remedy.why.empty()) out_.besides.push_back(remedy.why);
     if (!remedy.removal.empty()) out_.besides.push_back(remedy.removal);
-    if (helpless) {
+    if (without_remedy) {
       out_.besides.emplace_back(
           "the device can watch neither heartbeat nor guarding: only its power, or a hardware "
           "enable, stops the device");

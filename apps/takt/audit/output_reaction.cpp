@@ -28,7 +28,7 @@ constexpr std::array<OutputKind, 8> kinds{{{0x6200, 0x6206, 0x6207, true, 0xFF},
                                            {0x6413, 0x6443, 0x6445, false, 1}}};
 
 /// Reaction of one output. Neighbours with the same reaction are reported together.
-struct Fate {
+struct OutputResult {
   ObjectKey first;
   std::uint8_t last = 0;
   Failsafe verdict = Failsafe::unspecified;
@@ -43,69 +43,69 @@ class Outputs {
  public:
   explicit Outputs(const DeviceValues& values) : values_{values} {}
 
-  void add(ObjectKey output) {
-    const auto kind = std::ranges::find(kinds, output.index, &OutputKind::outputs);
-    Fate fate{.first = output, .last = output.sub};
+  void add(ObjectKey object) {
+    const auto kind = std::ranges::find(kinds, object.index, &OutputKind::outputs);
+    OutputResult output{.first = object, .last = object.sub};
     if (kind == kinds.end()) {
-      fate.text = "is specific to the manufacturer: see the manual";
+      output.text = "is specific to the manufacturer: see the manual";
     } else {
-      judge(*kind, fate);
+      judge(*kind, output);
     }
-    verdict_ = std::max(verdict_, fate.verdict);
-    if (!fates_.empty() && continues(fates_.back(), fate)) {
-      fates_.back().last = output.sub;
+    verdict_ = std::max(verdict_, output.verdict);
+    if (!outputs_.empty() && continues(outputs_.back(), output)) {
+      outputs_.back().last = object.sub;
     } else {
-      fates_.push_back(std::move(fate));
+      outputs_.push_back(std::move(output));
     }
   }
 
   Reaction take() {
     Reaction reaction{
         .verdict = verdict_, .text = {}, .remedy = std::move(remedy_), .fixed = std::move(fixed_)};
-    for (const Fate& fate : fates_) {
-      reaction.text += (reaction.text.empty() ? "" : "; ") + to_string(fate.first);
-      if (fate.last != fate.first.sub) reaction.text += ".." + hex(fate.last, 2).substr(2);
-      reaction.text += " " + fate.text;
+    for (const OutputResult& output : outputs_) {
+      reaction.text += (reaction.text.empty() ? "" : "; ") + to_string(output.first);
+      if (output.last != output.first.sub) reaction.text += ".." + hex(output.last, 2).substr(2);
+      reaction.text += " " + output.text;
     }
     return reaction;
   }
 
  private:
-  static bool continues(const Fate& before, const Fate& fate) {
-    return before.text == fate.text && before.first.index == fate.first.index &&
-           before.last + 1 == fate.first.sub;
+  static bool continues(const OutputResult& before, const OutputResult& output) {
+    return before.text == output.text && before.first.index == output.first.index &&
+           before.last + 1 == output.first.sub;
   }
 
-  void judge(const OutputKind& kind, Fate& fate) {
-    const ObjectKey mode_key{kind.mode, fate.first.sub};
+  void judge(const OutputKind& kind, OutputResult& output) {
+    const ObjectKey mode_key{kind.mode, output.first.sub};
     const auto mode = values_.get(mode_key);
-    const auto value = values_.get({kind.value, fate.first.sub});
+    const auto value = values_.get({kind.value, output.first.sub});
     if (!mode || !value) {
-      fate.text = "has no " + hex(mode ? kind.value : kind.mode).substr(2) + ": see the manual";
+      output.text = "has no " + hex(mode ? kind.value : kind.mode).substr(2) + ": see the manual";
       return;
     }
     const std::uint64_t taken = *mode & kind.all;
     const std::string tail = fmt::format(" ({:04X} = {})", kind.mode, number_text(kind, *mode));
     if (taken == kind.all) {
-      fate.verdict = Failsafe::stops;
-      fate.text = "goes to " + number_text(kind, *value & (kind.mask ? kind.all : ~0ULL)) + tail;
+      output.verdict = Failsafe::stops;
+      output.text = "goes to " + number_text(kind, *value & (kind.mask ? kind.all : ~0ULL)) + tail;
       return;
     }
-    fate.verdict = Failsafe::goes_on;
-    fate.text = taken == 0 ? "STAYS" + tail
-                           : "STAYS except for bits " + number_text(kind, taken) +
-                                 ", which go to " + number_text(kind, *value & taken) + tail;
+    output.verdict = Failsafe::goes_on;
+    output.text = taken == 0 ? "STAYS" + tail
+                             : "STAYS except for bits " + number_text(kind, taken) +
+                                   ", which go to " + number_text(kind, *value & taken) + tail;
     if (!values_.takes(mode_key, static_cast<std::int64_t>(kind.all))) {
       fixed_.push_back(mode_key);
       return;
     }
     remedy_.push_back(fmt::format("{{index: {}, sub_index: {}, value: {}}}", hex(kind.mode),
-                                  fate.first.sub, number_text(kind, kind.all)));
+                                  output.first.sub, number_text(kind, kind.all)));
   }
 
   const DeviceValues& values_;
   Failsafe verdict_ = Failsafe::harmless;
-  std::vector<Fate> fates_;
+  std::vector<OutputResult> outputs_;
   std::vector<std::string> remedy_;
   std::vector<ObjectKey> fixed_;
 };

@@ -41,7 +41,7 @@ void print_json(const ImportOptions& options, const ImportReport& report) {
                     {"value", key.value},
                     {"line", key.pos.line},
                     {"column", key.pos.column},
-                    {"fate", name(key.fate)},
+                    {"fate", name(key.use)},
                     {"why", key.why}});
   }
   nlohmann::ordered_json others = nlohmann::ordered_json::array();
@@ -81,13 +81,13 @@ std::string last_line(const ImportOptions& options, const Imported& imported) {
 void print_text(const ImportOptions& options, const Imported& imported) {
   const ImportReport& report = imported.report;
   fmt::print("{}: {} keys: {} used, {} ignored, {} suspicious, {} wrong\n", options.file,
-             report.keys.size(), report.count(KeyFate::used), report.count(KeyFate::ignored),
-             report.count(KeyFate::suspicious), report.count(KeyFate::wrong));
+             report.keys.size(), report.count(KeyUse::used), report.count(KeyUse::ignored),
+             report.count(KeyUse::suspicious), report.count(KeyUse::wrong));
   for (const ImportedKey& key : report.keys) {
-    if (options.brief && key.fate == KeyFate::used) continue;
+    if (options.brief && key.use == KeyUse::used) continue;
     const std::string what = key.value.empty() ? key.path : key.path + ": " + key.value;
     const std::string place = fmt::format("{}:{}", key.pos.line, key.pos.column);
-    fmt::print("{:>7}  {:<10}  {:<52}  {}\n", place, name(key.fate), printable_text(what),
+    fmt::print("{:>7}  {:<10}  {:<52}  {}\n", place, name(key.use), printable_text(what),
                printable_text(key.why));
   }
   if (!report.unasked.empty())

@@ -126,13 +126,13 @@ class RowCollector {
   std::set<std::pair<SourcePos, std::string>> seen_;
 };
 
-KeyFate fate_of(const Finding& finding) {
-  if (finding.severity == Severity::error) return KeyFate::wrong;
-  if (finding.severity == Severity::warning) return KeyFate::suspicious;
-  if (finding.rule == "cob-id") return KeyFate::suspicious;  // the device's bit 30 stays
+KeyUse use_of(const Finding& finding) {
+  if (finding.severity == Severity::error) return KeyUse::wrong;
+  if (finding.severity == Severity::warning) return KeyUse::suspicious;
+  if (finding.rule == "cob-id") return KeyUse::suspicious;  // the device's bit 30 stays
   const bool ignored =
       finding.rule == "unused-key" || finding.rule == "placeholder" || finding.rule == "guarding";
-  return ignored ? KeyFate::ignored : KeyFate::used;
+  return ignored ? KeyUse::ignored : KeyUse::used;
 }
 
 /// Returns the innermost row to which a finding refers, or null if there is none. A map begins at
@@ -157,17 +157,17 @@ std::string_view meaning_of(const Row& row) {
 }
 
 void apply(Row& row, const Finding& finding) {
-  const KeyFate fate = fate_of(finding);
+  const KeyUse use = use_of(finding);
   if (finding.rule == "guarding") ++row.left_alone;
-  if (fate < row.key.fate) return;
+  if (use < row.key.use) return;
   row.wrong_type = row.wrong_type || finding.rule == "wrong-type";
   row.unknown = row.unknown || finding.rule == "unknown-key";
   const std::string_view reason =
       finding.rule == "unused-key" ? meaning_of(row) : std::string_view{};
   const std::string text = reason.empty() ? finding.message : std::string{reason};
-  const bool more = fate == row.key.fate && !row.key.why.empty() && row.key.why != text;
+  const bool more = use == row.key.use && !row.key.why.empty() && row.key.why != text;
   row.key.why = more ? row.key.why + "; " + text : text;
-  row.key.fate = fate;
+  row.key.use = use;
 }
 
 bool is_within(const Row& row, const std::string& path) {
@@ -177,8 +177,8 @@ bool is_within(const Row& row, const std::string& path) {
 }
 
 void ignore(Row& row, const std::string& why) {
-  if (row.key.fate != KeyFate::used) return;
-  row.key.fate = KeyFate::ignored;
+  if (row.key.use != KeyUse::used) return;
+  row.key.use = KeyUse::ignored;
   row.key.why = why;
 }
 
@@ -186,8 +186,8 @@ void ignore(Row& row, const std::string& why) {
 void ignore_children(std::vector<Row>& rows) {
   for (const Row& parent : rows) {
     if (parent.leaf) continue;
-    const bool wrong = parent.unknown || (parent.key.fate == KeyFate::wrong && parent.wrong_type);
-    if (parent.key.fate != KeyFate::ignored && !wrong) continue;
+    const bool wrong = parent.unknown || (parent.key.use == KeyUse::wrong && parent.wrong_type);
+    if (parent.key.use != KeyUse::ignored && !wrong) continue;
     const std::string why = wrong ? "is part of `" + parent.key.path + "`" : parent.key.why;
     for (Row& row : rows) {
       if (is_within(row, parent.key.path)) ignore(row, why);
@@ -233,13 +233,13 @@ void judge_defaults(const YamlNode& root, std::vector<Row>& rows) {
     for (Row& row : rows) {
       if (row.key.path != path && !is_within(row, path)) continue;
       if (row.left_alone != 0 && row.left_alone < nodes.size() - count) {
-        row.key.fate = KeyFate::used;
+        row.key.use = KeyUse::used;
         row.key.why = std::string{meaning_of(row)} + "; but " + row.key.why;
       }
       if (count == 0) continue;
       if (count == nodes.size()) {
         ignore(row, "each node has its own `" + pair.key + "`, which replaces this one as a whole");
-      } else if (row.leaf && row.key.fate == KeyFate::used) {
+      } else if (row.leaf && row.key.use == KeyUse::used) {
         row.key.why = why_used(row) + "; not for " + own + " with its own `" + pair.key + "`";
       }
     }
@@ -293,9 +293,9 @@ void judge_overrides(const YamlNode& root, std::vector<Row>& rows) {
       const YamlNode* common = defaults->find(own.key);
       if (common == nullptr || comparison.same(*common, *own.value)) continue;
       const auto found = row_at.find("nodes." + node.key + '.' + own.key);
-      if (found == row_at.end() || found->second->key.fate != KeyFate::used) continue;
+      if (found == row_at.end() || found->second->key.use != KeyUse::used) continue;
       ImportedKey& key = found->second->key;
-      key.fate = KeyFate::suspicious;
+      key.use = KeyUse::suspicious;
       key.why =
           "takt uses this value; ros2_canopen (cogen) uses that of `defaults`: the machine has run "
           "with " +
@@ -306,13 +306,13 @@ void judge_overrides(const YamlNode& root, std::vector<Row>& rows) {
 
 }  // namespace
 
-std::string_view name(KeyFate fate) noexcept {
+std::string_view name(KeyUse use) noexcept {
   static constexpr std::string_view names[]{"used", "ignored", "suspicious", "wrong"};
-  return name_of(fate, names);
+  return name_of(use, names);
 }
 
-std::size_t ImportReport::count(KeyFate fate) const noexcept {
-  return static_cast<std::size_t>(std::ranges::count(keys, fate, &ImportedKey::fate));
+std::size_t ImportReport::count(KeyUse use) const noexcept {
+  return static_cast<std::size_t>(std::ranges::count(keys, use, &ImportedKey::use));
 }
 
 ImportReport import_report(const std::filesystem::path& path) {

@@ -132,11 +132,11 @@ class Importer {
     report_.error(pos, rule, message);
   }
 
-  std::size_t add(const IniEntry& entry, KeyFate fate, std::string why) {
+  std::size_t add(const IniEntry& entry, KeyUse use, std::string why) {
     rows_.push_back({.path = title_ + '.' + to_utf8(entry.key),
                      .value = to_utf8(entry.value),
                      .pos = entry.pos(),
-                     .fate = fate,
+                     .use = use,
                      .why = std::move(why)});
     return rows_.size() - 1;
   }
@@ -145,25 +145,25 @@ class Importer {
     const std::string key = lower(entry.key);
     if (key == "netname") {
       name_ = to_utf8(entry.value);
-      add(entry, KeyFate::used, "name of the bus, part of the LCM channels");
+      add(entry, KeyUse::used, "name of the bus, part of the LCM channels");
     } else if (key == "nodes") {
       count_ = values_.read_count(entry, 127);
-      count_row_ = add(entry, KeyFate::used, "compared with the nodes that are listed");
+      count_row_ = add(entry, KeyUse::used, "compared with the nodes that are listed");
     } else if (key == "netrefd") {
-      add(entry, KeyFate::ignored, "a reference for readers");
+      add(entry, KeyUse::ignored, "a reference for readers");
     } else if (key == "edsbasename") {
       base_ = slashes(to_utf8(entry.value));
-      add(entry, KeyFate::used, "second folder for device files");
+      add(entry, KeyUse::used, "second folder for device files");
     } else if (const auto of_node = node_key(entry.key)) {
       read_node(entry, of_node->first, of_node->second);
     } else {
-      add(entry, KeyFate::ignored, "not a key of CiA 306-3");
+      add(entry, KeyUse::ignored, "not a key of CiA 306-3");
     }
   }
 
   void read_node(const IniEntry& entry, unsigned id, const std::string& what) {
     if (!NodeId::from(id)) {
-      add(entry, KeyFate::wrong, "node ids are 1..127");
+      add(entry, KeyUse::wrong, "node ids are 1..127");
       wrong(entry.key_pos(), "node-id-range", "node ids are 1..127");
       return;
     }
@@ -171,16 +171,16 @@ class Importer {
     if (node.pos == SourcePos{}) node.pos = entry.key_pos();
     if (what == "present") {
       node.is_present = values_.read_flag(entry);
-      node.present = add(entry, node.is_present ? KeyFate::used : KeyFate::ignored,
+      node.present = add(entry, node.is_present ? KeyUse::used : KeyUse::ignored,
                          node.is_present ? "" : "the node is not present; takt left it out");
     } else if (what == "name") {
-      node.name = add(entry, KeyFate::used, "name of the node");
+      node.name = add(entry, KeyUse::used, "name of the node");
     } else if (what == "dcfname") {
-      node.dcf = add(entry, KeyFate::used, "device file of the node");
+      node.dcf = add(entry, KeyUse::used, "device file of the node");
     } else if (what == "refd") {
-      add(entry, KeyFate::ignored, "a reference for readers");
+      add(entry, KeyUse::ignored, "a reference for readers");
     } else {
-      add(entry, KeyFate::ignored, "not a key of CiA 306-3");
+      add(entry, KeyUse::ignored, "not a key of CiA 306-3");
     }
   }
 
@@ -191,7 +191,7 @@ class Importer {
     if (same) return;
     const std::string why = "the file lists " + std::to_string(listed) + " nodes as present";
     if (count_row_) {
-      rows_[*count_row_].fate = KeyFate::suspicious;
+      rows_[*count_row_].use = KeyUse::suspicious;
       rows_[*count_row_].why = why;
     } else {
       report_.warning(topology.pos, "missing-key", "Nodes is missing; " + why);
@@ -245,7 +245,7 @@ class Importer {
       take_from(path, id, node, row);
       return;
     }
-    row.fate = KeyFate::wrong;
+    row.use = KeyUse::wrong;
     row.why =
         "not found beside the project file" + (base_.empty() ? std::string{} : " or in " + base_);
     wrong(row.pos, "no-file", '`' + row.value + "` " + row.why);
@@ -256,12 +256,12 @@ class Importer {
     const EdsFile file = read_eds_file(path, NodeId::from(id));
     const auto& declared = file.dictionary.commissioning;
     if (declared.node_id && declared.node_id->value() != id) {
-      row.fate = KeyFate::suspicious;
+      row.use = KeyUse::suspicious;
       row.why = fmt::format("the NodeID of the file is {}; takt uses node id {} of the project",
                             declared.node_id->value(), id);
     }
     if (declared.manager) {
-      row.fate = KeyFate::ignored;
+      row.use = KeyUse::ignored;
       row.why = "CANopenManager=1: this is the master, whose place takt takes";
       master_ = id;
       node.is_present = false;

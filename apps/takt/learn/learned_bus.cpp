@@ -80,7 +80,7 @@ std::optional<std::uint8_t> LearnedBus::master() const {
     if (reported) continue;
     const bool lives =
         node.heartbeats.count() != 0 ||
-        (node.booted_up && (node.deaf_to_reset || (id == usual && !sends_as_device(id))));
+        (node.booted_up && (node.ignores_reset || (id == usual && !sends_as_device(id))));
     if (lives) silent.push_back(id);
   }
   const auto watched = [&](std::uint8_t id) {

@@ -52,7 +52,7 @@ struct LearnedNode {
   std::uint8_t id = 0;  ///< node-ID, 1..127
   std::uint32_t first_line = 0;
   bool booted_up = false;
-  bool deaf_to_reset = false;  ///< no boot-up message since the newest reset of all nodes
+  bool ignores_reset = false;  ///< no boot-up message since the newest reset of all nodes
   bool reset_node = false;     ///< true: newest reset by NMT reset node; false: reset communication
   bool started = false;        ///< true after an NMT start for this node alone
   bool addressed = false;      ///< true after any NMT command for this node alone

@@ -202,7 +202,7 @@ void Recording::nmt(const Frame& frame) {
   const bool resets =
       command == NmtCommand::reset_node || command == NmtCommand::reset_communication;
   for (auto& [id, each] : bus_.nodes) {
-    each.deaf_to_reset = each.deaf_to_reset || resets;
+    each.ignores_reset = each.ignores_reset || resets;
     apply(each);
   }
 }
@@ -214,7 +214,7 @@ void Recording::error_control(std::uint8_t id, const Frame& frame) {
   if (frame.length != 1) return;
   if (frame.data[0] == 0) {
     sender.booted_up = true;
-    sender.deaf_to_reset = false;
+    sender.ignores_reset = false;
     return reset(sender, sender.reset_node);
   }
   if ((frame.data[0] & 0x7F) == 5) start(sender, false);

@@ -252,7 +252,7 @@ void add_sdo(CLI::App& app, int& exit_code) {
       .add_option("--limit", upload_options.limit,
                   "most bytes, as 64K or 2M; takt aborts a longer transfer (16M)")
       ->transform(CLI::AsSizeValue(false))
-      ->transform(CLI::Validator{[](std::string& text) { return octal_trouble(text); }, ""})
+      ->transform(CLI::Validator{[](std::string& text) { return octal_error(text); }, ""})
       ->check(CLI::Range(std::size_t{1}, most_file_bytes))
       ->type_name("BYTES");
   auto [downloading, download_options] = add_verb(

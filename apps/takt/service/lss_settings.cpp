@@ -54,14 +54,15 @@ void print_setting(const LssOptions& options, const std::optional<LssAddress>& d
 /// only after the command has been sent, because going down discards its transmit queue.
 void activate(const LssOptions& options, LssAccess& access) {
   using std::chrono::milliseconds;
-  FrameChannel witness = value_or_fail(FrameChannel::open(options.access.bus, BusMember::guest), 3);
+  FrameChannel listener =
+      value_or_fail(FrameChannel::open(options.access.bus, BusMember::guest), 3);
   const std::array<LssCommand, 2> commands{
       LssCommand{.op = LssOp::switch_global, .a = 1},
       LssCommand{.op = LssOp::activate_bit_timing,
                  .numbers = {static_cast<std::uint32_t>(options.delay_ms)}}};
   require_done(access.run(commands).back());
   const auto activation = static_cast<std::uint8_t>(lss::Service::activate_bit_timing);
-  if (!witness.sees(lss::request_cob_id, activation, milliseconds{options.delay_ms})) {
+  if (!listener.sees(lss::request_cob_id, activation, milliseconds{options.delay_ms})) {
     throw Failure{"the activation command was not sent: does any node acknowledge frames on " +
                   options.access.bus + "? The interface keeps its bit rate"};
   }

@@ -92,7 +92,7 @@ void add_sim(CLI::App& app, int& exit_code) {
   command.add_option("--only", arguments.only, "simulate only these nodes, by name or number")
       ->delimiter(',');
   command.add_option("--for", arguments.run_for, "end after this time; default: run until SIGINT")
-      ->check(duration_trouble);
+      ->check(duration_error);
   command.add_option("--faults", arguments.faults, "file that lists faults and their times (YAML)");
   add_number(command, "--seed", arguments.seed, "seed of the random parts")->capture_default_str();
   command.footer("Example:\n  takt sim lift.yaml --bus vcan0 --only shoulder,elbow");

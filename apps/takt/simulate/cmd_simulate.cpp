@@ -57,7 +57,7 @@ void add_simulate(CLI::App& app, int& exit_code) {
       app, exit_code, "simulate", "runs the master and its devices in virtual time", run);
   command.add_option("NET.yaml", arguments.network, "network file")->required();
   command.add_option("--for", arguments.run_for, "simulated time until the ordered stop")
-      ->check(duration_trouble)
+      ->check(duration_error)
       ->capture_default_str();
   add_number(command, "--seed", arguments.simulation.seed, "seed; equal seeds give equal runs")
       ->capture_default_str();
@@ -69,7 +69,7 @@ void add_simulate(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(std::size_t{1}, most_applications))
       ->excludes(move);
   command.add_option("--jitter", arguments.jitter, "how late the simulated master's thread wakes")
-      ->check(duration_trouble)
+      ->check(duration_error)
       ->capture_default_str();
   command.add_option("--candump", arguments.simulation.candump, "write all frames to this file");
   command.add_flag("--json", arguments.json,

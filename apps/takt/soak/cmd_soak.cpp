@@ -121,7 +121,7 @@ void add_soak(CLI::App& app, int& exit_code) {
   command.add_option("--seeds,--seed", arguments.seeds, "one run for each seed: 17 or 1..200")
       ->capture_default_str();
   command.add_option("--for", arguments.run_for, "time in which faults happen in each run")
-      ->check(duration_trouble)
+      ->check(duration_error)
       ->capture_default_str();
   command
       .add_option("--part", arguments.part,

@@ -50,9 +50,9 @@ sim::RemotePortOptions port_options(const BusPlan& plan, const SoakOptions& opti
 }
 
 /// Returns the plan of the daemon, which a test may have changed.
-BusPlan daemon_plan(const BusPlan& plan, const FrontMeddle& meddle) {
+BusPlan daemon_plan(const BusPlan& plan, const FrontDefect& defect) {
   BusPlan copy = plan;
-  if (meddle.plan) meddle.plan(copy);
+  if (defect.plan) defect.plan(copy);
   return copy;
 }
 
@@ -93,7 +93,7 @@ class FrontWalk {
     daemon_.hear({.image = [this](const ImageView& image, Time now) { judge_wait(image, now); },
                   .notice = [this](const Notice& notice) { announce(notice); },
                   .event = [this](const Event& event) { hear(event); }});
-    daemon_.meddle(options_.front.round);
+    daemon_.on_round(options_.front.round);
     if (options_.front.command) {
       daemon_.rewrite(
           [this](command_t& command) { options_.front.command(command, seen_cycles()); });
@@ -135,11 +135,11 @@ class FrontWalk {
     };
     options.released = [this, number](Time now) { wire_.released(SenderBit{1} << number, now); };
     options.deaf = [this](const std::string& what) {
-      verdict_.blame("no message deafens an application", what);
+      verdict_.report_violation("no message deafens an application", what);
     };
-    const FrontMeddle& meddle = options_.front;
-    if (meddle.instance) options.instance = std::bind_front(meddle.instance, number);
-    if (meddle.hears) options.hears = std::bind_front(meddle.hears, number);
+    const FrontDefect& defect = options_.front;
+    if (defect.instance) options.instance = std::bind_front(defect.instance, number);
+    if (defect.hears) options.hears = std::bind_front(defect.hears, number);
     return std::make_unique<VirtualApplication>(plan_, lcm_, std::move(options),
                                                 random_.fork(100 + number));
   }
@@ -199,9 +199,9 @@ class FrontWalk {
     const Time in_time = expected + plan_.cycle.receive_window + 300us + rare;
     excused_until_ = std::max(excused_until_, in_time);
     if (daemon_.stalled_until() > image.publish_time || now <= excused_until_) return;
-    verdict_.blame("each wait of the front thread ends in time",
-                   "image " + std::to_string(image.cycle) + " waited for " +
-                       std::to_string((now - image.publish_time) / 1us) + " us");
+    verdict_.report_violation("each wait of the front thread ends in time",
+                              "image " + std::to_string(image.cycle) + " waited for " +
+                                  std::to_string((now - image.publish_time) / 1us) + " us");
   }
 
   /// Returns true if this SYNC is not a whole number of periods after the one before: the one
@@ -228,8 +228,8 @@ class FrontWalk {
     }
     for (const auto& application : applications_) {
       if (leads(application)) continue;
-      verdict_.blame("every application leads its axes again",
-                     application->text() + " does not lead all axes after 60 s");
+      verdict_.report_violation("every application leads its axes again",
+                                application->text() + " does not lead all axes after 60 s");
     }
   }
 
@@ -243,7 +243,7 @@ class FrontWalk {
       stop_.look();
     }
     if (!daemon_.finished())
-      verdict_.blame("the ordered stop ends in time", "the stop did not end");
+      verdict_.report_violation("the ordered stop ends in time", "the stop did not end");
     for (const Time until = world_.now() + 1s; world_.now() < until;) port_.sleep_until(until);
     StatusSnapshot status;
     daemon_.master().status(status);

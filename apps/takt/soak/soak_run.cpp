@@ -10,7 +10,7 @@
 #include "apps/takt/soak/judge/node_judge.hpp"
 #include "apps/takt/soak/judge/output_judge.hpp"
 #include "apps/takt/soak/judged_port.hpp"
-#include "apps/takt/soak/restless_user.hpp"
+#include "apps/takt/soak/random_user.hpp"
 #include "apps/takt/soak/soak_trace.hpp"
 #include "master/explain/boot_report.hpp"
 #include "master/rt/bus_loop.hpp"
@@ -84,7 +84,7 @@ class BusWalk {
  private:
   void cycle() {
     loop_.cycle();
-    if (options_.meddle) options_.meddle(*exchange_, world_);
+    if (options_.defect) options_.defect(*exchange_, world_);
     const Time now = world_.now();
     exchange_->status.read(status_);
     verdict_.at(status_.bus.cycle, now);
@@ -113,8 +113,9 @@ class BusWalk {
     }
     const std::size_t now = ::mallinfo2().uordblks;
     if (now > memory + memory_slack) {
-      verdict_.blame("memory stays flat", std::to_string(now - memory) + " bytes more than at " +
-                                              std::to_string(warm / 1ms) + " ms");
+      verdict_.report_violation("memory stays flat", std::to_string(now - memory) +
+                                                         " bytes more than at " +
+                                                         std::to_string(warm / 1ms) + " ms");
     }
   }
 
@@ -132,8 +133,8 @@ class BusWalk {
       cycle();
     } while (!settled() && world_.now() < limit && verdict_.good());
     if (user_.unanswered() != 0) {
-      verdict_.blame("every request is answered once",
-                     std::to_string(user_.unanswered()) + " requests have no answer");
+      verdict_.report_violation("every request is answered once",
+                                std::to_string(user_.unanswered()) + " requests have no answer");
     }
     for (const Time until = world_.now() + 200ms; world_.now() < until;) cycle();
     nodes_.judge_end(status_);
@@ -143,7 +144,8 @@ class BusWalk {
     loop_.request_stop();
     const Time limit = world_.now() + plan_.stop_timeout + plan_.cycle.period;
     while (!loop_.done() && world_.now() <= limit) cycle();
-    if (!loop_.done()) verdict_.blame("the ordered stop ends in time", "the stop did not end");
+    if (!loop_.done())
+      verdict_.report_violation("the ordered stop ends in time", "the stop did not end");
   }
 
   const BusPlan& plan_;
@@ -159,7 +161,7 @@ class BusWalk {
   Intruder intruder_;
   JudgedPort port_;
   std::unique_ptr<Exchange> exchange_;
-  RestlessUser user_;
+  RandomUser user_;
   BusLoop<JudgedPort> loop_;
   StatusSnapshot status_;
   std::uint64_t events_ = 0;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/takt/soak/front_meddle.hpp"
+#include "apps/takt/soak/front_defect.hpp"
 #include "apps/takt/soak/judge/verdict.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 
@@ -23,8 +23,8 @@ struct SoakOptions {
   std::string candump{};                     ///< file for all frames; empty means no file
   bool verbose = false;                      ///< prints faults and events to stderr
   /// Called after each cycle and before the judges look. The judges must find what it breaks.
-  std::function<void(Exchange&, sim::World&)> meddle{};
-  FrontMeddle front{};
+  std::function<void(Exchange&, sim::World&)> defect{};
+  FrontDefect front{};
 };
 
 /// Counters of one run, or of several runs.

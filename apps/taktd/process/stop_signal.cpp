@@ -8,11 +8,11 @@ namespace {
 std::atomic<int> stop_signals{0};
 static_assert(std::atomic<int>::is_always_lock_free);
 
-std::atomic<bool> recording_wished{false};
+std::atomic<bool> recording_requested{false};
 
 constexpr std::array stop_numbers{SIGTERM, SIGINT, SIGHUP};
 
-void wish_recording(int) { recording_wished.store(true, std::memory_order_relaxed); }
+void request_recording(int) { recording_requested.store(true, std::memory_order_relaxed); }
 
 std::array<std::atomic<std::atomic<bool>*>, StopSignal::most_requests> stop_requests{};
 static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free);
@@ -48,7 +48,7 @@ StopSignal::StopSignal() {
     sigaction(number, &action, nullptr);
     sigaddset(&stops, number);
   }
-  action.sa_handler = wish_recording;
+  action.sa_handler = request_recording;
   sigaction(SIGUSR1, &action, nullptr);
   sigaddset(&stops, SIGUSR1);
   pthread_sigmask(SIG_BLOCK, &stops, &wait_mask_);
@@ -74,8 +74,8 @@ void StopSignal::let_through() const noexcept {
   pthread_sigmask(SIG_SETMASK, &wait_mask_, nullptr);
 }
 
-bool StopSignal::take_recording_wish() noexcept {
-  return recording_wished.exchange(false, std::memory_order_relaxed);
+bool StopSignal::take_recording_request() noexcept {
+  return recording_requested.exchange(false, std::memory_order_relaxed);
 }
 
 int StopSignal::count() noexcept { return stop_signals.load(); }

@@ -16,7 +16,7 @@ class StopSignal {
   /// Number of stop signals that have arrived so far.
   static int count() noexcept;
   /// Returns true if SIGUSR1 has arrived since the last call.
-  static bool take_recording_wish() noexcept;
+  static bool take_recording_request() noexcept;
   /// Most flags that one process can give to stop_with().
   static constexpr std::size_t most_requests = 16;
   /// From this call on, a stop signal also sets `request` from within its handler, so that the

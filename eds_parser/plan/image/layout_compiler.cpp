@@ -268,8 +268,8 @@ std::string snake_case(std::string_view text) {
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
     const bool word = byte < 0x80 && std::isalnum(byte) != 0;
-    const bool hump = was_lower && std::isupper(byte) != 0;
-    if ((!word || hump) && !out.empty() && out.back() != '_') out += '_';
+    const bool word_begins = was_lower && std::isupper(byte) != 0;
+    if ((!word || word_begins) && !out.empty() && out.back() != '_') out += '_';
     if (word) out += static_cast<char>(std::tolower(byte));
     was_lower = std::islower(byte) != 0;
     if (out.size() >= longest_name) break;

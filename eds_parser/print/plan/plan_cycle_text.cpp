@@ -18,7 +18,7 @@ void add_time_of_day(PlanLines& lines, const TimePlan& time) {
              time.period / 1ms);
 }
 
-std::string sync_maker(const BusPlan& plan) {
+std::string sync_producer_text(const BusPlan& plan) {
   if (!plan.cycle.sync_producer) return "a device outside of this file";
   const NodePlan* node = plan.find(plan.cycle.sync_producer->value());
   return node == nullptr ? "an unknown node" : "node " + node->name;
@@ -51,7 +51,7 @@ void add_cycle(PlanLines& lines, const BusPlan& plan) {
   lines.line(
       "{:>9}  SYNC {}{}{}", "0 us", to_string(c.sync_cob_id),
       c.sync_overflow == 0 ? ", without counter" : fmt::format(", counter 1..{}", c.sync_overflow),
-      c.sync_followed ? ", made by " + sync_maker(plan) : "");
+      c.sync_followed ? ", made by " + sync_producer_text(plan) : "");
   lines.line("{:>9}  the last of {} synchronous TPDOs has arrived, if all devices answer at once",
              us_text(budget.earliest), std::ranges::count_if(plan.pdos.tpdos, &PdoRow::cyclic));
   lines.line("{:>9}  receive window ends: a TPDO that has not arrived counts as missing",

@@ -134,7 +134,8 @@ void LssMaster::sent_all(Time now) noexcept {
 }
 
 Time LssMaster::wait() const noexcept {
-  const bool doubtful = command_.op == LssOp::fast_scan ? fast_.doubtful() : pace_ == Pace::patient;
+  const bool doubtful =
+      command_.op == LssOp::fast_scan ? fast_.doubtful() : pace_ == Pace::full_timeout;
   if (!scans() || slowest_ == Time{} || doubtful) return timeout_;
   return std::min(timeout_, std::max(waits::lss_shortest, 3 * slowest_));
 }
@@ -155,7 +156,7 @@ void LssMaster::on_scan_reaction(bool answered) noexcept {
   }
   slow_.on_reaction(answered);
   if (slow_.state() == LssScanState::lost && pace_ == Pace::quick) {
-    pace_ = Pace::patient;
+    pace_ = Pace::full_timeout;
     begin_slow_scan();
   }
   end_scan(slow_.state(), slow_.address());

@@ -57,7 +57,7 @@ class LssMaster {
   enum class Wait : std::uint8_t { none, first_answer, all_answers };
   /// The time for which a scan waits for answers: only as long as the devices need (`quick`), or
   /// for the full time-out (`patient`).
-  enum class Pace : std::uint8_t { quick, patient };
+  enum class Pace : std::uint8_t { quick, full_timeout };
 
   void ask() noexcept;
   void ask_scan() noexcept;

@@ -68,14 +68,14 @@ void LssFastScan::on_part(bool answered) noexcept {
     state_ = unheard_ && address_ > *unheard_ ? LssScanState::lost : LssScanState::found;
   } else if (!doubtful_ || part < confirmed_) {
     confirmed_ = std::min(confirmed_, part);
-    if (part + 1 == parts) keep_unheard();
+    if (part + 1 == parts) keep_unanswered();
     start_over();
   } else {
     state_ = mask_[part] != 0 ? LssScanState::nobody : LssScanState::lost;
   }
 }
 
-void LssFastScan::keep_unheard() noexcept {
+void LssFastScan::keep_unanswered() noexcept {
   LssAddress asked = address_;
   asked[parts - 1] = question_.number;
   if (!unheard_ || asked < *unheard_) unheard_ = asked;

@@ -54,7 +54,7 @@ class LssFastScan {
 
   bool at_the_end() const noexcept { return question_.bit_check == 0 && question_.part == 3; }
   void start_over() noexcept;
-  void keep_unheard() noexcept;
+  void keep_unanswered() noexcept;
   void begin_part(std::uint8_t part) noexcept;
   void ask_anybody() noexcept;
   void ask_below(int bit) noexcept;

@@ -96,7 +96,7 @@ void Network::on_frame(const Frame& frame, Time now, Outbox& out) noexcept {
   }
   const std::uint32_t node = frame.id.id() & 0x7F;
   NodeSession* const peer = session(node);
-  if (peer == nullptr) return meet_stranger(frame, now);
+  if (peer == nullptr) return on_unlisted_node(frame, now);
   switch (frame.id.id() & ~0x7FU) {
     case 0x700:
       if (const auto sign = decode_heartbeat(frame)) peer->on_heartbeat(*sign, now);
@@ -121,7 +121,7 @@ NodeSession* Network::emcy_sender(CobId id) noexcept {
 
 /// Reports that a node which is not in the network file has shown a sign of life. CiA 302-2, status
 /// A.
-void Network::meet_stranger(const Frame& frame, Time now) noexcept {
+void Network::on_unlisted_node(const Frame& frame, Time now) noexcept {
   const std::uint32_t node = frame.id.id() & 0x7F;
   const bool sign_of_life = (frame.id.id() & 0x780U) == 0x700 && frame.length != 0 && node != 0;
   if (!sign_of_life || node == plan_.master_id.value() || strangers_[node]) return;

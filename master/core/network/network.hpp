@@ -190,7 +190,7 @@ class Network {
   void halt_group(std::size_t index) noexcept;
   template <class Change>
   void change_all(Change change) noexcept;
-  void meet_stranger(const Frame& frame, Time now) noexcept;
+  void on_unlisted_node(const Frame& frame, Time now) noexcept;
   NodeSession* emcy_sender(CobId id) noexcept;
   void ask_own_dictionary(const Frame& frame, Time now) noexcept;
   void serve_own_dictionary(Time now, Outbox& out) noexcept;

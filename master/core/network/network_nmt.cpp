@@ -90,7 +90,7 @@ void Network::on_sync_loss() noexcept {
 }
 
 void Network::on_absence(Time away) noexcept {
-  change_all([away](NodeSession& session) { session.excuse(away); });
+  change_all([away](NodeSession& session) { session.extend_deadlines(away); });
 }
 
 void Network::on_sync_back() noexcept {

@@ -39,7 +39,7 @@ Time BootRetries::pause() const noexcept {
 }
 
 bool BootRetries::on_failure(const BootFailure& failure, Time now) noexcept {
-  if (met_counter_too_early(failure) && !std::exchange(counter_excused_, true)) {
+  if (met_counter_too_early(failure) && !std::exchange(counter_error_retried_, true)) {
     at_ = now;
     return false;
   }
@@ -51,10 +51,10 @@ bool BootRetries::on_failure(const BootFailure& failure, Time now) noexcept {
 
 void BootRetries::on_success() noexcept {
   same_failures_ = failed_boots_ = 0;
-  counter_excused_ = false;
+  counter_error_retried_ = false;
 }
 
-bool BootRetries::is_restless(Time now, BootState state) noexcept {
+bool BootRetries::boots_up_repeatedly(Time now, BootState state) noexcept {
   constexpr Time window = std::chrono::seconds{10};
   constexpr std::uint32_t most_bootups = 5;
   if (now - bootups_since_ >= window) {

@@ -34,7 +34,7 @@ class BootRetries {
   void shorten_pause() noexcept { failed_boots_ = 0; }
   /// Counts a boot-up message. Returns true if the node restarts again and again, so that it has to
   /// wait for its next regular boot.
-  bool is_restless(Time now, BootState state) noexcept;
+  bool boots_up_repeatedly(Time now, BootState state) noexcept;
 
   /// The newest failure of a boot.
   const BootFailure& last_failure() const noexcept { return last_failure_; }
@@ -46,7 +46,8 @@ class BootRetries {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(at_, from_, same_failures_, failed_boots_, counter_excused_, bootups_, bootups_since_);
+    state(at_, from_, same_failures_, failed_boots_, counter_error_retried_, bootups_,
+          bootups_since_);
     BootFailure& last = last_failure_;  // The next failure is compared with these values.
     state(last.step, last.fault, last.abort_code, last.value, last.node_state, last.restarts);
   }
@@ -60,7 +61,7 @@ class BootRetries {
   std::uint32_t same_failures_ = 0;
   std::uint8_t failed_boots_ = 0;  // failures in a row since a boot-up message or a command
   // True if the node was already booted again because a SYNC with counter came too early.
-  bool counter_excused_ = false;
+  bool counter_error_retried_ = false;
   BootFailure last_failure_;
   std::uint32_t bootups_ = 0;  // number of boot-up messages since bootups_since_
   Time bootups_since_{};

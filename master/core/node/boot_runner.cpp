@@ -122,7 +122,7 @@ Time BootRunner::deadline() const noexcept {
   return never;
 }
 
-void BootRunner::excuse(Time away) noexcept {
+void BootRunner::extend_deadlines(Time away) noexcept {
   progress_.entered += away;
   for (Time* const limit : {&progress_.deadline, &progress_.wait_until}) {
     if (*limit != never) *limit += away;

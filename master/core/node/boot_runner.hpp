@@ -84,7 +84,7 @@ class BootRunner {
   /// The deadline of the waits of the runner; the client has its own deadline.
   Time deadline() const noexcept;
   /// Extends all deadlines by the time for which the master itself did not run.
-  void excuse(Time away) noexcept;
+  void extend_deadlines(Time away) noexcept;
 
   /// The NMT command that waits to be sent to the node; call nmt_sent() after it was sent. Besides
   /// the commands of the plan, the runner sends PRE-OPERATIONAL before a write, unless the node is

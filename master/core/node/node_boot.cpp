@@ -22,7 +22,7 @@ void NodeSession::boot(BootRunner::From from, Time now) noexcept {
   wanted_ = NmtState::unknown;
   guard_.stop();
   state_at_boot_ = status_.nmt;
-  twins_.restart();
+  duplicates_.restart();
   progress_reported_ = 0;
   emcys_at_boot_ = status_.emcy_count;
   runner_.start(from, now);

@@ -31,7 +31,7 @@ class NodeGuard {
   std::uint32_t repeated() const noexcept { return repeated_; }
 
   /// Extends the life time by the time for which the master itself did not run.
-  void excuse(Time away) noexcept {
+  void extend_deadlines(Time away) noexcept {
     if (silent_from_ != never) silent_from_ += away;
   }
 

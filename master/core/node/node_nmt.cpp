@@ -103,7 +103,7 @@ void NodeSession::assume(NmtState state, Time now) noexcept {
 void NodeSession::disarm() noexcept {
   watch_.disarm();
   guard_.node_was_reset();
-  twins_.restart();
+  duplicates_.restart();
 }
 
 void NodeSession::on_node_reset() noexcept {

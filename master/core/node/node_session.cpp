@@ -16,7 +16,7 @@ NodeSession::NodeSession(const NodePlan& plan, Managed managed, Shared shared) n
       requests_{plan, shared.requests},
       watch_{plan.heartbeat_timeout},
       guard_{plan.guard},
-      twins_{plan.heartbeat_period, plan.sdo.channel_of(plan.id).request} {}
+      duplicates_{plan.heartbeat_period, plan.sdo.channel_of(plan.id).request} {}
 
 void NodeSession::announce(EventKind kind, Time now, std::int64_t value,
                            std::uint32_t detail) noexcept {
@@ -43,7 +43,7 @@ void NodeSession::advance(Time now) noexcept {
 }
 
 void NodeSession::on_sdo_answer(const Frame& frame, Time now) noexcept {
-  report_twin(twins_.on_sdo_answer(frame, now), now);
+  report_duplicate(duplicates_.on_sdo_answer(frame, now), now);
   client_.on_frame(frame, now);
   advance(now);
 }
@@ -73,7 +73,7 @@ void NodeSession::on_heartbeat(const Heartbeat& sign, Time now) noexcept {
   }
   if (was_absent() && !halted) retries_.without_pause(now);
   if (booting()) runner_.on_heartbeat(state);
-  if (status_.boot == BootState::ready) report_twin(twins_.on_heartbeat(now), now);
+  if (status_.boot == BootState::ready) report_duplicate(duplicates_.on_heartbeat(now), now);
   look_for_fall(state, now);
   advance(now);
 }
@@ -104,7 +104,7 @@ void NodeSession::on_bootup(Time now) noexcept {
     if (again) status_.boot = BootState::lost;
     return;
   }
-  if (retries_.is_restless(now, status_.boot)) {
+  if (retries_.boots_up_repeatedly(now, status_.boot)) {
     if (status_.boot == BootState::ready) {
       boot_later(BootState::lost, BootRunner::From::beginning, now);
     }
@@ -114,7 +114,7 @@ void NodeSession::on_bootup(Time now) noexcept {
   boot(BootRunner::From::bootup, now);
 }
 
-void NodeSession::report_twin(std::optional<DuplicateSign> sign, Time now) noexcept {
+void NodeSession::report_duplicate(std::optional<DuplicateSign> sign, Time now) noexcept {
   if (sign) announce(EventKind::duplicate_node, now, static_cast<std::int64_t>(*sign));
 }
 
@@ -157,7 +157,7 @@ bool NodeSession::on_time(Time now, Outbox& out) noexcept {
   const std::size_t before = out.frames().size();
   look_for_silence(now);
   client_.on_time(now, out);
-  twins_.on_sdo_requests(out.frames().subspan(before));
+  duplicates_.on_sdo_requests(out.frames().subspan(before));
   advance(now);
   send_own_command(now, out);
   send_boot_command(now, out);
@@ -174,11 +174,11 @@ Time NodeSession::deadline() const noexcept {
   return first;
 }
 
-void NodeSession::excuse(Time away) noexcept {
-  watch_.excuse(away);
-  guard_.excuse(away);
-  client_.excuse(away);
-  runner_.excuse(away);
+void NodeSession::extend_deadlines(Time away) noexcept {
+  watch_.extend_deadlines(away);
+  guard_.extend_deadlines(away);
+  client_.extend_deadlines(away);
+  runner_.extend_deadlines(away);
 }
 
 }  // namespace takt

@@ -9,10 +9,10 @@
 #include "master/core/machine.hpp"
 #include "master/core/node/boot_retries.hpp"
 #include "master/core/node/boot_runner.hpp"
+#include "master/core/node/duplicate_node_watch.hpp"
 #include "master/core/node/node_guard.hpp"
 #include "master/core/node/node_requests.hpp"
 #include "master/core/node/node_watch.hpp"
-#include "master/core/node/twin_watch.hpp"
 #include "master/core/node_status.hpp"
 #include "master/core/request_table.hpp"
 #include "master/core/sdo/sdo_client.hpp"
@@ -105,7 +105,7 @@ class NodeSession {
   Time deadline() const noexcept;
   /// Extends all time-outs of answers and heartbeats by the time for which the master itself did
   /// not run.
-  void excuse(Time away) noexcept;
+  void extend_deadlines(Time away) noexcept;
 
   /// The limits and quick stop option codes that the newest boot has read.
   std::span<const LimitReading> limits_read() const noexcept { return runner_.limits(); }
@@ -173,7 +173,7 @@ class NodeSession {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(status_, client_, watch_, guard_, twins_, retries_, command_, network_);
+    state(status_, client_, watch_, guard_, duplicates_, retries_, command_, network_);
     state(wanted_, heartbeats_out_, heartbeats_against_, state_at_boot_, emcys_at_boot_,
           serial_number_, progress_reported_);
   }
@@ -219,7 +219,7 @@ class NodeSession {
     return wanted_ == NmtState::stopped || wanted_ == NmtState::preoperational;
   }
   void look_for_fall(NmtState state, Time now) noexcept;
-  void report_twin(std::optional<DuplicateSign> sign, Time now) noexcept;
+  void report_duplicate(std::optional<DuplicateSign> sign, Time now) noexcept;
   void announce(EventKind kind, Time now, std::int64_t value = 0,
                 std::uint32_t detail = 0) noexcept;
 
@@ -241,7 +241,7 @@ class NodeSession {
   NodeRequests requests_;
   NodeWatch watch_;
   NodeGuard guard_;
-  TwinWatch twins_;
+  DuplicateNodeWatch duplicates_;
   // A command that waits to be sent and does not belong to the boot plan.
   std::optional<NmtCommand> own_command_;
   NmtState wanted_ = NmtState::unknown;  // the state that the newest NMT command demands

@@ -27,7 +27,7 @@ class NodeWatch {
   /// Stops the supervision, because the node was reset or silence is expected for another reason.
   void disarm() noexcept { deadline_ = never; }
   /// Does not count the time for which the master itself did not run as silence of the node.
-  void excuse(Time away) noexcept {
+  void extend_deadlines(Time away) noexcept {
     if (deadline_ != never) deadline_ += away;
   }
   Time deadline() const noexcept { return deadline_; }

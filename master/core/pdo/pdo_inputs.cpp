@@ -90,7 +90,7 @@ void PdoInputs::begin(std::uint64_t cycle, Time sync, bool heard) noexcept {
   last_arrival_ = sync;
   ++beat_;
   for (Row& row : rows_) {
-    row.waited = row.due == beat_ && row.known && row.misses < patience;
+    row.waited = row.due == beat_ && row.known && row.misses < waited_misses;
     expected_ += row.waited;
   }
   outstanding_ = expected_;

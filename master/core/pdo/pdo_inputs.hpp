@@ -76,7 +76,7 @@ class PdoInputs {
 
  private:
   static constexpr std::uint64_t not_due = ~0ULL;
-  static constexpr std::uint8_t patience = 3;  ///< misses in a row after which no cycle waits
+  static constexpr std::uint8_t waited_misses = 3;  ///< misses in a row after which no cycle waits
 
   struct Row {
     std::uint64_t due = not_due;  ///< beat in which the TPDO is expected next

@@ -21,7 +21,9 @@ std::size_t find(const std::vector<PdoRow>& rows, std::uint8_t node, std::uint16
 }  // namespace
 
 PdoRequests::PdoRequests(const BusPlan& plan)
-    : plan_{plan}, owed_until_(plan.pdos.tpdos.size(), never), sent_(plan.pdos.rpdos.size()) {
+    : plan_{plan},
+      late_answer_until_(plan.pdos.tpdos.size(), never),
+      sent_(plan.pdos.rpdos.size()) {
   for (std::size_t i = 0; i < plan.pdos.tpdos.size(); ++i) {
     const PdoRow& row = plan.pdos.tpdos[i];
     if (row.poll > Time{} || row.poll_syncs != 0) {
@@ -82,25 +84,25 @@ void PdoRequests::answer(Slot& slot, SdoFault fault) noexcept {
 /// PDO is a valid answer.
 void PdoRequests::give_up(Slot& slot, Time now) noexcept {
   if (slot.state == Slot::State::sent && !slot.frame.rtr) {
-    Time& until = owed_until_[slot.tpdo];
-    owed_ += until == never;
+    Time& until = late_answer_until_[slot.tpdo];
+    late_answers_ += until == never;
     until = now + slot.timeout;
   }
   answer(slot, SdoFault::timeout);
 }
 
-void PdoRequests::forget_owed(Time now) noexcept {
-  for (Time& until : owed_until_) {
+void PdoRequests::forget_late_answers(Time now) noexcept {
+  for (Time& until : late_answer_until_) {
     if (now < until) continue;
     until = never;
-    --owed_;
+    --late_answers_;
   }
 }
 
 /// Returns true if the request may be sent now. Only one request at a time is permitted for each
 /// TPDO, because answers carry no number.
 bool PdoRequests::is_next(const Slot& slot) const noexcept {
-  if (owed_until_[slot.tpdo] != never) return false;
+  if (late_answer_until_[slot.tpdo] != never) return false;
   return std::ranges::none_of(slots_, [&](const Slot& other) {
     const bool open = other.state == Slot::State::to_send || other.state == Slot::State::sent;
     return open && other.tpdo == slot.tpdo && other.order < slot.order;
@@ -138,7 +140,7 @@ void PdoRequests::on_time(std::span<const bool> exchanging, std::uint64_t beat, 
     poll.next = poll.next + row.poll > now ? poll.next + row.poll : now + row.poll;
     poll.last_beat = beat;
   }
-  if (owed_ != 0) forget_owed(now);
+  if (late_answers_ != 0) forget_late_answers(now);
   if (used_ == 0) return;
   for (Slot& slot : slots_) {
     const bool open = slot.state == Slot::State::to_send || slot.state == Slot::State::sent;
@@ -147,18 +149,18 @@ void PdoRequests::on_time(std::span<const bool> exchanging, std::uint64_t beat, 
   }
 }
 
-void PdoRequests::excuse(Time away) noexcept {
+void PdoRequests::extend_deadlines(Time away) noexcept {
   for (Slot& slot : slots_) slot.deadline += away;
-  for (Time& until : owed_until_) {
+  for (Time& until : late_answer_until_) {
     if (until != never) until += away;
   }
 }
 
 void PdoRequests::on_frame(std::uint16_t row, const StampedFrame& stamped) noexcept {
   if (stamped.frame.rtr) return;
-  if (owed_until_[row] != never) {
-    owed_until_[row] = never;
-    --owed_;
+  if (late_answer_until_[row] != never) {
+    late_answer_until_[row] = never;
+    --late_answers_;
     return;
   }
   for (Slot& slot : slots_) {

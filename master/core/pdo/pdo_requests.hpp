@@ -33,15 +33,15 @@ class PdoRequests {
   void on_time(std::span<const bool> exchanging, std::uint64_t beat, Time now,
                Outbox& out) noexcept;
   /// Extends all time-outs by the time for which the master itself did not run.
-  void excuse(Time away) noexcept;
+  void extend_deadlines(Time away) noexcept;
   /// Returns true if a request waits for a TPDO, so on_frame() needs the TPDOs that come.
-  bool waiting() const noexcept { return waiting_ != 0 || owed_ != 0; }
+  bool waiting() const noexcept { return waiting_ != 0 || late_answers_ != 0; }
   /// Takes a received TPDO; `row` is the index into PdoTable::tpdos.
   void on_frame(std::uint16_t row, const StampedFrame& stamped) noexcept;
   /// Takes the next reply. Returns false if there is none.
   bool take(Reply& reply) noexcept;
   /// Returns true if there is no request, and no late answer can still come.
-  bool idle() const noexcept { return used_ == 0 && owed_ == 0; }
+  bool idle() const noexcept { return used_ == 0 && late_answers_ == 0; }
   /// Returns true if a request to this node is not answered yet. The request may be an exchange
   /// that sends an RPDO.
   bool reaches(std::uint8_t node) const noexcept;
@@ -83,14 +83,14 @@ class PdoRequests {
   bool is_due(const Poll& poll, std::uint64_t beat, Time now) const noexcept;
   bool is_next(const Slot& slot) const noexcept;
   void give_up(Slot& slot, Time now) noexcept;
-  void forget_owed(Time now) noexcept;
+  void forget_late_answers(Time now) noexcept;
 
   const BusPlan& plan_;
   std::vector<Poll> polls_;
   std::array<Slot, capacity> slots_{};
   // For each TPDO: the time until which the answer to a request that has timed out may still come.
-  std::vector<Time> owed_until_;
-  std::size_t owed_ = 0;             // number of TPDOs with such an answer
+  std::vector<Time> late_answer_until_;
+  std::size_t late_answers_ = 0;     // number of TPDOs with such an answer
   std::vector<std::uint32_t> sent_;  // number of frames by RPDO
   std::size_t used_ = 0;
   std::size_t waiting_ = 0;

@@ -10,7 +10,7 @@ namespace takt {
 /// The number of sub-blocks in a row without progress after which a transfer is given up. With this
 /// limit, a transfer succeeds on a line with disturbances, but a server that makes no progress does
 /// not occupy the channel forever.
-inline constexpr std::uint8_t most_fruitless_blocks = 16;
+inline constexpr std::uint8_t most_stalled_blocks = 16;
 
 /// The number of segments that a device may send in one sub-block, 1..127; `bitrate` is in bit/s.
 constexpr std::uint8_t sub_block_segments(std::uint32_t bitrate) noexcept {

@@ -91,8 +91,9 @@ SdoStep SdoBlockDownload::on_confirm(const Frame& frame) noexcept {
   }
   if (!valid_block_size(confirm.segments)) return violation(abort_code::block_size);
   confirmed_ = std::min(confirmed_ + confirm.received * segment_bytes, value_.size());
-  fruitless_ = confirm.received == 0 ? static_cast<std::uint8_t>(fruitless_ + 1) : std::uint8_t{0};
-  if (fruitless_ == most_fruitless_blocks) return violation(abort_code::sequence);
+  stalled_blocks_ =
+      confirm.received == 0 ? static_cast<std::uint8_t>(stalled_blocks_ + 1) : std::uint8_t{0};
+  if (stalled_blocks_ == most_stalled_blocks) return violation(abort_code::sequence);
   newest_ = confirm;
   block_segments_ = confirm.segments;
   sent_in_block_ = 0;

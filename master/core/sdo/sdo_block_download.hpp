@@ -59,7 +59,7 @@ class SdoBlockDownload {
   bool crc_used_ = false;
   std::uint8_t block_segments_ = 0;
   std::uint8_t sent_in_block_ = 0;
-  std::uint8_t fruitless_ = 0;
+  std::uint8_t stalled_blocks_ = 0;
   std::optional<SdoBlockConfirm> newest_;
   std::uint16_t crc_ = 0;
   std::size_t summed_ = 0;  ///< number of bytes that crc_ covers

@@ -75,10 +75,10 @@ SdoStep SdoBlockUpload::on_segment(const Frame& frame) noexcept {
   }
   // Even if segments were missed, the server stops here and waits.
   if (part.last || part.number == setup_.segments) {
-    if (in_sequence_ == 0 && ++fruitless_ == most_fruitless_blocks) {
+    if (in_sequence_ == 0 && ++stalled_blocks_ == most_stalled_blocks) {
       return violation(abort_code::sequence);
     }
-    if (in_sequence_ != 0) fruitless_ = 0;
+    if (in_sequence_ != 0) stalled_blocks_ = 0;
     confirm();
   }
   return {.kind = Kind::goes_on};

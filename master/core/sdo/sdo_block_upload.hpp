@@ -100,7 +100,7 @@ class SdoBlockUpload {
   bool asked_again_ = false;      ///< missing segments were requested again, and none has come
   std::uint8_t in_sequence_ = 0;  ///< segments of this sub-block that came in sequence
   std::uint8_t confirmed_ = 0;    ///< number of segments that the confirmation reports
-  std::uint8_t fruitless_ = 0;
+  std::uint8_t stalled_blocks_ = 0;
   std::uint16_t crc_ = 0;
   std::optional<std::uint32_t> announced_;
   std::size_t done_ = 0;

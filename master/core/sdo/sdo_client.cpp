@@ -141,10 +141,10 @@ void SdoClient::frame_sent(const Frame& frame, Time now) noexcept {
   std::visit([](auto& transfer) { transfer.sent(); }, transfer_);
   trace_.sent = frame;
   asked_ = {.at = now};
-  deadline_ = now + patience();
+  deadline_ = now + answer_timeout();
 }
 
-Time SdoClient::patience() const noexcept {
+Time SdoClient::answer_timeout() const noexcept {
   const bool may_ask_again = block_upload() != nullptr && block_upload()->in_sub_block();
   return may_ask_again ? waits::block_silence(timeout_) : timeout_;
 }

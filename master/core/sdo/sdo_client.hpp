@@ -112,7 +112,7 @@ class SdoClient {
   std::size_t announced() const noexcept;
 
   /// Extends the time-out by the time for which the master itself did not run.
-  void excuse(Time away) noexcept {
+  void extend_deadlines(Time away) noexcept {
     if (deadline_ != never) deadline_ += away;
   }
 
@@ -195,7 +195,7 @@ class SdoClient {
   void begin(ObjectKey object, Time timeout) noexcept;
   void begin_without_block(State state) noexcept;
   void frame_sent(const Frame& frame, Time now) noexcept;
-  Time patience() const noexcept;
+  Time answer_timeout() const noexcept;
   void on_silence() noexcept;
   void give_up_late() noexcept;
   void finish(const SdoResult& result, PreviousTransfer::End end) noexcept;

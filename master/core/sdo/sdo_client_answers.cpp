@@ -150,7 +150,7 @@ void SdoClient::on_step(const SdoStep& step, const Frame& frame, Time now) noexc
   switch (step.kind) {
     case SdoStep::Kind::stranger:
     case SdoStep::Kind::goes_on:
-      deadline_ = now + patience();
+      deadline_ = now + answer_timeout();
       return;
     case SdoStep::Kind::plain: {
       begin_without_block(State::running);

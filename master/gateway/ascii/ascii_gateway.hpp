@@ -35,7 +35,7 @@ class AsciiGateway final : public FrontGuest {
   void connect(int client) { clients_[client] = {}; }
   void disconnect(int client);
   /// Returns true if a command of this client is still unanswered.
-  bool owes(int client) const {
+  bool awaits_reply(int client) const {
     const auto found = clients_.find(client);
     return found != clients_.end() && found->second.pending != 0;
   }

@@ -215,7 +215,7 @@ bool AsciiServer::is_through(const Client& client) const {
   if (!client.ended) return false;
   pollfd state{.fd = client.socket.get(), .events = 0, .revents = 0};
   if (::poll(&state, 1, 0) == 1) return true;  // the client has closed its reading side as well
-  return client.unsent.empty() && !handler_.owed(client.id);
+  return client.unsent.empty() && !handler_.awaits_reply(client.id);
 }
 
 void AsciiServer::serve() {

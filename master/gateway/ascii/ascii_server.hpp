@@ -40,7 +40,7 @@ class AsciiServer {
     std::function<void(int client)> gone;
     /// Returns true if an answer is due: a client that has ended its writing side stays until it
     /// has the answer.
-    std::function<bool(int client)> owed;
+    std::function<bool(int client)> awaits_reply;
     /// For the user, about a trouble of the server itself. At most once in 10 s.
     std::function<void(const std::string& sentence)> warn = [](const std::string&) {};
   };

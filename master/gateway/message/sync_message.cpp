@@ -13,7 +13,7 @@ std::string ms_text(std::int64_t ns) {
   return fmt::format("{}.{:03} ms", us / 1000, us % 1000);
 }
 
-std::string maker(const BusPlan& plan) {
+std::string sync_producer_text(const BusPlan& plan) {
   if (!plan.cycle.sync_followed) return "master";
   if (!plan.cycle.sync_producer) return "external";
   const auto found = std::ranges::find(plan.nodes, *plan.cycle.sync_producer, &NodePlan::id);
@@ -45,7 +45,7 @@ sync_status_t sync_message(const BusPlan& plan, const BusStatus& bus) {
   sync_status_t message{};
   message.schema = message_schema;
   message.state = static_cast<std::int16_t>(bus.sync);
-  if (bus.sync != SyncState::none) message.source = maker(plan);
+  if (bus.sync != SyncState::none) message.source = sync_producer_text(plan);
   const bool followed = plan.cycle.sync_followed;
   if (followed && plan.cycle.sync_producer) message.node_id = plan.cycle.sync_producer->value();
   if (!followed && bus.sync == SyncState::made) message.node_id = plan.master_id.value();

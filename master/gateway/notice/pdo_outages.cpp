@@ -31,7 +31,7 @@ std::string still(std::size_t missing) {
   return fmt::format("{} {} still missing", missing, missing == 1 ? "is" : "are");
 }
 
-std::string lately(Time span) {
+std::string recent_span_text(Time span) {
   return span <= pause ? "in the last second" : "in the last " + time_text(span);
 }
 
@@ -112,7 +112,8 @@ Notice PdoOutages::one(const Row& row, Time now) const {
           .kind = std::string{name(EventKind::pdo_missing)},
           .weight = Weight::warning,
           .text = fmt::format("{}: TPDO{} was missing {} {}; it is {}", subject(plan_, pdo.node),
-                              pdo.number, how_often(outage.missed), lately(now - outage.since),
+                              pdo.number, how_often(outage.missed),
+                              recent_span_text(now - outage.since),
                               outage.missing ? "still missing" : "back")};
 }
 
@@ -130,7 +131,7 @@ Notice PdoOutages::many(const std::vector<Row*>& rows, Time now) const {
   std::string text = fmt::format("{} TPDOs are back", rows.size());
   if (total != 0) {
     text = fmt::format("{} TPDOs were missing {} {}, most often TPDO{} of {} ({}); {}", rows.size(),
-                       how_often(total), lately(now - since), worst.number,
+                       how_often(total), recent_span_text(now - since), worst.number,
                        subject(plan_, worst.node), how_often(outage.missed), still(missing));
   }
   const EventKind kind = total == 0 ? EventKind::pdo_back : EventKind::pdo_missing;

@@ -11,7 +11,7 @@
 
 #include "master/lcm/printable_text.hpp"
 #include "master/linux/file_descriptor.hpp"
-#include "master/linux/passing_trouble.hpp"
+#include "master/linux/transient_error.hpp"
 
 namespace takt {
 namespace {
@@ -21,22 +21,22 @@ constexpr std::size_t most_keys = 64;
 constexpr std::size_t longest_name = 32;
 
 /// The reason why a file could not be read.
-struct ReadTrouble {
+struct ReadFailure {
   std::string sentence;
   bool passing = false;  ///< another attempt may succeed although the file stays as it is
 };
 
-std::unexpected<ReadTrouble> unreadable(const std::string& path, int error) {
+std::unexpected<ReadFailure> unreadable(const std::string& path, int error) {
   return std::unexpected{
-      ReadTrouble{"key file " + path + ": " + std::strerror(error), is_passing_trouble(error)}};
+      ReadFailure{"key file " + path + ": " + std::strerror(error), is_transient_error(error)}};
 }
 
 std::unexpected<std::string> failed(const std::string& path, const std::string& why) {
   return std::unexpected{"key file " + path + ": " + why};
 }
 
-std::unexpected<ReadTrouble> unusable(const std::expected<void, std::string>& checked) {
-  return std::unexpected{ReadTrouble{checked.error()}};
+std::unexpected<ReadFailure> unusable(const std::expected<void, std::string>& checked) {
+  return std::unexpected{ReadFailure{checked.error()}};
 }
 
 bool is_name(std::string_view text) noexcept {
@@ -77,7 +77,7 @@ std::expected<void, std::string> check_permissions(const std::string& path,
   return {};
 }
 
-std::expected<std::string, ReadTrouble> read_all(int fd, const std::string& path) {
+std::expected<std::string, ReadFailure> read_all(int fd, const std::string& path) {
   std::string text;
   std::array<char, 4096> chunk;
   for (;;) {
@@ -92,7 +92,7 @@ std::expected<std::string, ReadTrouble> read_all(int fd, const std::string& path
 }
 
 /// Reads the whole text of a key file that has the right owner and mode.
-std::expected<std::string, ReadTrouble> read_key_file(const std::string& path) {
+std::expected<std::string, ReadFailure> read_key_file(const std::string& path) {
   const FileDescriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK)};
   if (!file && errno == ELOOP) return unusable(failed(path, "it is not a regular file"));
   if (!file) return unreadable(path, errno);

@@ -20,7 +20,7 @@ constexpr std::size_t batch_frames = 256;
 constexpr Time look_again = std::chrono::milliseconds{10};
 constexpr Time open_limit = std::chrono::seconds{2};
 // A guest waits this long for a new host, which takes over within 20 ms.
-constexpr Time guest_patience = std::chrono::milliseconds{60};
+constexpr Time connect_timeout = std::chrono::milliseconds{60};
 
 }  // namespace
 
@@ -111,7 +111,7 @@ std::expected<UnixBusPort, BusError> UnixBusPort::open(const UnixBusOptions& opt
   auto state = std::make_unique<State>();
   state->address = unix_address(options.path);
   const bool guest = options.member == BusMember::guest && state->address &&
-                     state->connect_until(monotonic_now() + guest_patience);
+                     state->connect_until(monotonic_now() + connect_timeout);
   if (!guest) {
     auto hub = UnixBusHub::join(options.path);
     if (!hub) return std::unexpected{hub.error()};

@@ -19,8 +19,8 @@
 #include "master/linux/file_descriptor.hpp"
 #include "master/linux/left_socket.hpp"
 #include "master/linux/message_batch.hpp"
-#include "master/linux/passing_trouble.hpp"
 #include "master/linux/start_thread.hpp"
+#include "master/linux/transient_error.hpp"
 #include "master/linux/unix_bus/unix_address.hpp"
 #include "master/linux/unix_bus/unix_bus_record.hpp"
 
@@ -151,7 +151,7 @@ void UnixBusHub::Impl::run() {
   while (!hosting()) {
     if (stopping(takeover_poll_ms)) return;
     const auto hosts = try_to_host();
-    if (!hosts && hosts.error() != EADDRINUSE && !is_passing_trouble(hosts.error())) return;
+    if (!hosts && hosts.error() != EADDRINUSE && !is_transient_error(hosts.error())) return;
   }
   serve();
   hand_over();

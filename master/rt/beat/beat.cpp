@@ -39,7 +39,7 @@ std::uint64_t Beat::begin_by_sync(bool was_locked) noexcept {
 std::uint64_t Beat::begin_without_sync(Time now, std::span<const NodeStatus> nodes,
                                        bool was_locked) noexcept {
   follower_.on_silence(now, nodes);
-  const std::uint64_t missed = clock_.skip_missed(now - follower_.patience());
+  const std::uint64_t missed = clock_.skip_missed(now - follower_.sync_wait());
   if (was_locked) missed_.unheard();
   // After a stall the deadline may lie in the future, and a SYNC may come before it.
   sync_at_ = std::min(clock_.deadline(), now);

@@ -88,7 +88,7 @@ class Beat {
 
  private:
   /// Successive stalls tolerated before a SYNC.
-  static constexpr unsigned patience_with_stalls = 16;
+  static constexpr unsigned most_stalls = 16;
   /// Longest absence of this thread, in periods, that time-outs need not take into account.
   static constexpr int longest_lapse = 2;
 
@@ -102,7 +102,7 @@ class Beat {
   void await_deadline(P& port) noexcept;
   template <Port P, class Drain>
   void await_sync(P& port, std::span<const NodeStatus> nodes, Drain drain) noexcept;
-  void judge_wire(const PortNews& news) noexcept;
+  void check_bus_state(const PortNews& news) noexcept;
   void begin(Time now) noexcept;
   std::uint64_t begin_by_sync(bool was_locked) noexcept;
   std::uint64_t begin_without_sync(Time now, std::span<const NodeStatus> nodes,
@@ -132,7 +132,7 @@ void Beat::await(P& port, const S& services, Drain drain) noexcept {
     await_deadline(port);
   }
   if (gate_.doubtful(port.news())) drain();  // the echo of SYNC may be among the frames
-  judge_wire(port.news());
+  check_bus_state(port.news());
 }
 
 inline void Beat::begin(Time now) noexcept {
@@ -147,7 +147,7 @@ template <Port P>
 void Beat::await_deadline(P& port) noexcept {
   port.sleep_precisely_until(clock_.deadline());
   Time now = port.now();
-  for (unsigned stalls = 0; stalls < patience_with_stalls; ++stalls) {
+  for (unsigned stalls = 0; stalls < most_stalls; ++stalls) {
     const std::uint64_t missed = clock_.skip_missed(now);
     if (missed == 0) break;
     record_skipped(missed);
@@ -205,7 +205,7 @@ inline bool Beat::begins_cycle(const StampedFrame& stamped) noexcept {
 }
 
 /// If earlier frames could not leave yet, no others may follow.
-inline void Beat::judge_wire(const PortNews& news) noexcept {
+inline void Beat::check_bus_state(const PortNews& news) noexcept {
   wire_ = gate_.open(news, sync_at_) ? Wire::open : Wire::held;
   if (wire_ == Wire::open) {
     missed_.release(sync_at_);

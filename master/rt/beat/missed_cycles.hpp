@@ -24,7 +24,7 @@ class MissedCycles {
 
   /// Notes a cycle that sends nothing, because earlier frames may still be in the interface.
   void hold(const PortNews& news) noexcept {
-    blame(news);
+    set_cause(news);
     ++held_;
     ++status_.cycles_missed;
   }
@@ -45,7 +45,7 @@ class MissedCycles {
  private:
   /// A late cycle explains only the cycle that follows it. A controller error explains all held
   /// cycles, because the controller may report it some cycles later.
-  void blame(const PortNews& news) noexcept {
+  void set_cause(const PortNews& news) noexcept {
     if (held_ != 0 && because_ == MissedBecause::wire_blocked) return;
     because_ = MissedBecause::not_seen;
     if (held_ == 0 && late_cycle_) because_ = MissedBecause::sent_late;

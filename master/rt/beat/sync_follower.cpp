@@ -8,10 +8,11 @@
 namespace takt {
 namespace {
 
-constexpr int smoothing = 16;             // intervals
-constexpr std::uint8_t odd_limit = 8;     // intervals in a row before the period is reported
-constexpr std::uint8_t calm_after = 100;  // punctual SYNCs before an early one is reported again
-constexpr Time longest_patience = std::chrono::milliseconds{20};
+constexpr int smoothing = 16;          // intervals
+constexpr std::uint8_t odd_limit = 8;  // intervals in a row before the period is reported
+// Number of punctual SYNCs in a row after which an early SYNC is reported again.
+constexpr std::uint8_t punctual_before_report = 100;
+constexpr Time longest_sync_wait = std::chrono::milliseconds{20};
 
 }  // namespace
 
@@ -26,12 +27,12 @@ SyncFollower::SyncFollower(const CyclePlan& plan, EventQueue& events) noexcept
       events_{events},
       period_{plan.period} {}
 
-Time SyncFollower::patience() const noexcept {
-  return std::min<Time>(declared_ / 2, longest_patience);
+Time SyncFollower::sync_wait() const noexcept {
+  return std::min<Time>(declared_ / 2, longest_sync_wait);
 }
 
 Time SyncFollower::end_of_wait(Time expected) const noexcept {
-  const Time end = expected + patience();
+  const Time end = expected + sync_wait();
   const Time lost_at = last_ ? *last_ + timeout_ : end;
   return lost_at > end && lost_at - end <= tolerance_ ? lost_at : end;
 }
@@ -59,7 +60,7 @@ bool SyncFollower::too_early(Time interval, Time when) noexcept {
     return false;
   }
   if (early_ == 0) announce(EventKind::sync_early, when, interval.count());
-  early_ = calm_after;
+  early_ = punctual_before_report;
   return true;
 }
 

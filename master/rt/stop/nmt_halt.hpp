@@ -45,7 +45,7 @@ class NmtHalt {
   }
   /// Returns true if the master sends no SYNC, because it is in NMT Stopped. An ordered stop needs
   /// SYNC again to see the axes.
-  bool silences_master() const noexcept {
+  bool withholds_sync() const noexcept {
     return !stops_.stopping() && stops_.halt().axes_done() &&
            bus_.services.own_state() == NmtState::stopped;
   }

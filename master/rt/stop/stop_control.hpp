@@ -56,11 +56,11 @@ class StopControl {
   void stop_after_loss() noexcept { loss_stop_.step(); }
 
   /// Returns true if the master sends no SYNC, see NmtHalt.
-  bool silences_master() const noexcept { return stops_.halting() && halt_.silences_master(); }
+  bool withholds_sync() const noexcept { return stops_.halting() && halt_.withholds_sync(); }
   /// Returns true if the master sends no RPDOs in this cycle. In NMT Stopped it sends only
   /// fallbacks that an inhibit time holds back.
   bool withholds_outputs() noexcept {
-    return sync_loss_.withholds_outputs() || (silences_master() && !bus_.pdos.outputs().pending());
+    return sync_loss_.withholds_outputs() || (withholds_sync() && !bus_.pdos.outputs().pending());
   }
   /// Returns true if no stop and no reaction is in progress, except for a lost SYNC.
   bool idle() const noexcept {

@@ -45,7 +45,7 @@ void VirtualDaemon::start() {
       [this](const Notice& notice) {
         if (hears_.notice) hears_.notice(notice);
       });
-  bridge_->welcome(*this);
+  bridge_->register_guest(*this);
   for (const std::string& channel : bridge_->channels().heard()) lcm_.subscribe(channel);
   round_ = {.next_image = [this] { return master_->next_publish(); },
             .serve =
@@ -54,7 +54,7 @@ void VirtualDaemon::start() {
                   return bridge_->next_message();
                 },
             .wait = [this](Time next, Time latest) { wait(next, latest); }};
-  if (meddle_) meddle_(round_);
+  if (round_hook_) round_hook_(round_);
   wake_ = port_.now() + random_.up_to(longest_step);
   waits_ = false;
   stalled_until_ = {};

@@ -40,12 +40,12 @@ class VirtualDaemon final : public Actor, private FrontGuest {
     std::function<void(const Event& event)> event;
   };
   /// For tests: changes the round of each new process.
-  using Meddle = std::function<void(FrontRound& round)>;
+  using RoundHook = std::function<void(FrontRound& round)>;
 
   VirtualDaemon(const BusPlan& plan, StagedPort& port, VirtualLcm& lcm, const Clocks& clocks,
                 sim::Random random);
   void hear(Hears hears) { hears_ = std::move(hears); }
-  void meddle(Meddle meddle) { meddle_ = std::move(meddle); }
+  void on_round(RoundHook on_round) { round_hook_ = std::move(on_round); }
   /// For tests: changes each command before the front thread receives it.
   void rewrite(RewritingTransport::Rewrite rewrite) { transport_.rewrite(std::move(rewrite)); }
 
@@ -63,7 +63,7 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   void hear_the_end() {
     do {
       bridge_->serve();
-    } while (bridge_->owes_news());
+    } while (bridge_->has_unsent_reports());
   }
 
   bool runs() const noexcept { return bridge_ != nullptr; }
@@ -92,7 +92,7 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   VirtualEndpoint& lcm_;
   RewritingTransport transport_;  // what the front thread sees of `lcm_`
   Hears hears_;
-  Meddle meddle_;
+  RoundHook round_hook_;
   std::int64_t session_ = 0;
   std::unique_ptr<MasterRun> master_;
   std::unique_ptr<Bridge> bridge_;

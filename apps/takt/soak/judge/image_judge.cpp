@@ -73,18 +73,18 @@ bool ImageJudge::find(const PdoRow& row, History& history, const ImageView& imag
 
 void ImageJudge::judge(const ImageView& image) {
   if (image.cycle <= cycle_ || image.publish_time < published_) {
-    verdict_.blame("cycle numbers rise",
-                   "cycle " + std::to_string(image.cycle) + " after " + std::to_string(cycle_));
+    verdict_.report_violation("cycle numbers rise", "cycle " + std::to_string(image.cycle) +
+                                                        " after " + std::to_string(cycle_));
   }
   if (image.publish_time < image.sync_time) {
-    verdict_.blame("times of an image", "published before its SYNC");
+    verdict_.report_violation("times of an image", "published before its SYNC");
   }
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const PdoRow& row = plan_.pdos.tpdos[i];
     if (row.multiplexed() || unchanged(row, image) || find(row, rows_[i], image)) continue;
-    verdict_.blame("no torn image", "TPDO" + std::to_string(row.number) + " of node " +
-                                        std::to_string(row.node.value()) +
-                                        " shows values that no single frame carried");
+    verdict_.report_violation("no torn image", "TPDO" + std::to_string(row.number) + " of node " +
+                                                   std::to_string(row.node.value()) +
+                                                   " shows values that no single frame carried");
   }
   std::ranges::copy(image.values, last_.begin());
   cycle_ = image.cycle;

@@ -207,7 +207,7 @@ void LimitJudge::judge_range(const Place& place, double value) {
     }
   }
   if (value >= low && value <= high) return;
-  blame(place, value, place.limit->range, "the value is outside the range");
+  report_violation(place, value, place.limit->range, "the value is outside the range");
 }
 
 void LimitJudge::judge_way(const Place& place, double value, const Way& way) {
@@ -216,9 +216,10 @@ void LimitJudge::judge_way(const Place& place, double value, const Way& way) {
     const double rounding = is_real(signal_of(place).type) ? real_rounding * std::abs(value) : 0.0;
     const double most = std::ceil(rate * way.cycles) + rounding;
     if (counts <= most || !std::isfinite(rate)) return;
-    blame(place, value, kind,
-          fmt::format("the value is {:.0f} counts away from the one before, {:.0f} are allowed",
-                      counts, most));
+    report_violation(
+        place, value, kind,
+        fmt::format("the value is {:.0f} counts away from the one before, {:.0f} are allowed",
+                    counts, most));
   };
   judge(place.limit->step, LimitKind::step);
   judge(place.limit->rate, place.limit->rate_of);
@@ -246,9 +247,10 @@ void LimitJudge::judge_bend(const Place& place, double value, const Way& way) {
   const bool real = is_real(signal_of(place).type);
   if (place.limit->bend == OutputLimit::none || !place.last_way || real) return;
   if (!too_sharp(place, way)) return;
-  blame(place, value, LimitKind::acceleration,
-        fmt::format("the value is {:.0f} counts away in {} cycles, after {:.0f} in {}", way.length,
-                    way.cycles, place.last_way->length, place.last_way->cycles));
+  report_violation(
+      place, value, LimitKind::acceleration,
+      fmt::format("the value is {:.0f} counts away in {} cycles, after {:.0f} in {}", way.length,
+                  way.cycles, place.last_way->length, place.last_way->cycles));
 }
 
 void LimitJudge::sent(SignalIndex index, std::uint64_t bits, bool begins) {
@@ -324,7 +326,8 @@ void LimitJudge::judge_place(Place& place, News news, Time now) {
   if (way && !free) judge_way(place, value, *way);
   if (way && !free && follows(place)) judge_bend(place, value, *way);
   if (!place.value && !free && place.limit->feedback) {
-    blame(place, value, LimitKind::step, "the first value is far from the actual position");
+    report_violation(place, value, LimitKind::step,
+                     "the first value is far from the actual position");
   }
   place.last_way = follows(place) && !in_profile(place) ? way : std::nullopt;
   place.value = value;
@@ -333,9 +336,10 @@ void LimitJudge::judge_place(Place& place, News news, Time now) {
   place.when = now;
 }
 
-void LimitJudge::blame(const Place& place, double value, LimitKind kind, const std::string& what) {
+void LimitJudge::report_violation(const Place& place, double value, LimitKind kind,
+                                  const std::string& what) {
   const Signal& signal = signal_of(place);
-  verdict_.blame(
+  verdict_.report_violation(
       "no output leaves its limits",
       fmt::format("{}.{} = {:.0f} breaks the limit of {}: {}", plan_.nodes[signal.node_index].name,
                   signal.name, value, name(kind), what));

@@ -89,7 +89,7 @@ class LimitJudge {
   void judge_way(const Place& place, double value, const Way& way);
   void judge_bend(const Place& place, double value, const Way& way);
   bool too_sharp(const Place& place, const Way& way) const noexcept;
-  void blame(const Place& place, double value, LimitKind kind, const std::string& what);
+  void report_violation(const Place& place, double value, LimitKind kind, const std::string& what);
   const Signal& signal_of(const Place& place) const noexcept {
     return plan_.layout.signals[place.limit->signal];
   }

@@ -25,7 +25,7 @@ bool NodeJudge::ready(const NodeStatus& node) noexcept {
   return node.boot == BootState::ready && node.nmt == NmtState::operational;
 }
 
-std::string NodeJudge::story(std::size_t index, const NodeStatus& node) const {
+std::string NodeJudge::description(std::size_t index, const NodeStatus& node) const {
   const auto boot = static_cast<std::size_t>(node.boot);
   std::string text =
       fmt::format("node {} is {}, NMT state {}, boot step {}", plan_.nodes[index].id.value(),
@@ -39,14 +39,14 @@ void NodeJudge::judge(const StatusSnapshot& status, Time now) {
   for (std::size_t i = 0; i < progress_.size(); ++i) {
     const NodeStatus& node = status.nodes[i];
     if (static_cast<std::size_t>(node.boot) >= boot_names.size() || !named(node.nmt)) {
-      verdict_.blame("every node is in a named state", story(i, node));
+      verdict_.report_violation("every node is in a named state", description(i, node));
     }
     Progress& progress = progress_[i];
     if (node.boot != progress.boot || node.boot_step != progress.step) {
       progress = {.boot = node.boot, .step = node.boot_step, .since = now};
     }
     if (node.boot == BootState::booting && now - progress.since > patience) {
-      verdict_.blame("every wait ends", story(i, node) + " for 60 s");
+      verdict_.report_violation("every wait ends", description(i, node) + " for 60 s");
     }
   }
 }
@@ -58,7 +58,7 @@ bool NodeJudge::all_ready(const StatusSnapshot& status) const noexcept {
 void NodeJudge::judge_end(const StatusSnapshot& status) {
   for (std::size_t i = 0; i < status.nodes.size(); ++i) {
     if (ready(status.nodes[i])) continue;
-    verdict_.blame("every node comes back", story(i, status.nodes[i]));
+    verdict_.report_violation("every node comes back", description(i, status.nodes[i]));
   }
 }
 

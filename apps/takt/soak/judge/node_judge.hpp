@@ -30,7 +30,7 @@ class NodeJudge {
     Time since{};
   };
   static bool ready(const NodeStatus& node) noexcept;
-  std::string story(std::size_t index, const NodeStatus& node) const;
+  std::string description(std::size_t index, const NodeStatus& node) const;
 
   const BusPlan& plan_;
   Verdict& verdict_;

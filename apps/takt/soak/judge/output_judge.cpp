@@ -38,8 +38,8 @@ void OutputJudge::sent(std::span<const Frame> frames, Time now) {
 
 void OutputJudge::judge_sync(const Frame& frame, Time now) {
   if (last_sync_ > Time{} && now - last_sync_ < plan_.cycle.period * 45 / 100) {
-    verdict_.blame("no burst of SYNCs",
-                   std::to_string((now - last_sync_).count()) + " ns after the SYNC before");
+    verdict_.report_violation("no burst of SYNCs", std::to_string((now - last_sync_).count()) +
+                                                       " ns after the SYNC before");
   }
   last_sync_ = now;
   if (plan_.cycle.sync_overflow < 2 || frame.length == 0) return;
@@ -62,8 +62,8 @@ void OutputJudge::judge_counter(std::uint8_t counter, Time now) {
   const Time patience = 10 * plan_.cycle.period;
   const unsigned wanted = last_counter_ % plan_.cycle.sync_overflow + 1U;
   if (counter != wanted && counter != 1) {
-    verdict_.blame("the SYNC counter has no gap",
-                   std::to_string(counter) + " after " + std::to_string(last_counter_));
+    verdict_.report_violation("the SYNC counter has no gap",
+                              std::to_string(counter) + " after " + std::to_string(last_counter_));
   }
   if (counter != wanted && counter == 1) {
     if (own_orders_ == 0) {
@@ -77,7 +77,8 @@ void OutputJudge::judge_counter(std::uint8_t counter, Time now) {
     restarted_ = never;
   } else if (now - restarted_ > patience) {
     restarted_ = never;
-    verdict_.blame("the SYNC counter has no gap", "the counter restarted at 1 without a reason");
+    verdict_.report_violation("the SYNC counter has no gap",
+                              "the counter restarted at 1 without a reason");
   }
 }
 
@@ -93,11 +94,12 @@ void OutputJudge::judge_pdo(const PdoRow& row, const Frame& frame, Time now) {
     const std::uint64_t value = bits_of(frame, field.bit_offset, field.bits);
     const bool lasting = signal.fallback == Fallback::hold || is_lasting(plan_, signal, value);
     if (lasting || fresh(field.signal - plan_.layout.inputs, value, now)) continue;
-    verdict_.blame("no stale output",
-                   fmt::format("RPDO{} of node {} sends {} = {}, which no program has commanded "
-                               "within its time to live",
-                               row.number, row.node.value(), signal.name,
-                               hex(static_cast<std::uint32_t>(value))));
+    verdict_.report_violation(
+        "no stale output",
+        fmt::format("RPDO{} of node {} sends {} = {}, which no program has commanded "
+                    "within its time to live",
+                    row.number, row.node.value(), signal.name,
+                    hex(static_cast<std::uint32_t>(value))));
   }
 }
 

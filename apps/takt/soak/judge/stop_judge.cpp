@@ -43,8 +43,8 @@ void StopJudge::hear(const Event& event) {
 void StopJudge::judge(StopResult result) {
   const bool any = std::ranges::any_of(axes_, &Axis::blamed);
   if (any && result == StopResult::confirmed) {
-    verdict_.blame("no stop claims more than was seen",
-                   "the stop is confirmed, but an axis is reported as not stopped");
+    verdict_.report_violation("no stop claims more than was seen",
+                              "the stop is confirmed, but an axis is reported as not stopped");
   }
   for (const Axis& axis : axes_) {
     if (axis.blamed || !axis.was_powered) continue;
@@ -52,7 +52,7 @@ void StopJudge::judge(StopResult result) {
     // Twice the window allows for rounding and for a motor that coasts between two looks.
     const bool moved = axis.speed_then > 2 * axis.plan->velocity_window;
     if (!moved && !axis.powered) continue;
-    verdict_.blame(
+    verdict_.report_violation(
         "no stop claims more than was seen",
         axis.node->name + (axis.powered ? " is confirmed, but its power stage is on"
                                         : " is confirmed, but was disabled at " +

@@ -23,7 +23,7 @@ class Verdict {
     cycle_ = cycle;
     now_ = now;
   }
-  void blame(std::string invariant, std::string what) {
+  void report_violation(std::string invariant, std::string what) {
     if (violation_) return;
     violation_ = {
         .cycle = cycle_, .when = now_, .invariant = std::move(invariant), .what = std::move(what)};

@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 constexpr std::uint16_t target_position = 0x607A;
 constexpr Time longest_lease = 1s;         // upper limit for every command
 constexpr unsigned cycles_on_the_way = 4;  // longest way from the front thread to the wire
-constexpr unsigned lease_doubt = 5;        // a lease may end this much early
+constexpr unsigned lease_tolerance = 5;    // a lease may end this much early
 
 bool is_target(const Signal& signal) noexcept { return signal.object.index == target_position; }
 
@@ -41,7 +41,7 @@ void WireJudge::commanded(SignalIndex index, std::int64_t value, const SentComma
   known.computed_from = std::max(known.computed_from, command.computed_from);
   known.until = std::max(known.until, command.computed_from + span + cycles_on_the_way * period);
   known.held_until =
-      std::max(known.held_until, command.computed_from + span - lease_doubt * period);
+      std::max(known.held_until, command.computed_from + span - lease_tolerance * period);
 }
 
 void WireJudge::forged(SignalIndex signal, std::int64_t value) {
@@ -97,7 +97,7 @@ void WireJudge::judge(SignalIndex index, std::uint64_t value, Time now) {
   const bool old =
       known != nullptr && (is_target(signal) ? changed : !is_lasting(plan_, signal, value));
   if (old || (known == nullptr && !is_lasting(plan_, signal, value))) {
-    blame_stale(signal, value, known, now);
+    report_stale_output(signal, value, known, now);
   }
 }
 
@@ -108,7 +108,7 @@ void WireJudge::judge_holder(const Signal& signal, const Known& known, Time now)
   const auto sender = static_cast<std::size_t>(std::countr_zero(known.senders));
   moved_[sender] = now;
   if (holder.sender != 0 && holder.sender != known.senders && now < holder.until) {
-    verdict_.blame(
+    verdict_.report_violation(
         "no sender moves what another holds",
         fmt::format("{} is moved by program {}, but program {} holds it for another {} us",
                     plan_.nodes[signal.node_index].name, std::countr_zero(known.senders),
@@ -121,8 +121,8 @@ void WireJudge::judge_holder(const Signal& signal, const Known& known, Time now)
   }
 }
 
-void WireJudge::blame_stale(const Signal& signal, std::uint64_t value, const Known* known,
-                            Time now) {
+void WireJudge::report_stale_output(const Signal& signal, std::uint64_t value, const Known* known,
+                                    Time now) {
   std::string what = plan_.nodes[signal.node_index].name + "." + signal.name + " = " +
                      hex(static_cast<std::uint32_t>(value)) + " is sent, which ";
   if (known == nullptr) {
@@ -132,7 +132,7 @@ void WireJudge::blame_stale(const Signal& signal, std::uint64_t value, const Kno
   } else {
     what += "has been too old for " + std::to_string((now - known->until) / 1us) + " us";
   }
-  verdict_.blame("no output is older than its time to live", what);
+  verdict_.report_violation("no output is older than its time to live", what);
 }
 
 }  // namespace takt::soak

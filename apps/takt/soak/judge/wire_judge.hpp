@@ -67,7 +67,7 @@ class WireJudge {
 
   void judge(SignalIndex signal, std::uint64_t value, Time now);
   void judge_holder(const Signal& signal, const Known& known, Time now);
-  void blame_stale(const Signal& signal, std::uint64_t value, const Known* known, Time now);
+  void report_stale_output(const Signal& signal, std::uint64_t value, const Known* known, Time now);
   Output& output(SignalIndex signal) { return outputs_[signal - plan_.layout.inputs]; }
 
   const BusPlan& plan_;

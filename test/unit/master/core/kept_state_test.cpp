@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "master/core/node/twin_watch.hpp"
+#include "master/core/node/duplicate_node_watch.hpp"
 
 namespace takt {
 namespace {
@@ -96,7 +96,7 @@ TEST(KeptValues, AreNumbersWhateverADamagedCheckpointHolds) {
 }
 
 TEST(KeptTimes, AWatchForTwinsReportsAtOnceAndThenOnceInTenSeconds) {
-  TwinWatch watch{100ms, CobId::base(0x605)};
+  DuplicateNodeWatch watch{100ms, CobId::base(0x605)};
   int reported = 0;
   for (Time now{}; now < 4s; now += 50ms) reported += watch.on_heartbeat(now).has_value();
   EXPECT_EQ(reported, 1) << "from the first second of the clock on";

@@ -91,7 +91,7 @@ TEST(FrontBudget, ManyAnswersAtOnceDoNotHoldUpTheNextImage) {
   WorkClocks clocks{rig};
   SlowTransport lcm{clocks};
   Bridge bridge{*rig.master, lcm, clocks, {}, [](const Notice&) {}};
-  while (bridge.serve() || bridge.owes_news()) {
+  while (bridge.serve() || bridge.has_unsent_reports()) {
   }
   for (int id = 1; id <= 12; ++id) lcm.requests.push_back(upload(id, clocks.now()));
   bridge.serve();
@@ -105,13 +105,13 @@ TEST(FrontBudget, ManyAnswersAtOnceDoNotHoldUpTheNextImage) {
     lcm.images = 0;
     bridge.serve();
     EXPECT_GE(lcm.images, round == 4 ? 0 : 1) << "round " << round;
-    EXPECT_EQ(bridge.next_message() == Time{}, bridge.owes_news()) << "round " << round;
+    EXPECT_EQ(bridge.next_message() == Time{}, bridge.has_unsent_reports()) << "round " << round;
     each_round.push_back(lcm.replies - answered);
     answered = lcm.replies;
   }
 
   EXPECT_EQ(each_round, (std::vector<int>{3, 3, 3, 3, 0})) << "300 us are beyond 250 us";
-  EXPECT_FALSE(bridge.owes_news());
+  EXPECT_FALSE(bridge.has_unsent_reports());
 }
 
 TEST(FrontBudget, AStormOfEventsIsTakenInPiecesAndNoneIsLost) {
@@ -122,15 +122,15 @@ TEST(FrontBudget, AStormOfEventsIsTakenInPiecesAndNoneIsLost) {
   SlowTransport lcm{clocks};
   SlowGuest guest{clocks};
   Bridge bridge{*rig.master, lcm, clocks, {}, [](const Notice&) {}};
-  bridge.welcome(guest);
+  bridge.register_guest(guest);
   for (int i = 0; i < 500; ++i) rig.master->cycle();  // the front thread sleeps meanwhile
 
   bridge.serve();
   EXPECT_EQ(guest.events, 3U) << "in one round";
-  EXPECT_TRUE(bridge.owes_news());
+  EXPECT_TRUE(bridge.has_unsent_reports());
   EXPECT_EQ(bridge.next_message(), Time{}) << "the next round begins at once";
   int rounds = 0;
-  for (; bridge.owes_news() && rounds < 1000; ++rounds) bridge.serve();
+  for (; bridge.has_unsent_reports() && rounds < 1000; ++rounds) bridge.serve();
 
   EXPECT_GT(guest.events, 450U);
   EXPECT_LT(rounds, 400);

@@ -25,19 +25,19 @@ struct Room : testing::Test {
 };
 
 TEST_F(Room, AnswersThatServersOweKeepTheirs) {
-  bus.network->owed = 8;
+  bus.network->awaited = 8;
   bus.network->to_send.assign(2, make_frame(CobId::base(request), {0x40}));
   EXPECT_EQ(sent(request), 0U);
 
-  bus.network->owed = 6;
+  bus.network->awaited = 6;
   EXPECT_EQ(sent(request), 1U);
 
-  bus.network->owed = 4;
+  bus.network->awaited = 4;
   EXPECT_EQ(sent(request), 1U);
 }
 
 TEST_F(Room, ARequestThatFoundNoneForTwoCyclesGoesOutBehindSync) {
-  bus.network->owed = 8;
+  bus.network->awaited = 8;
   bus.network->to_send.assign(1, make_frame(CobId::base(request), {0x40}));
   bus.run(2);
 
@@ -47,7 +47,7 @@ TEST_F(Room, ARequestThatFoundNoneForTwoCyclesGoesOutBehindSync) {
 
 TEST_F(Room, WhileNobodyExchangesPdosALateAnswerDoesNoHarm) {
   for (std::size_t node = 0; node < 2; ++node) bus.network->set_up(node, false);
-  bus.network->owed = 100;
+  bus.network->awaited = 100;
   bus.network->to_send.assign(1, make_frame(CobId::base(request), {0x40}));
 
   EXPECT_EQ(sent(request), 1U);

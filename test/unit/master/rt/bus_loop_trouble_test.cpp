@@ -213,7 +213,7 @@ TEST(BusLoop, ReportsAFullSendBufferWithItsCauseOnceASecond) {
   }
   ASSERT_EQ(full.size(), 1U);
   EXPECT_EQ(full[0].value, 1);
-  EXPECT_EQ(full[0].detail, static_cast<std::uint32_t>(SendTrouble::nobody_acknowledges));
+  EXPECT_EQ(full[0].detail, static_cast<std::uint32_t>(SendFailure::nobody_acknowledges));
 }
 
 TEST(BusLoop, CountsTheEventsThatFoundNoRoomInTheServicesToo) {

@@ -111,7 +111,7 @@ class FakeNetwork {
   void on_absence(Time away) noexcept { absences.push_back(away); }
   bool streams() const noexcept { return false; }
   std::size_t awaited_sub_blocks() const noexcept { return 0; }
-  std::size_t awaited_answers() const noexcept { return owed; }
+  std::size_t awaited_answers() const noexcept { return awaited; }
   bool submit(const Request& request, Time) noexcept {
     if (refuse) return false;
     submitted.push_back(request);
@@ -163,7 +163,7 @@ class FakeNetwork {
   std::vector<std::uint64_t> withdrawn;
   std::vector<Reply> replies;
   std::vector<Time> absences;
-  std::size_t owed = 0;
+  std::size_t awaited = 0;
   std::optional<std::size_t> starting;
   bool refuse = false;
   bool stopping = false;

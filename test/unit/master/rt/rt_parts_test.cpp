@@ -235,8 +235,8 @@ TEST(PortWatch, NamesTheCauseOfAFullBuffer) {
   for (Event event; events->pop(event);) {
     if (event.kind == EventKind::send_buffer_full) causes.push_back(event.detail);
   }
-  EXPECT_EQ(causes, (std::vector{static_cast<std::uint32_t>(SendTrouble::queue_too_short),
-                                 static_cast<std::uint32_t>(SendTrouble::bus_off)}));
+  EXPECT_EQ(causes, (std::vector{static_cast<std::uint32_t>(SendFailure::queue_too_short),
+                                 static_cast<std::uint32_t>(SendFailure::bus_off)}));
 }
 
 TEST(SpscRing, IsFullExactlyWhenPushRefuses) {

@@ -45,7 +45,7 @@ TEST_F(SlackTest, SendsNoMoreThanItsBudget) {
 }
 
 TEST_F(SlackTest, KeepsRoomForTheAnswersThatServersOwe) {
-  parts.bus.services.owed = 4;  // 540 us
+  parts.bus.services.awaited = 4;  // 540 us
   waiting().assign(4, request);
   EXPECT_EQ(round(900us), 0U);
 }
@@ -70,11 +70,11 @@ TEST_F(SlackTest, DoesNothingAfterAStallUntilTheAbsenceIsExcused) {
 }
 
 TEST_F(SlackTest, ExcusesTheServicesForALongAbsence) {
-  parts.slack.excuse_absence();
+  parts.slack.extend_deadlines();
   parts.beat.next();
   parts.port.stall = 400ms;
   parts.await();
-  parts.slack.excuse_absence();
+  parts.slack.extend_deadlines();
   EXPECT_EQ(parts.bus.services.absences, std::vector<Time>{400ms});
 }
 

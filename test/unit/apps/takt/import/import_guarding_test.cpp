@@ -17,7 +17,7 @@ TEST_F(Import, GuardingBesideAHeartbeatIsIgnored) {
 
   EXPECT_TRUE(bus.usable);
   for (const auto* path : {"arm.guard_time", "arm.life_time_factor", "arm.retry_factor"}) {
-    EXPECT_EQ(key(bus, path).fate, KeyFate::ignored) << path;
+    EXPECT_EQ(key(bus, path).use, KeyUse::ignored) << path;
     EXPECT_THAT(key(bus, path).why, HasSubstr("has a heartbeat")) << path;
   }
 }
@@ -29,11 +29,11 @@ TEST_F(Import, GuardingThatTheDeviceCannotTakeIsSuspicious) {
       "      life_time_factor: 3, retry_factor: 2}\n");
 
   EXPECT_TRUE(bus.usable);
-  EXPECT_EQ(key(bus, "arm.guard_time").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "arm.guard_time").use, KeyUse::used);
   EXPECT_THAT(key(bus, "arm.guard_time").why, HasSubstr("has no writable 100C:00"));
-  EXPECT_EQ(key(bus, "arm.life_time_factor").fate, KeyFate::suspicious);
+  EXPECT_EQ(key(bus, "arm.life_time_factor").use, KeyUse::suspicious);
   EXPECT_THAT(key(bus, "arm.life_time_factor").why, HasSubstr("will not watch the master"));
-  EXPECT_EQ(key(bus, "arm.retry_factor").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "arm.retry_factor").use, KeyUse::used);
 }
 
 TEST_F(Import, GuardingByDefaultIsUsedWhereOneNodeTakesIt) {
@@ -42,7 +42,7 @@ TEST_F(Import, GuardingByDefaultIsUsedWhereOneNodeTakesIt) {
       "defaults: {dcf: drive.eds, guard_time: 100}\n"
       "nodes: {arm: {node_id: 2}, leg: {node_id: 3, heartbeat_producer: 0}}\n");
 
-  EXPECT_EQ(key(bus, "defaults.guard_time").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "defaults.guard_time").use, KeyUse::used);
   EXPECT_THAT(key(bus, "defaults.guard_time").why, HasSubstr("without heartbeat; but"));
   EXPECT_THAT(key(bus, "defaults.guard_time").why, HasSubstr("`arm` has a heartbeat"));
 }
@@ -54,7 +54,7 @@ TEST_F(Import, TheRetryFactorOfAllIsUsedOnlyWhereANodeIsGuardedByIt) {
         "arm: {node_id: 2, dcf: drive.eds" +
         keys + "}\n");
     const auto& row = key(bus, "options.retry_factor");
-    return std::string{name(row.fate)} + ": " + row.why;
+    return std::string{name(row.use)} + ": " + row.why;
   };
 
   EXPECT_THAT(fate(""),

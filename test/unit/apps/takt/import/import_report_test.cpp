@@ -24,11 +24,11 @@ TEST_F(Import, ADefaultThatEachNodeReplacesIsIgnored) {
       "  leg: {node_id: 3, sdo: [{index: 0x6083, value: 2}]}\n");
 
   EXPECT_TRUE(bus.usable);
-  EXPECT_EQ(key(bus, "defaults.sdo[1]").fate, KeyFate::ignored);
+  EXPECT_EQ(key(bus, "defaults.sdo[1]").use, KeyUse::ignored);
   EXPECT_THAT(key(bus, "defaults.sdo[1]").why, HasSubstr("each node has its own `sdo`"));
-  EXPECT_EQ(key(bus, "defaults.tpdo.2.enabled").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "defaults.tpdo.2.enabled").use, KeyUse::used);
   EXPECT_THAT(key(bus, "defaults.tpdo.2.enabled").why, HasSubstr("not for `arm`"));
-  EXPECT_EQ(key(bus, "defaults.dcf").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "defaults.dcf").use, KeyUse::used);
 }
 
 TEST_F(Import, AnObjectTwiceInAListOrInAPdoIsSuspiciousAndRuns) {
@@ -41,11 +41,11 @@ TEST_F(Import, AnObjectTwiceInAListOrInAPdoIsSuspiciousAndRuns) {
       "  sdo: [{index: 0x6083, value: 1}, {index: 0x6083, value: 1}]\n");
 
   EXPECT_TRUE(bus.usable);
-  EXPECT_EQ(key(bus, "arm.tpdo.1.mapping[2]").fate, KeyFate::suspicious);
+  EXPECT_EQ(key(bus, "arm.tpdo.1.mapping[2]").use, KeyUse::suspicious);
   EXPECT_THAT(key(bus, "arm.tpdo.1.mapping[2]").why, HasSubstr("a separate input"));
-  EXPECT_EQ(key(bus, "arm.rpdo.1.mapping[2]").fate, KeyFate::suspicious);
+  EXPECT_EQ(key(bus, "arm.rpdo.1.mapping[2]").use, KeyUse::suspicious);
   EXPECT_THAT(key(bus, "arm.rpdo.1.mapping[2]").why, HasSubstr("both get the same value"));
-  EXPECT_EQ(key(bus, "arm.sdo[2]").fate, KeyFate::suspicious);
+  EXPECT_EQ(key(bus, "arm.sdo[2]").use, KeyUse::suspicious);
   EXPECT_THAT(key(bus, "arm.sdo[2]").why, HasSubstr("meant for another object?"));
 }
 
@@ -74,10 +74,10 @@ TEST_F(Import, AliasesOfAliasesTakeNoTime) {
   const auto lists = report(".a:\n" + bomb('a', "[1, 2]", false) + bomb('b', "[1, 2]", false) +
                             head + "defaults: {x: *a19}\n" + tail + "*b19}}\n");
 
-  EXPECT_EQ(key(maps, "nodes.arm.dcf").fate, KeyFate::used);
-  EXPECT_EQ(key(maps, "nodes.arm.x.k0").fate, KeyFate::ignored);
-  EXPECT_EQ(key(lists, "nodes.arm.dcf").fate, KeyFate::used);
-  EXPECT_EQ(key(lists, "nodes.arm.x").fate, KeyFate::wrong);
+  EXPECT_EQ(key(maps, "nodes.arm.dcf").use, KeyUse::used);
+  EXPECT_EQ(key(maps, "nodes.arm.x.k0").use, KeyUse::ignored);
+  EXPECT_EQ(key(lists, "nodes.arm.dcf").use, KeyUse::used);
+  EXPECT_EQ(key(lists, "nodes.arm.x").use, KeyUse::wrong);
 }
 
 TEST_F(Import, ALongListThatManyKeysNameTakesNoTime) {
@@ -89,7 +89,7 @@ TEST_F(Import, ALongListThatManyKeysNameTakesNoTime) {
   const auto bus = report("arm: {node_id: 5, dcf: drive.eds}\n.l: &l [" + list + "]\n.k: {x: 1}\n" +
                           "leg: {node_id: 6, dcf: drive.eds, " + keys + "}\n");
 
-  EXPECT_EQ(key(bus, "arm.dcf").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "arm.dcf").use, KeyUse::used);
 }
 
 TEST_F(Import, TheSameNumberWrittenOtherwiseIsNoOtherValue) {
@@ -100,8 +100,8 @@ TEST_F(Import, TheSameNumberWrittenOtherwiseIsNoOtherValue) {
       "  arm: {node_id: 5, boot_timeout_ms: 0x1F4}\n"
       "  leg: {node_id: 6, boot_timeout_ms: 0x1F5}\n");
 
-  EXPECT_EQ(key(bus, "nodes.arm.boot_timeout_ms").fate, KeyFate::used);
-  EXPECT_EQ(key(bus, "nodes.leg.boot_timeout_ms").fate, KeyFate::suspicious);
+  EXPECT_EQ(key(bus, "nodes.arm.boot_timeout_ms").use, KeyUse::used);
+  EXPECT_EQ(key(bus, "nodes.leg.boot_timeout_ms").use, KeyUse::suspicious);
 }
 
 TEST_F(Import, AKeyThatOnlyTheDriverClassCanKnowIsSuspiciousASlipIsWrong) {
@@ -111,11 +111,11 @@ TEST_F(Import, AKeyThatOnlyTheDriverClassCanKnowIsSuspiciousASlipIsWrong) {
       "leg: {node_id: 3, dcf: drive.eds, gearbox_ratio: 20.0}\n"
       "neck: {node_id: 4, dcf: drive.eds, driver: x::Drive, hartbeat_producer: 20}\n");
 
-  EXPECT_EQ(key(bus, "master.name").fate, KeyFate::suspicious);
-  EXPECT_EQ(key(bus, "arm.gearbox_ratio").fate, KeyFate::suspicious);
+  EXPECT_EQ(key(bus, "master.name").use, KeyUse::suspicious);
+  EXPECT_EQ(key(bus, "arm.gearbox_ratio").use, KeyUse::suspicious);
   EXPECT_THAT(key(bus, "arm.gearbox_ratio").why, HasSubstr("the class of `driver` may read it"));
-  EXPECT_EQ(key(bus, "leg.gearbox_ratio").fate, KeyFate::wrong);
-  EXPECT_EQ(key(bus, "neck.hartbeat_producer").fate, KeyFate::wrong);
+  EXPECT_EQ(key(bus, "leg.gearbox_ratio").use, KeyUse::wrong);
+  EXPECT_EQ(key(bus, "neck.hartbeat_producer").use, KeyUse::wrong);
 }
 
 TEST_F(Import, ReportsADeviceThatIsReportedAnotherSyncPeriod) {
@@ -126,10 +126,10 @@ TEST_F(Import, ReportsADeviceThatIsReportedAnotherSyncPeriod) {
       "neck: {node_id: 4, dcf: drive.eds, sdo: [{index: 0x1006, value: 0}]}\n");
 
   EXPECT_TRUE(bus.usable);
-  EXPECT_EQ(key(bus, "arm.sdo[1]").fate, KeyFate::suspicious);
+  EXPECT_EQ(key(bus, "arm.sdo[1]").use, KeyUse::suspicious);
   EXPECT_THAT(key(bus, "arm.sdo[1]").why, HasSubstr("10000 us, but the period is 20000 us"));
-  EXPECT_EQ(key(bus, "leg.sdo[1]").fate, KeyFate::used);
-  EXPECT_EQ(key(bus, "neck.sdo[1]").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "leg.sdo[1]").use, KeyUse::used);
+  EXPECT_EQ(key(bus, "neck.sdo[1]").use, KeyUse::used);
 }
 
 TEST_F(Import, WhatStandsInAnUnknownKeyIsNotUsed) {
@@ -137,10 +137,10 @@ TEST_F(Import, WhatStandsInAnUnknownKeyIsNotUsed) {
       "arm: {node_id: 2, dcf: drive.eds, driver: x::Drive, motor_channels: {1: {node_id: 7}}}\n"
       "leg: {node_id: 3, dcf: drive.eds, motor_channels: {1: {node_id: 7}}}\n");
 
-  EXPECT_EQ(key(bus, "arm.motor_channels").fate, KeyFate::suspicious);
-  EXPECT_EQ(key(bus, "arm.motor_channels.1.node_id").fate, KeyFate::ignored);
-  EXPECT_EQ(key(bus, "leg.motor_channels").fate, KeyFate::wrong);
-  EXPECT_EQ(key(bus, "leg.motor_channels.1.node_id").fate, KeyFate::ignored);
+  EXPECT_EQ(key(bus, "arm.motor_channels").use, KeyUse::suspicious);
+  EXPECT_EQ(key(bus, "arm.motor_channels.1.node_id").use, KeyUse::ignored);
+  EXPECT_EQ(key(bus, "leg.motor_channels").use, KeyUse::wrong);
+  EXPECT_EQ(key(bus, "leg.motor_channels.1.node_id").use, KeyUse::ignored);
 }
 
 TEST_F(Import, ReportsWhatIsDoneWithoutAWord) {
@@ -183,9 +183,9 @@ TEST_F(Import, ReportsWhereDefaultsWouldHaveWon) {
       "  leg: {node_id: 3}\n");
 
   EXPECT_TRUE(bus.usable);
-  EXPECT_EQ(key(bus, "nodes.arm.heartbeat_producer").fate, KeyFate::suspicious);
+  EXPECT_EQ(key(bus, "nodes.arm.heartbeat_producer").use, KeyUse::suspicious);
   EXPECT_THAT(key(bus, "nodes.arm.heartbeat_producer").why, HasSubstr("`1000`"));
-  EXPECT_EQ(key(bus, "nodes.arm.boot_timeout_ms").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "nodes.arm.boot_timeout_ms").use, KeyUse::used);
 }
 
 TEST_F(Import, AnIndexWithout0xIsReportedWithTheObjectThatWasMeant) {
@@ -202,8 +202,8 @@ TEST_F(Import, AnEntryThatIsNoMapLeavesTheOthersTheirLines) {
   const auto bus =
       report("arm: {node_id: 2, dcf: drive.eds, sdo: [{index: 0x6083, value: 1}, [0x6084, 2]]}\n");
 
-  EXPECT_EQ(key(bus, "arm.sdo[1]").fate, KeyFate::used);
-  EXPECT_EQ(key(bus, "arm.sdo[2]").fate, KeyFate::wrong);
+  EXPECT_EQ(key(bus, "arm.sdo[1]").use, KeyUse::used);
+  EXPECT_EQ(key(bus, "arm.sdo[2]").use, KeyUse::wrong);
 }
 
 TEST_F(Import, ScalesOfADriverNameTheUnitsThatTakeTheirPlace) {
@@ -224,9 +224,9 @@ TEST_F(Import, AMapWhereAWordBelongsIsWrongAsAWhole) {
       "    leg: 250\n"
       "arm: {node_id: 2, dcf: drive.eds}\n");
 
-  EXPECT_EQ(key(bus, "master.heartbeat_consumer").fate, KeyFate::wrong);
-  EXPECT_EQ(key(bus, "master.heartbeat_consumer.arm").fate, KeyFate::ignored);
-  EXPECT_EQ(key(bus, "master.heartbeat_consumer.leg").fate, KeyFate::ignored);
+  EXPECT_EQ(key(bus, "master.heartbeat_consumer").use, KeyUse::wrong);
+  EXPECT_EQ(key(bus, "master.heartbeat_consumer.arm").use, KeyUse::ignored);
+  EXPECT_EQ(key(bus, "master.heartbeat_consumer.leg").use, KeyUse::ignored);
 }
 
 TEST_F(Import, NamesEveryKeyAsUsedOrIgnored) {
@@ -242,18 +242,18 @@ TEST_F(Import, NamesEveryKeyAsUsedOrIgnored) {
       "    sdo: [{index: 0x6081, sub_index: 0, value: 1000}, {index: 0x6060, value: 1}]\n");
 
   EXPECT_TRUE(bus.usable);
-  EXPECT_EQ(key(bus, "options.dcf_path").fate, KeyFate::ignored);
-  EXPECT_EQ(key(bus, "master.driver").fate, KeyFate::ignored);
-  EXPECT_EQ(key(bus, "master.sync_period").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "options.dcf_path").use, KeyUse::ignored);
+  EXPECT_EQ(key(bus, "master.driver").use, KeyUse::ignored);
+  EXPECT_EQ(key(bus, "master.sync_period").use, KeyUse::used);
   EXPECT_THAT(key(bus, "master.sync_period").why, HasSubstr("The period of SYNC"));
   EXPECT_EQ(key(bus, "master.sync_period").pos, (SourcePos{2, 33}));
-  EXPECT_EQ(key(bus, "defaults.period").fate, KeyFate::ignored);
+  EXPECT_EQ(key(bus, "defaults.period").use, KeyUse::ignored);
   EXPECT_THAT(key(bus, "defaults.period").why, HasSubstr("the cycle is `sync_period`"));
-  EXPECT_EQ(key(bus, "defaults.diagnostics.enable").fate, KeyFate::ignored);
+  EXPECT_EQ(key(bus, "defaults.diagnostics.enable").use, KeyUse::ignored);
   EXPECT_EQ(key(bus, "nodes.arm.tpdo.1.cob_id").value, "auto");
   EXPECT_EQ(key(bus, "nodes.arm.tpdo.1.mapping[2]").value, "{index: 0x6064}");
-  EXPECT_EQ(key(bus, "nodes.arm.sdo[1]").fate, KeyFate::used);
-  EXPECT_EQ(bus.count(KeyFate::suspicious) + bus.count(KeyFate::wrong), 0u);
+  EXPECT_EQ(key(bus, "nodes.arm.sdo[1]").use, KeyUse::used);
+  EXPECT_EQ(bus.count(KeyUse::suspicious) + bus.count(KeyUse::wrong), 0u);
 }
 
 TEST_F(Import, ReportsAnInterpolationPeriodThatIsNotTheCycle) {
@@ -267,9 +267,9 @@ TEST_F(Import, ReportsAnInterpolationPeriodThatIsNotTheCycle) {
       "    - {index: 0x60C2, sub_index: 2, value: -3}\n");
 
   EXPECT_TRUE(bus.usable);
-  EXPECT_EQ(key(bus, "arm.sdo[1]").fate, KeyFate::suspicious);
+  EXPECT_EQ(key(bus, "arm.sdo[1]").use, KeyUse::suspicious);
   EXPECT_THAT(key(bus, "arm.sdo[1]").why, HasSubstr("sets 50000 us, but the SYNC period is 10000"));
-  EXPECT_EQ(key(bus, "arm.sdo[2]").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "arm.sdo[2]").use, KeyUse::used);
 }
 
 TEST_F(Import, PutsAnErrorToItsKey) {
@@ -279,11 +279,11 @@ TEST_F(Import, PutsAnErrorToItsKey) {
       "      tpdo: {1: {mapping: [{index: 0x6041}, {index: 0x6099}]}}}\n");
 
   EXPECT_FALSE(bus.usable);
-  EXPECT_EQ(key(bus, "master.baudrate").fate, KeyFate::suspicious);
+  EXPECT_EQ(key(bus, "master.baudrate").use, KeyUse::suspicious);
   EXPECT_THAT(key(bus, "master.baudrate").why, HasSubstr("write 1000"));
-  EXPECT_EQ(key(bus, "arm.sync_perod").fate, KeyFate::wrong);
-  EXPECT_EQ(key(bus, "arm.tpdo.1.mapping[1]").fate, KeyFate::used);
-  EXPECT_EQ(key(bus, "arm.tpdo.1.mapping[2]").fate, KeyFate::wrong);
+  EXPECT_EQ(key(bus, "arm.sync_perod").use, KeyUse::wrong);
+  EXPECT_EQ(key(bus, "arm.tpdo.1.mapping[1]").use, KeyUse::used);
+  EXPECT_EQ(key(bus, "arm.tpdo.1.mapping[2]").use, KeyUse::wrong);
 }
 
 TEST_F(Import, Bit30OfATpdoStaysAsTheDeviceHasIt) {
@@ -292,7 +292,7 @@ TEST_F(Import, Bit30OfATpdoStaysAsTheDeviceHasIt) {
       "arm: {node_id: 2, dcf: drive.eds, tpdo: {1: {transmission: 1, cob_id: 0x40000182}}}\n");
 
   EXPECT_TRUE(bus.usable);
-  EXPECT_EQ(key(bus, "arm.tpdo.1.cob_id").fate, KeyFate::suspicious);
+  EXPECT_EQ(key(bus, "arm.tpdo.1.cob_id").use, KeyUse::suspicious);
   EXPECT_THAT(key(bus, "arm.tpdo.1.cob_id").why, HasSubstr("takt leaves this bit"));
 }
 
@@ -301,12 +301,12 @@ TEST_F(Import, WhyAMasterNeedsNoEmcyInhibitTime) {
       "master: {sync_period: 10000, emcy_inhibit_time: 100, error_behavior: {1: 0}}\n"
       "arm: {node_id: 2, dcf: drive.eds, emcy_inhibit_time: 100, error_behavior: {1: 0}}\n");
 
-  EXPECT_EQ(key(bus, "master.emcy_inhibit_time").fate, KeyFate::ignored);
+  EXPECT_EQ(key(bus, "master.emcy_inhibit_time").use, KeyUse::ignored);
   EXPECT_THAT(key(bus, "master.emcy_inhibit_time").why, HasSubstr("sends no EMCY"));
-  EXPECT_EQ(key(bus, "master.error_behavior.1").fate, KeyFate::ignored);
+  EXPECT_EQ(key(bus, "master.error_behavior.1").use, KeyUse::ignored);
   EXPECT_THAT(key(bus, "master.error_behavior.1").why, HasSubstr("has no 0x1029"));
-  EXPECT_EQ(key(bus, "arm.emcy_inhibit_time").fate, KeyFate::used);
-  EXPECT_EQ(key(bus, "arm.error_behavior.1").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "arm.emcy_inhibit_time").use, KeyUse::used);
+  EXPECT_EQ(key(bus, "arm.error_behavior.1").use, KeyUse::used);
   EXPECT_THAT(key(bus, "arm.error_behavior.1").why, HasSubstr("1029"));
 }
 
@@ -317,7 +317,7 @@ TEST_F(Import, AnAliasIsReportedOnce) {
       "nodes: {a: {<<: *axis, node_id: 1}, b: {<<: *axis, node_id: 2}}\n");
 
   EXPECT_TRUE(bus.usable);
-  EXPECT_EQ(bus.count(KeyFate::ignored), 1u);
+  EXPECT_EQ(bus.count(KeyUse::ignored), 1u);
   EXPECT_EQ(std::ranges::count(bus.keys, "x", &ImportedKey::value), 1);
 }
 
@@ -339,9 +339,9 @@ TEST_F(Import, BusFilesOfTheWildAreReportedWhole) {
   for (const auto& entry : fs::directory_iterator{root, error}) {
     if (!fs::exists(entry.path() / "bus.yml")) continue;
     const auto bus = import_report(entry.path() / "bus.yml");
-    EXPECT_GT(bus.count(KeyFate::used), 3u) << entry.path();
+    EXPECT_GT(bus.count(KeyUse::used), 3u) << entry.path();
     for (const ImportedKey& one : bus.keys) {
-      const bool reported = one.fate == KeyFate::used || !one.why.empty();
+      const bool reported = one.use == KeyUse::used || !one.why.empty();
       EXPECT_TRUE(reported) << entry.path() << one.path;
     }
     const bool has_its_eds = entry.path().filename() != "cia402_multichannel_system";

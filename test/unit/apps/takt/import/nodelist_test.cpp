@@ -74,13 +74,13 @@ TEST_F(Nodelist, NamesEveryKeyAsUsedOrIgnored) {
   const auto list = import(lift).report;
 
   EXPECT_EQ(list.keys.size(), 15U);
-  EXPECT_EQ(key(list, "Topology.NetName").fate, KeyFate::used);
-  EXPECT_EQ(key(list, "Topology.NetRefd").fate, KeyFate::ignored);
+  EXPECT_EQ(key(list, "Topology.NetName").use, KeyUse::used);
+  EXPECT_EQ(key(list, "Topology.NetRefd").use, KeyUse::ignored);
   EXPECT_EQ(key(list, "Topology.Node5Name").why, "name of the node, as `door_i_o`");
   EXPECT_EQ(key(list, "Topology.Node5Name").pos, (SourcePos{8, 11}));
   EXPECT_THAT(key(list, "Topology.Node1DCFName").why, HasSubstr("this is the master"));
-  EXPECT_EQ(key(list, "Topology.Node20Present").fate, KeyFate::ignored);
-  EXPECT_EQ(key(list, "Topology.EDSBaseName").fate, KeyFate::used);
+  EXPECT_EQ(key(list, "Topology.Node20Present").use, KeyUse::ignored);
+  EXPECT_EQ(key(list, "Topology.EDSBaseName").use, KeyUse::used);
   EXPECT_EQ(key(list, "Topology.Colour").why, "not a key of CiA 306-3");
   EXPECT_EQ(list.others.size(), 2U);  // [Topology2], [Vendor]
 }
@@ -125,7 +125,7 @@ TEST_F(Nodelist, AWrongCountAndTwoEqualNamesAreReported) {
       "Node6Present=1\nNode6Name=IO\nNode6DCFName=io.dcf\n");
 
   EXPECT_TRUE(imported.report.usable);
-  EXPECT_EQ(key(imported.report, "TOPOLOGY.Nodes").fate, KeyFate::suspicious);
+  EXPECT_EQ(key(imported.report, "TOPOLOGY.Nodes").use, KeyUse::suspicious);
   EXPECT_THAT(imported.yaml, HasSubstr("  io_6:\n    node_id: 6\n"));
   EXPECT_THAT(key(imported.report, "TOPOLOGY.Node6DCFName").why,
               HasSubstr("the NodeID of the file is 5"));

@@ -39,7 +39,7 @@ TEST(NodeGuard, FirstAnswerAfterABootUpHasToggleBitZero) {
 TEST(NodeGuard, CountsNoSilenceWhileTheMasterWasAway) {
   NodeGuard guard{guard_plan};
   guard.start(10s);
-  guard.excuse(500ms);
+  guard.extend_deadlines(500ms);
   EXPECT_FALSE(guard.on_time(10s + 800ms - 1ns));
   EXPECT_EQ(guard.on_time(10s + 800ms), Time{300ms});
 }

@@ -32,10 +32,10 @@ TEST(NodeWatch, ReportsSilenceOnce) {
 TEST(NodeWatch, CountsNoSilenceWhileTheMasterWasAway) {
   NodeWatch watch{150ms};
   NodeStatus status;
-  watch.excuse(300ms);
+  watch.extend_deadlines(300ms);
   EXPECT_EQ(watch.deadline(), never);
   watch.on_heartbeat(NmtState::operational, 1s, status);
-  watch.excuse(300ms);
+  watch.extend_deadlines(300ms);
   EXPECT_FALSE(watch.on_time(1s + 450ms - 1ns, status));
   EXPECT_TRUE(watch.on_time(1s + 450ms, status));
 }

@@ -207,7 +207,7 @@ TEST(PdoRequests, WaitForALateAnswerNoLessForTheMastersOwnAbsence) {
   Asker asker{plan_of()};
   asker.ask_in_vain();
   asker.ask(2, RequestKind::pdo_exchange, {2, 0, 0, 0, 0, 0});
-  asker.requests.excuse(2s);
+  asker.requests.extend_deadlines(2s);
   EXPECT_TRUE(asker.at(3000ms).empty());
   EXPECT_EQ(asker.at(3001ms).size(), 1U);
 }
@@ -216,7 +216,7 @@ TEST(PdoRequests, CountNoTimeOfTheMastersOwnAbsence) {
   Asker asker{plan_of()};
   asker.ask(1, RequestKind::pdo_poll);
   asker.at(0ms);
-  asker.requests.excuse(2s);
+  asker.requests.extend_deadlines(2s);
   asker.at(2s + 499ms);
   EXPECT_TRUE(asker.replies().empty());
   asker.at(2s + 500ms);

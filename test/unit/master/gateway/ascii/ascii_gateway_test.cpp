@@ -220,7 +220,7 @@ TEST(AsciiGateway, DoesNothingOfALineThatWaitedAndSaysSo) {
   EXPECT_NE(rig.declared[0].find("taktd did not run for 2500 ms"), std::string::npos)
       << rig.declared[0];
   EXPECT_EQ(rig.declared[1].find("[8] ERROR: 101 ("), 0U) << rig.declared[1];
-  EXPECT_FALSE(rig.gateway.owes(1));
+  EXPECT_FALSE(rig.gateway.awaits_reply(1));
 }
 
 TEST(AsciiGateway, AfterAShortGapRefusesSetPointsThatWaitedAndTakesRequests) {
@@ -237,7 +237,7 @@ TEST(AsciiGateway, AfterAShortGapRefusesSetPointsThatWaitedAndTakesRequests) {
           "[7] ERROR: 102 (request not processed due to internal state: taktd did not run for 950 "
           "ms, and this line may have waited as long: send it again)",
           "[8] OK"}));
-  EXPECT_TRUE(rig.gateway.owes(1)) << "the SDO upload is on its way";
+  EXPECT_TRUE(rig.gateway.awaits_reply(1)) << "the SDO upload is on its way";
 }
 
 TEST(AsciiGateway, ForgetsAClientThatHasLeft) {

@@ -25,7 +25,7 @@ class AsciiServerTest : public testing::Test {
                 },
             .too_long = [this](int) { ++too_long; },
             .gone = [this](int client) { gone.push_back(client); },
-            .owed = [this](int) { return owed; },
+            .awaits_reply = [this](int) { return awaits_reply; },
             .warn = [this](const std::string& sentence) { warnings.push_back(sentence); }};
   }
   void listen() {
@@ -77,7 +77,7 @@ class AsciiServerTest : public testing::Test {
   std::vector<int> connected;
   std::vector<int> gone;
   int too_long = 0;
-  bool owed = false;
+  bool awaits_reply = false;
 };
 
 }  // namespace takt

@@ -47,7 +47,7 @@ TEST_F(AsciiServerTest, ReportsThatAClientHasGone) {
 TEST_F(AsciiServerTest, KeepsAClientThatWritesNoMoreUntilItHasItsAnswer) {
   listen();
   const FileDescriptor client = connect();
-  owed = true;
+  awaits_reply = true;
   write(client, "[1] 1 r 0x1018 1\n");
   ::shutdown(client.get(), SHUT_WR);
   serve();
@@ -59,7 +59,7 @@ TEST_F(AsciiServerTest, KeepsAClientThatWritesNoMoreUntilItHasItsAnswer) {
   EXPECT_EQ(::poll(descriptors.data(), descriptors.size(), 0), 0) << "nothing to do meanwhile";
 
   server->send(connected[0], "[1] 43981");
-  owed = false;
+  awaits_reply = false;
   server->serve();
 
   EXPECT_EQ(gone, connected);
@@ -69,7 +69,7 @@ TEST_F(AsciiServerTest, KeepsAClientThatWritesNoMoreUntilItHasItsAnswer) {
 
 TEST_F(AsciiServerTest, KeepsNobodyWhoReadsNoMoreEither) {
   listen();
-  owed = true;
+  awaits_reply = true;
   {
     const FileDescriptor client = connect();
     write(client, "[1] 1 r 0x1018 1\n");

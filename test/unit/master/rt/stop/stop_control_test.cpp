@@ -132,10 +132,10 @@ TEST_F(StopControlTest, StopsInOrderWhenTheFrontThreadAsks) {
 TEST_F(StopControlTest, TheMasterIsSilentInNmtStoppedOnlyWhenItsAxesHaveStopped) {
   bus.services.state = NmtState::stopped;
   cycle();
-  EXPECT_FALSE(stop.silences_master());
+  EXPECT_FALSE(stop.withholds_sync());
   statusword = 0x40;
-  for (int i = 0; i < 500 && !stop.silences_master(); ++i) cycle();
-  EXPECT_TRUE(stop.silences_master());
+  for (int i = 0; i < 500 && !stop.withholds_sync(); ++i) cycle();
+  EXPECT_TRUE(stop.withholds_sync());
 }
 
 struct SyncLossTest : StopControlTest {

@@ -1,5 +1,3 @@
-#include "master/black_box/unravel.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -7,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "master/black_box/decode_tape.hpp"
 #include "master/core/set_point.hpp"
 #include "master/rt/journal/recorded_port.hpp"
 
@@ -20,11 +19,11 @@ T read_as(std::span<const std::uint64_t> words) {
   return item;
 }
 
-class Unraveller {
+class TapeDecoder {
  public:
-  explicit Unraveller(const std::vector<std::uint64_t>& records) : rest_{records} {}
+  explicit TapeDecoder(const std::vector<std::uint64_t>& records) : rest_{records} {}
 
-  UnravelledTape run() {
+  DecodedTape run() {
     while (!rest_.empty()) record();
     sort_frames();
     return std::move(tape_);
@@ -119,15 +118,15 @@ class Unraveller {
   }
 
   std::span<const std::uint64_t> rest_;
-  UnravelledTape tape_;
+  DecodedTape tape_;
   std::vector<std::size_t> numbers_;  // for each frame, the position of its word in the journal
   Time now_{};
 };
 
 }  // namespace
 
-UnravelledTape unravel(const std::vector<std::uint64_t>& records) {
-  return Unraveller{records}.run();
+DecodedTape decode_tape(const std::vector<std::uint64_t>& records) {
+  return TapeDecoder{records}.run();
 }
 
 }  // namespace takt

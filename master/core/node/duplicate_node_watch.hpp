@@ -12,11 +12,11 @@ namespace takt {
 
 /// Detects that two devices use one node-ID. The sign is twice the number of heartbeats, or two
 /// answers to each SDO request. It is reported at most once in ten seconds. Bus thread only.
-class TwinWatch {
+class DuplicateNodeWatch {
  public:
   /// `heartbeat_period` is that of the device; 0 means that it is not known and heartbeats are not
   /// evaluated. `sdo_request` is the COB-ID on which the SDO server of the device listens.
-  TwinWatch(Time heartbeat_period, CobId sdo_request) noexcept
+  DuplicateNodeWatch(Time heartbeat_period, CobId sdo_request) noexcept
       : period_{heartbeat_period}, sdo_request_{sdo_request} {}
 
   /// Takes a heartbeat. Returns the sign that has shown two devices, if any.

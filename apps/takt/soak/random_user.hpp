@@ -12,10 +12,10 @@ namespace takt::soak {
 
 /// Acts as the applications of a run: it moves axes, changes outputs, pauses without notice, and
 /// sends requests of every kind at random times.
-class RestlessUser {
+class RandomUser {
  public:
-  RestlessUser(const BusPlan& plan, Exchange& exchange, OutputJudge& judge, Verdict& verdict,
-               sim::Random random);
+  RandomUser(const BusPlan& plan, Exchange& exchange, OutputJudge& judge, Verdict& verdict,
+             sim::Random random);
 
   /// Answers an image as an application does, with commands.
   void on_image(const ImageView& image, Time now);
@@ -31,7 +31,7 @@ class RestlessUser {
   std::size_t most_moving() const noexcept { return motion_.most_moving(); }
 
  private:
-  static constexpr Time patience = std::chrono::seconds{120};  ///< limit for one reply
+  static constexpr Time reply_limit = std::chrono::seconds{120};  ///< limit for one reply
 
   void command(SignalIndex signal, std::int64_t value, Time now);
   std::int64_t any_value(SignalIndex signal, std::uint64_t cycle) const;

@@ -1,4 +1,4 @@
-#include "master/core/node/twin_watch.hpp"
+#include "master/core/node/duplicate_node_watch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,34 +10,34 @@ namespace {
 
 constexpr CobId own_request = CobId::base(0x605);
 
-TEST(TwinWatch, ReportsTwiceAsManyHeartbeats) {
-  TwinWatch watch{100ms, own_request};
+TEST(DuplicateNodeWatch, ReportsTwiceAsManyHeartbeats) {
+  DuplicateNodeWatch watch{100ms, own_request};
   int reported = 0;
   for (Time now = 10s; now < 14s; now += 50ms) reported += watch.on_heartbeat(now).has_value();
   EXPECT_EQ(reported, 1) << "once in ten seconds";
 }
 
-TEST(TwinWatch, TakesHeartbeatsOfOneDeviceForOne) {
-  TwinWatch watch{100ms, own_request};
+TEST(DuplicateNodeWatch, TakesHeartbeatsOfOneDeviceForOne) {
+  DuplicateNodeWatch watch{100ms, own_request};
   for (Time now = 10s; now < 60s; now += 100ms)
     EXPECT_FALSE(watch.on_heartbeat(now)) << now.count();
 }
 
-TEST(TwinWatch, KnowsNothingWithoutAPeriod) {
-  TwinWatch watch{Time{}, own_request};
+TEST(DuplicateNodeWatch, KnowsNothingWithoutAPeriod) {
+  DuplicateNodeWatch watch{Time{}, own_request};
   for (Time now = 10s; now < 11s; now += 1ms) EXPECT_FALSE(watch.on_heartbeat(now));
 }
 
-TEST(TwinWatch, SegmentsOfABlockUploadAreNoSecondAnswers) {
-  TwinWatch watch{Time{}, own_request};
+TEST(DuplicateNodeWatch, SegmentsOfABlockUploadAreNoSecondAnswers) {
+  DuplicateNodeWatch watch{Time{}, own_request};
   watch.on_sdo_requests(std::array{tx({0xA4, 0x08, 0x10, 0x00, 0x7F})});
   for (std::uint8_t segment = 1; segment < 127; ++segment) {
     EXPECT_FALSE(watch.on_sdo_answer(rx({segment, 1, 2, 3, 4, 5, 6, 7}), 10s)) << int{segment};
   }
 }
 
-TEST(TwinWatch, CountsTheRequestsOfTheChannelThatIsUsed) {
-  TwinWatch watch{Time{}, CobId::base(0x688)};  // 0x640 + node 72
+TEST(DuplicateNodeWatch, CountsTheRequestsOfTheChannelThatIsUsed) {
+  DuplicateNodeWatch watch{Time{}, CobId::base(0x688)};  // 0x640 + node 72
   for (int i = 0; i < 20; ++i) {
     watch.on_sdo_requests(std::array{make_frame(CobId::base(0x688), {0x40, 0x00, 0x10})});
     EXPECT_FALSE(watch.on_sdo_answer(rx({0x43, 0x00, 0x10, 0, 1, 2, 3, 4}), 10s)) << i;

@@ -1,4 +1,4 @@
-#include "master/core/node/twin_watch.hpp"
+#include "master/core/node/duplicate_node_watch.hpp"
 
 #include <algorithm>
 
@@ -35,19 +35,19 @@ bool answers_transfer(const Frame& frame) noexcept {
 
 }  // namespace
 
-void TwinWatch::restart() noexcept {
+void DuplicateNodeWatch::restart() noexcept {
   heartbeats_ = full_windows_ = asked_ = answered_ = 0;
   window_begin_ = Time{};
 }
 
-std::optional<DuplicateSign> TwinWatch::once(DuplicateSign sign, Time now) noexcept {
+std::optional<DuplicateSign> DuplicateNodeWatch::once(DuplicateSign sign, Time now) noexcept {
   restart();
   if (now - reported_ < report_again) return std::nullopt;
   reported_ = now;
   return sign;
 }
 
-std::optional<DuplicateSign> TwinWatch::on_heartbeat(Time now) noexcept {
+std::optional<DuplicateSign> DuplicateNodeWatch::on_heartbeat(Time now) noexcept {
   if (period_ <= Time{}) return std::nullopt;
   if (now - window_begin_ >= window_periods * period_) {
     full_windows_ = heartbeats_ > most_heartbeats ? full_windows_ + 1 : 0;
@@ -58,7 +58,7 @@ std::optional<DuplicateSign> TwinWatch::on_heartbeat(Time now) noexcept {
   return full_windows_ < 2 ? std::nullopt : once(DuplicateSign::heartbeats, now);
 }
 
-void TwinWatch::on_sdo_requests(std::span<const Frame> frames) noexcept {
+void DuplicateNodeWatch::on_sdo_requests(std::span<const Frame> frames) noexcept {
   for (const Frame& frame : frames) {
     const SeenRequest request = frame.id == sdo_request_ ? request_of(frame) : SeenRequest::other;
     if (request == SeenRequest::other) continue;
@@ -68,7 +68,8 @@ void TwinWatch::on_sdo_requests(std::span<const Frame> frames) noexcept {
   }
 }
 
-std::optional<DuplicateSign> TwinWatch::on_sdo_answer(const Frame& frame, Time now) noexcept {
+std::optional<DuplicateSign> DuplicateNodeWatch::on_sdo_answer(const Frame& frame,
+                                                               Time now) noexcept {
   const bool asked_for = std::ranges::find(objects_, sdo_object(frame)) != objects_.end();
   if (block_ || !answers_transfer(frame) || !asked_for) return std::nullopt;
   ++answered_;

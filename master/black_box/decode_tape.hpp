@@ -15,7 +15,7 @@ struct LoggedFrame {
 };
 
 /// Contents of a tape, separated into journal, frames and events.
-struct UnravelledTape {
+struct DecodedTape {
   std::vector<std::uint64_t> words;  ///< words of the journal, see Recording::words
   std::vector<LoggedFrame> frames;   ///< frames in the order of their times
   std::vector<Event> events;
@@ -24,6 +24,6 @@ struct UnravelledTape {
 };
 
 /// Separates the records that Tape::read() returns.
-UnravelledTape unravel(const std::vector<std::uint64_t>& records);
+DecodedTape decode_tape(const std::vector<std::uint64_t>& records);
 
 }  // namespace takt

@@ -17,7 +17,7 @@ struct SeenCycles {
 
 /// Hooks with which a test breaks a run of the front thread, to see whether the judges find it.
 /// Empty functions break nothing.
-struct FrontMeddle {
+struct FrontDefect {
   /// Replaces steps of the round.
   std::function<void(FrontRound& round)> round{};
   /// Changes the plan of the daemon; the judges keep the real one.

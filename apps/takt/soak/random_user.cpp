@@ -1,4 +1,4 @@
-#include "apps/takt/soak/restless_user.hpp"
+#include "apps/takt/soak/random_user.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@ namespace takt::soak {
 
 using namespace std::chrono_literals;
 
-RestlessUser::RestlessUser(const BusPlan& plan, Exchange& exchange, OutputJudge& judge,
-                           Verdict& verdict, sim::Random random)
+RandomUser::RandomUser(const BusPlan& plan, Exchange& exchange, OutputJudge& judge,
+                       Verdict& verdict, sim::Random random)
     : plan_{plan},
       exchange_{exchange},
       judge_{judge},
@@ -16,12 +16,12 @@ RestlessUser::RestlessUser(const BusPlan& plan, Exchange& exchange, OutputJudge&
       random_{random},
       motion_{plan} {}
 
-void RestlessUser::command(SignalIndex signal, std::int64_t value, Time now) {
+void RandomUser::command(SignalIndex signal, std::int64_t value, Time now) {
   exchange_.set_points.set(signal - plan_.layout.inputs, value, time_to_live_);
   judge_.commanded(signal, value, time_to_live_, now);
 }
 
-void RestlessUser::on_image(const ImageView& image, Time now) {
+void RandomUser::on_image(const ImageView& image, Time now) {
   if (silent_ == 0 && random_.chance(0.004)) silent_ = 1 + random_.below(60);
   if (silent_ != 0) {
     if (--silent_ == 0) time_to_live_ = 2 + random_.below(20);
@@ -36,7 +36,7 @@ void RestlessUser::on_image(const ImageView& image, Time now) {
 }
 
 /// Returns a value that changes with each cycle and that `limits:` permits.
-std::int64_t RestlessUser::any_value(SignalIndex signal, std::uint64_t cycle) const {
+std::int64_t RandomUser::any_value(SignalIndex signal, std::uint64_t cycle) const {
   std::int64_t most = (1LL << (plan_.layout.signals[signal].bits - 1)) - 1;
   const auto limit = std::ranges::find(plan_.limits.outputs, signal, &OutputLimit::signal);
   const bool limited = limit != plan_.limits.outputs.end();
@@ -46,11 +46,11 @@ std::int64_t RestlessUser::any_value(SignalIndex signal, std::uint64_t cycle) co
   return static_cast<std::int64_t>(cycle) % (most + 1);
 }
 
-void RestlessUser::ask(Time now) {
+void RandomUser::ask(Time now) {
   if (random_.chance(0.05)) submit(request(), now);
 }
 
-Request RestlessUser::request() {
+Request RandomUser::request() {
   using enum RequestKind;
   constexpr std::array<NmtCommand, 5> commands{
       NmtCommand::start, NmtCommand::stop, NmtCommand::enter_preoperational, NmtCommand::reset_node,
@@ -69,7 +69,7 @@ Request RestlessUser::request() {
   return request;
 }
 
-void RestlessUser::choose_object(Request& request) {
+void RandomUser::choose_object(Request& request) {
   if (request.kind == RequestKind::pdo_poll || request.kind == RequestKind::pdo_exchange) {
     request.object = {static_cast<std::uint16_t>(random_.below(6)), 0};
     request.size = static_cast<std::uint16_t>(random_.below(9));
@@ -94,7 +94,7 @@ void RestlessUser::choose_object(Request& request) {
   for (std::size_t i = 0; i < request.size; ++i) request.data[i] = std::byte(random_.below(256));
 }
 
-void RestlessUser::submit(Request request, Time now) {
+void RandomUser::submit(Request request, Time now) {
   request.id = asked_ + 1;
   if (!exchange_.requests.push(request)) return;
   ++asked_;
@@ -102,21 +102,21 @@ void RestlessUser::submit(Request request, Time now) {
   open_.emplace(request.id, now);
 }
 
-void RestlessUser::take_replies(Time now) {
+void RandomUser::take_replies(Time now) {
   for (Reply reply; exchange_.replies.pop(reply);) {
     if (open_.erase(reply.id) == 0) {
-      verdict_.blame("every request is answered once",
-                     "request " + std::to_string(reply.id) + " is answered again");
+      verdict_.report_violation("every request is answered once",
+                                "request " + std::to_string(reply.id) + " is answered again");
     }
   }
-  if (!open_.empty() && now - open_.begin()->second > patience) {
-    verdict_.blame(
+  if (!open_.empty() && now - open_.begin()->second > reply_limit) {
+    verdict_.report_violation(
         "every request is answered once",
         "request " + std::to_string(open_.begin()->first) + " has no answer after 120 s");
   }
 }
 
-void RestlessUser::reset_all(Time now) {
+void RandomUser::reset_all(Time now) {
   Request request;
   request.kind = RequestKind::nmt;
   request.command = NmtCommand::reset_node;
