@@ -72,8 +72,9 @@ bool MoveRun::hear_bus() {
   while (stop_ == 0 && Clock::now() < until) {
     if (group_.wait(std::chrono::milliseconds{50}) == Input::fresh) return true;
   }
-  progress_.say(group_.bus().empty() ? "no bus was heard: is taktd running, with the same LCM URL?"
-                                     : "bus " + group_.bus() + " sends no image");
+  progress_.say(group_.bus().empty()
+                    ? "no message of a daemon came: is taktd running, with the same LCM URL?"
+                    : "bus " + group_.bus() + " sends no image");
   return false;
 }
 

@@ -131,7 +131,7 @@ int run(const BudgetArguments& options) {
 
 void add_budget(CLI::App& app, int& exit_code) {
   auto [verb, options] = add_command<BudgetArguments>(
-      app, exit_code, "budget", "tells whether the frames of a network fit its bus", run);
+      app, exit_code, "budget", "checks whether the frames of a network fit its bus", run);
   verb.add_option("NET", options.file, "network file")->required();
   verb.add_option("--what-if", options.what_if,
                   "compute with period=1ms, bitrate=500, arm.tpdo2=10 ... instead")

@@ -117,7 +117,7 @@ void add_check(CLI::App& eds, int& exit_code) {
 }  // namespace
 
 void add_eds(CLI::App& app, int& exit_code) {
-  auto* eds = app.add_subcommand("eds", "shows, checks, mends and writes EDS and DCF files");
+  auto* eds = app.add_subcommand("eds", "shows, checks, corrects and writes EDS and DCF files");
   eds->require_subcommand(1);
   eds->footer("Example:\n  takt eds check drive.eds\n  takt eds show --node 5 drive.eds");
   add_show(*eds, exit_code);

@@ -33,7 +33,8 @@ std::optional<std::string> recoded(const std::string& source) {
 void report_unpatchable(const EdsFixOptions& options) {
   std::cerr << options.file << ": the file is UTF-16 and becomes UTF-8; the difference shows only "
             << "the text and can't be applied with patch; "
-            << (options.out.empty() ? "-o writes the mended file\n" : "the output is complete\n");
+            << (options.out.empty() ? "-o writes the corrected file\n"
+                                    : "the output is complete\n");
 }
 
 int run(const EdsFixOptions& options) {
@@ -48,7 +49,7 @@ int run(const EdsFixOptions& options) {
                        [](std::string_view line) { return line.starts_with('['); });
   if (text) report_unpatchable(options);
   std::cerr << options.file << ": " << fixed.fixed.size()
-            << (fixed.fixed.size() == 1 ? " finding mended, " : " findings mended, ")
+            << (fixed.fixed.size() == 1 ? " finding corrected, " : " findings corrected, ")
             << fixed.left.size() << " left\n";
   if (!options.out.empty()) value_or_fail(write_whole_file(options.out, fixed.text), 1);
   return has_error(fixed.left) ? 1 : 0;
@@ -58,10 +59,10 @@ int run(const EdsFixOptions& options) {
 
 void add_eds_fix(CLI::App& eds, int& exit_code) {
   auto [command, options] = add_command<EdsFixOptions>(
-      eds, exit_code, "fix", "mends mistakes that can be read in only one way", run);
+      eds, exit_code, "fix", "corrects mistakes that can be read in only one way", run);
   command.add_option("FILE", options.file, "EDS or DCF")->required();
   command.add_option("-o,--output", options.out,
-                     "mended file; - for stdout; without -o takt only shows changes");
+                     "corrected file; - for stdout; without -o takt only shows changes");
   command.add_flag("--quiet", options.quiet, "leave out notes about the remaining findings");
   std::string rules;
   for (const std::string_view rule : fixable_rules) {
@@ -73,7 +74,7 @@ void add_eds_fix(CLI::App& eds, int& exit_code) {
       "UTF-16, or with CR alone as line ends, the difference is only for reading.) The remaining\n"
       "findings go to stderr in the form of `takt eds check`. No object and no value changes into\n"
       "another one; all other text stays the same byte for byte. The exit code is 1 if an error\n"
-      "remains. takt mends the findings of these rules:\n" +
+      "remains. takt corrects the findings of these rules:\n" +
       rules +
       ",\nand misspellings of the keys ParameterName and DataType.\n\n"
       "Example:\n  takt eds fix drive.eds -o drive_fixed.eds");

@@ -46,8 +46,8 @@ int run(int argc, char** argv) {
       "  takt plan lift.yaml            print what taktd will do with a network file\n"
       "  takt simulate lift.yaml        run a network file in virtual time\n"
       "  takt status                    ask the running daemon\n"
-      "Each command has its own --help. Exit codes: 0 good, 1 the answer is no, 2 wrong use or\n"
-      "invalid network file, 3 bus trouble, 4 a mandatory node is missing, 5 a real-time limit\n"
+      "Each command has its own --help. Exit codes: 0 good, 1 a negative result, 2 wrong use or\n"
+      "invalid network file, 3 bus error, 4 a mandatory node is missing, 5 a real-time limit\n"
       "was broken, 6 the ordered stop was not confirmed.");
   int exit_code = 0;
   for (const AddCommand add : commands) add(app, exit_code);

@@ -26,17 +26,18 @@ Examples:
   taktd lift.yaml --black-box /var/lib/takt           recordings of faults, for takt replay
 
 Live views: takt top, takt status. SIGTERM, SIGINT (Ctrl-C) or SIGHUP (the terminal closes)
-starts the ordered stop: axes to rest, nodes to pre-operational, SYNC off. A second signal stops
-taktd at once.
+starts the ordered stop: it brings the axes to rest and the nodes to pre-operational, and ends
+SYNC. A second signal stops taktd at once.
 
 Exit codes: 0 good, 1 refused (real time under --rt enforce), 2 wrong use or network file,
-3 bus trouble, 4 a mandatory node is missing or failed its boot, 5 real-time limit broken,
+3 bus error, 4 a mandatory node is missing or failed its boot, 5 real-time limit broken,
 6 the ordered stop was not confirmed.)";
 
 const std::map<std::string, RtMode> rt_modes{
     {"enforce", RtMode::enforce}, {"try", RtMode::attempt}, {"off", RtMode::off}};
 
-/// Returns the reason why LCM does not take this URL. Empty if it does, or if no URL is given.
+/// Returns the reason why LCM does not take this URL. The reason is empty if LCM takes the URL, or
+/// if no URL is given.
 std::string lcm_url_error(const std::string& text) {
   const auto url = parse_lcm_url(text);
   return url || text.empty() ? "" : url.error();
@@ -55,7 +56,8 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
   int typed = 0;  // 1 for --typed, -1 for --no-typed, 0 for neither
   app.add_option("NET.yaml", options.network_file, "network file")->required();
   add_bus(app, options.bus, "can0, vcan0 ...; unix:PATH; sim")->type_name("IFACE");
-  app.add_option("--rt", rt, "enforce: start with real time only; try: report what is missing; off")
+  app.add_option("--rt", rt,
+                 "enforce: refuse to start without real time; try: report what is missing; off")
       ->check(one_of({"enforce", "try", "off"}))
       ->type_name("MODE");
   app.add_option("--lcm-url", options.lcm_url,
@@ -74,10 +76,10 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
                  "record frames and decisions; write them here after a fault or SIGUSR1")
       ->type_name("DIR");
   app.add_flag("--motions", options.motions,
-               "run the motions that applications command; new, see share/doc/motion.md");
+               "run the motions that applications command (new; see share/doc/motion.md)");
   app.add_flag("--typed,!--no-typed", typed,
                "use BUS_NODE_STATE and BUS_NODE_COMMAND in the types of `takt export lcm`");
-  app.add_flag("--check", options.check, "compile everything, print a summary, touch no bus");
+  app.add_flag("--check", options.check, "check the network file, print a summary, use no bus");
   app.add_flag("--observe", options.observe, "listen only: no NMT, no SDO, no SYNC, no outputs");
   if (const auto exit_code = parse_arguments(app, argc, argv)) return std::unexpected{*exit_code};
   if (!rt.empty()) options.rt = rt_modes.at(rt);

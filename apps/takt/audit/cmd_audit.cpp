@@ -100,7 +100,7 @@ int run(const AuditArguments& arguments) {
 
 void add_audit(CLI::App& app, int& exit_code) {
   auto [command, arguments] = add_command<AuditArguments>(
-      app, exit_code, "audit", "tells what devices do if the master, the cable or the bus fails",
+      app, exit_code, "audit", "reports what devices do if the master, the cable or the bus fails",
       run);
   command.add_option("NET", arguments.network, "network file (YAML, also a bus.yml)")->required();
   add_bus(command, arguments.bus, "ask the devices on this bus directly; stop the daemon first")

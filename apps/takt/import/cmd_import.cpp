@@ -147,7 +147,7 @@ int run(const ImportOptions& options) {
 
 void add_import(CLI::App& app, int& exit_code) {
   auto [command, options] = add_command<ImportOptions>(
-      app, exit_code, "import", "tells how takt reads a bus.yml; converts a nodelist.cpj", run);
+      app, exit_code, "import", "shows how takt reads a bus.yml; converts a nodelist.cpj", run);
   command
       .add_option("FILE", options.file,
                   "bus.yml of dcfgen or ros2_canopen, or nodelist.cpj of CiA 306-3")
