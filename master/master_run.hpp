@@ -63,7 +63,7 @@ class MasterRun {
   /// Waits for the bus thread to end.
   void join();
 
-  /// The plan of the bus, as it was given to the constructor.
+  /// Returns the plan of the bus, as it was given to the constructor.
   const BusPlan& plan() const noexcept { return plan_; }
 
   /// Takes the next process image in order. Returns false if there is none. The image is valid
@@ -75,9 +75,10 @@ class MasterRun {
   bool take(Event& event) noexcept { return exchange_->events.pop(event); }
   /// Takes the next reply to a request. Returns false if there is none.
   bool take(Reply& reply) noexcept { return exchange_->replies.pop(reply); }
-  /// The predicted time of the next image, on the monotonic clock. The front thread sleeps until
-  /// then, because the bus thread does not wake it. Read this time before you look for images: a
-  /// take() after this call sees every image that was there before the prediction was made.
+  /// Returns the predicted time of the next image, on the monotonic clock. The front thread sleeps
+  /// until then, because the bus thread does not wake it. Read this time before you look for
+  /// images: a take() after this call sees every image that was there before the prediction was
+  /// made.
   Time next_publish() const noexcept {
     return Time{exchange_->next_publish.load(std::memory_order_acquire)};
   }
@@ -110,11 +111,13 @@ class MasterRun {
 
   /// Copies the status of the master and of all nodes.
   void status(StatusSnapshot& snapshot) const { exchange_->status.read(snapshot); }
-  /// Histograms of the times in the cycle.
+  /// Returns the histograms of the times in the cycle.
   const TimingHistograms& timing() const noexcept { return exchange_->timing; }
-  /// Images that were lost because the front thread did not take them in time.
+  /// Returns the number of images that were lost because the front thread did not take them in
+  /// time.
   std::uint64_t image_overruns() const noexcept { return exchange_->images.overruns(); }
-  /// Events that were lost because the front thread did not take them in time.
+  /// Returns the number of events that were lost because the front thread did not take them in
+  /// time.
   std::uint64_t event_overruns() const noexcept { return exchange_->events.overruns(); }
 
   /// The bus loop of any kind of port.

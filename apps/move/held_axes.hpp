@@ -5,7 +5,7 @@
 
 namespace takt {
 
-/// The numbers of all axes.
+/// Returns the numbers of all axes.
 inline auto numbers_of(const AxisControl& axes) {
   return std::views::iota(AxisControl::Index{0}, axes.size());
 }

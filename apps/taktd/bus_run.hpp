@@ -50,7 +50,7 @@ class BusRun {
   /// Starts the bus thread. Returns the exit code if it can't run.
   std::optional<Exit> start();
 
-  /// The bus, its interface and its name, for the status line of systemd.
+  /// Returns the bus, its interface and its name, for the status line of systemd.
   std::string title() const { return "bus " + network_.plan.name + " on " + bus_name_; }
   bool wants_realtime() const noexcept { return network_.realtime.mode != RtMode::off; }
   /// The flag that begins the ordered stop. A signal handler may set it.
@@ -61,7 +61,7 @@ class BusRun {
   void watch(std::vector<pollfd>& descriptors) const;
   /// Begins a recording of the black box, if the bus has one.
   void record(const std::string& why) { recorder_.record(why, front_.clocks.now()); }
-  /// Time of the newest status that the bus thread has written.
+  /// Returns the time of the newest status that the bus thread has written.
   Time alive() const noexcept { return bridge_->status().bus.when; }
 
   /// Begins the ordered stop, unless it has begun already. `reason` becomes the exit code unless

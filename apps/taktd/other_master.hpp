@@ -34,7 +34,7 @@ class OtherMaster {
   /// log are older) and if its sender has sent frames: a daemon that only observes is no master.
   void on_status(const status_t& status, Time realtime);
 
-  /// Reason why this daemon may not be the master. Empty if there is none.
+  /// Returns the reason why this daemon may not be the master. It is empty if there is none.
   const std::optional<std::string>& refusal() const noexcept { return refusal_; }
   /// Signs of another master that prove nothing, one sentence each: a foreign SYNC producer, or a
   /// status that counts as a warning.

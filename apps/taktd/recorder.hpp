@@ -36,11 +36,11 @@ class Recorder {
   void record(const std::string& why, Time now);
   /// Begins and ends the recordings that are due. To be called often.
   void serve(Time now);
-  /// To be called after the bus thread has ended. Waits for at most `limit`. Returns false if a
+  /// Call this after the bus thread has ended. Waits for at most `limit`. Returns false if a
   /// recording is still being written; the destructor would wait for it.
   bool finish(const std::string& reason, Time limit);
-  /// To be called if the daemon ends while the bus thread still runs. Writes what has been recorded
-  /// so far, within `limit`.
+  /// Call this if the daemon ends while the bus thread still runs. Writes what has been recorded so
+  /// far, within `limit`.
   void finish_running(const std::string& reason, Time limit);
 
  private:

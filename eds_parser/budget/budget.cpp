@@ -137,7 +137,7 @@ Bounds steady_bounds(const BusTraffic& traffic, const BusPlan& plan, const Budge
   return all;
 }
 
-/// The earliest time at which the next SYNC is queued, on the time scale of the rows.
+/// Returns the earliest time at which the next SYNC is queued, on the time scale of the rows.
 Time next_sync(const BusPlan& plan, const std::optional<Time>& sync_end) {
   if (plan.cycle.makes_sync()) return plan.cycle.period;
   return plan.cycle.period - std::min(sync_end.value_or(Time{0}), plan.cycle.period);

@@ -24,7 +24,7 @@ struct BudgetRow {
   bool fits() const noexcept { return within(worst) || is_late_by_changes_only(); }
   bool fits_in_burst() const noexcept { return within(worst_in_burst); }
 
-  /// Whether an output delays the next SYNC by more than the tolerance, but only if all
+  /// Returns whether an output delays the next SYNC by more than the tolerance, but only if all
   /// event-driven outputs change at once. Such an output has no deadline of its own.
   bool is_late_by_changes_only() const noexcept {
     return frame.is_output() && worst && !within(worst) && meets_limit(*worst) &&
@@ -47,16 +47,17 @@ struct BusBudget {
   std::vector<std::string> assumptions{};  ///< one sentence each
   bool refused = false;                    ///< `taktd` refuses this plan, see fits_period()
 
-  /// Whether all frames fit if no node sends an EMCY. Devices send EMCYs only when something is
-  /// wrong already, and the worst effect of a burst is a late PDO that is marked as missing.
+  /// Returns whether all frames fit if no node sends an EMCY. Devices send EMCYs only when
+  /// something is wrong already, and the worst effect of a burst is a late PDO that is marked as
+  /// missing.
   bool fits() const noexcept;
   bool fits_in_burst() const noexcept;
-  /// Whether all frames fit, except in a cycle in which all event-driven outputs change.
+  /// Returns whether all frames fit, except in a cycle in which all event-driven outputs change.
   bool fits_but_for_changes() const noexcept;
-  /// Longest time by which the outputs can delay the next SYNC.
+  /// Returns the longest time by which the outputs can delay the next SYNC.
   Time sync_delay() const noexcept;
-  /// Longest time by which service frames, and outputs behind them, can delay the next SYNC.
-  /// Returns std::nullopt if there is no bound.
+  /// Returns the longest time by which service frames, and outputs behind them, can delay the next
+  /// SYNC. Returns std::nullopt if there is no bound.
   std::optional<Time> sync_delay_behind_services() const noexcept;
 };
 

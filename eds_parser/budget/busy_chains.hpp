@@ -67,9 +67,9 @@ class BusyChains : protected CycleFrames {
   /// fitted in before the outputs of that cycle together with their answers.
   Busy busy_until_outputs(std::size_t at, int cycles) const;
 
-  /// Additional bus time of a chain of late SYNCs: the device time of each cycle, the frame that
-  /// may begin during it (in all cycles but one), and the frames that go before the lowest frame of
-  /// the master's queue although they do not go before `at`.
+  /// Returns the additional bus time of a chain of late SYNCs: the device time of each cycle, the
+  /// frame that may begin during it (in all cycles but one), and the frames that go before the
+  /// lowest frame of the master's queue although they do not go before `at`.
   Time follow_up(const Busy& busy, int cycles) const;
 
   /// How late SYNC may be. It waits behind the outputs of the cycle before in the same transmit
@@ -79,8 +79,8 @@ class BusyChains : protected CycleFrames {
     return std::max(std::max(outputs_end_, services_end_) - plan_.cycle.period, Time{0});
   }
 
-  /// Whether the frame at `at` waits for all service frames: it has a lower priority than the
-  /// lowest of them. One queue makes all its frames wait as long as its lowest frame.
+  /// Returns whether the frame at `at` waits for all service frames: it has a lower priority than
+  /// the lowest of them. One queue makes all its frames wait as long as its lowest frame.
   bool waits_for_services(std::size_t at) const noexcept {
     return services_in_queue() && at >= lowest_service_;
   }
@@ -107,22 +107,22 @@ class BusyChains : protected CycleFrames {
            plan_.cycle.output_deadline;
   }
 
-  /// Position of the frame with the lowest priority in the master's queue.
+  /// Returns the position of the frame with the lowest priority in the master's queue.
   std::size_t lowest_queued() const noexcept {
     return services_in_queue() ? std::max(lowest_output_, lowest_service_) : lowest_output_;
   }
 
-  /// The longest frame that may begin while the devices compute, unless the chain already counts
-  /// it.
+  /// Returns the longest frame that may begin while the devices compute, unless the chain already
+  /// counts it.
   Time gap_blocking() const {
     if (options_.device_time == Time{0}) return Time{0};
     const bool counted = services_in_queue() && late_ == LateSync::follows_up;
     return counted ? queue_blocking_ : outputs_blocking_;
   }
 
-  /// All busy periods that may precede the frame at `at`. If the bus is busy for longer than a
-  /// cycle, the worst case may lie in any of these cycles. Returns std::nullopt if the bus may be
-  /// busy for ever.
+  /// Returns all busy periods that may precede the frame at `at`. If the bus is busy for longer
+  /// than a cycle, the worst case may lie in any of these cycles. Returns std::nullopt if the bus
+  /// may be busy for ever.
   std::optional<std::vector<Busy>> busy_before(std::size_t at) const;
 
   Time sync_jitter_{};  ///< jitter of the arrival of another device's SYNC

@@ -128,9 +128,9 @@ class CycleAnalysis : BusyChains {
     return services_end_ <= plan_.cycle.period + plan_.cycle.output_deadline;
   }
 
-  /// The end of an output behind the service frames of its cycle, or the end of these if `before`
-  /// and `own` are 0. The service frames and their answers would end before the outputs if no other
-  /// frames came by themselves meanwhile.
+  /// Returns the end of an output behind the service frames of its cycle, or the end of these if
+  /// `before` and `own` are 0. The service frames and their answers would end before the outputs if
+  /// no other frames came by themselves meanwhile.
   std::optional<Time> end_in_queue(Time before, Time own) const {
     const std::size_t at = lowest_queued();
     const Time inputs = inputs_around(at);

@@ -46,7 +46,8 @@ class CycleFrames {
     return longest;
   }
 
-  /// Whether the cycle, with all frames that may go before its last one, needs the whole bus.
+  /// Returns whether the cycle, with all frames that may go before its last one, needs the whole
+  /// bus.
   bool is_overloaded() const noexcept;
   bool has_turn(const TrafficFrame& frame, std::size_t cycle) const noexcept;
   Time by_themselves(std::size_t first, std::size_t end, Time within) const;
@@ -67,7 +68,7 @@ class CycleFrames {
   /// The same for one cycle in which late TPDOs keep the master waiting until its receive window
   /// ends.
   Time services_behind_window() const noexcept;
-  /// Whether a cycle has room for a request with its answer.
+  /// Returns whether a cycle has room for a request with its answer.
   bool has_room_for_services() const noexcept { return room_for_services() >= longest_service_; }
   /// Bus time of the SDO answers to the requests of `rounds` rounds.
   Time answers_in(int rounds) const {
@@ -83,7 +84,7 @@ class CycleFrames {
   /// follows.
   Time origin() const noexcept { return plan_.cycle.makes_sync() ? Time{0} : sync_frame(); }
 
-  /// Number of cycles that the analysis examines.
+  /// Returns the number of cycles that the analysis examines.
   std::size_t turns() const noexcept { return turns_ < most_turns ? turns_ : most_turns; }
 
   const std::vector<TrafficFrame>& frames_;
@@ -105,7 +106,7 @@ class CycleFrames {
   Time services_before_sync_{};  ///< of the master's service frames that go before SYNC
 
  private:
-  /// Time for requests in a cycle. The same time is left for their answers.
+  /// Returns the time for requests in a cycle. The same time is left for their answers.
   Time room_for_services() const noexcept;
   Time services_due(int cycles) const noexcept;
   /// Finds SYNC, the queue of the outputs, and the frames that may block them.

@@ -49,8 +49,8 @@ class Search {
     return changes;
   }
 
-  /// The fewest of these changes that are enough. The search leaves out one after another and may
-  /// miss a smaller set.
+  /// Returns the fewest of these changes that are enough. The search leaves out one after another
+  /// and may miss a smaller set.
   std::vector<PdoChange> fewest(std::vector<PdoChange> pdos) const {
     for (std::size_t i = pdos.size(); i-- > 0 && pdos.size() > 1;) {
       auto less = pdos;

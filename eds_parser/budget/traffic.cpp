@@ -23,7 +23,7 @@ std::uint64_t rank(const TrafficFrame& frame) noexcept {
 
 bool is_polled(const PdoRow& pdo) noexcept { return pdo.poll > Time{0} || pdo.poll_syncs != 0; }
 
-/// Whether the device sends the PDO only on request (types 252 and 253), never on an event.
+/// Returns whether the device sends the PDO only on request (types 252 and 253), never on an event.
 bool only_on_request(const PdoRow& pdo) noexcept {
   return pdo.transmission == 252 || pdo.transmission == 253;
 }
@@ -200,8 +200,8 @@ class TrafficCollector {
     frame.why = BudgetLimit::own_period;
   }
 
-  /// The turn that the SYNC counter determines, if the counter overflows with the same phase each
-  /// time.
+  /// Returns the turn that the SYNC counter determines, if the counter overflows with the same
+  /// phase each time.
   std::optional<std::uint16_t> certain_turn(const PdoRow& pdo) const {
     const unsigned overflow = plan_.cycle.sync_overflow;
     if (pdo.sync_start == 0 || overflow < 2 || overflow % pdo.transmission != 0) return {};

@@ -68,7 +68,7 @@ struct TrafficFrame {
   bool by_itself() const noexcept { return !from_master && !in_cycle; }
   bool is_input() const noexcept { return in_cycle && kind == Traffic::tpdo; }
   bool is_output() const noexcept { return in_cycle && kind == Traffic::rpdo; }
-  /// Whether the master sends this frame outside the cycle.
+  /// Returns whether the master sends this frame outside the cycle.
   bool is_service() const noexcept { return from_master && !in_cycle; }
   bool is_answer() const noexcept { return kind == Traffic::sdo && !from_master; }
 };

@@ -45,7 +45,7 @@ PdoChange& change_of(WhatIf& changes, PdoChange pdo) {
   return same != changes.pdos.end() ? *same : changes.pdos.emplace_back(std::move(pdo));
 }
 
-/// Whether a transmission type is reserved. CiA 301, tables 69 and 72.
+/// Returns whether a transmission type is reserved. CiA 301, tables 69 and 72.
 bool is_reserved(std::uint8_t transmission, bool tpdo) {
   return transmission > 240 && transmission < (tpdo ? 252 : 254);
 }

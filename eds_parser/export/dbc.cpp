@@ -107,8 +107,8 @@ class DbcWriter {
     multiplex_.clear();
   }
 
-  /// Whether the row continues the previous MPDO. An MPDO has one row for each object, but is one
-  /// message.
+  /// Returns whether the row continues the previous MPDO. An MPDO has one row for each object, but
+  /// is one message.
   bool continues_mpdo(const PdoRow& row) {
     const bool same = row.multiplexed() && mpdo_ == row.cob_id;
     mpdo_ = row.multiplexed() ? std::optional{row.cob_id} : std::nullopt;

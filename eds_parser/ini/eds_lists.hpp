@@ -19,8 +19,8 @@ bool is_count_key(std::string_view key) noexcept;
 /// Returns the key of an entry of an object list or value list as a number. Such keys are always
 /// decimal, and leading zeros do not matter.
 std::optional<std::uint32_t> entry_number(std::string_view key) noexcept;
-/// Counts the entries whose key is a number after `lower_word`, such as `Line12` after `line`.
-/// NrOfEntries, Lines ... state this count.
+/// Counts the entries whose key is a number after `lower_word`, such as `Line12` after
+/// `line`. NrOfEntries, Lines ... state this count.
 std::size_t numbered_entries(const IniEntries& entries, std::string_view lower_word = {}) noexcept;
 /// Returns the entries whose key is a number after `lower_word`. Reports other keys, and a wrong
 /// count in the entry `lower_count`, such as `nrofentries`.

@@ -40,8 +40,8 @@ struct TypedMessage {
   bool command = false;
   std::vector<TypedField> fields{};
 
-  /// The hash that lcm-gen's code sends in front of each message. It covers names, types and order
-  /// of the fields.
+  /// Returns the hash that lcm-gen's code sends in front of each message. It covers names, types
+  /// and order of the fields.
   std::uint64_t fingerprint() const noexcept;
 };
 

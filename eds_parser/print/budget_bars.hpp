@@ -15,7 +15,8 @@ struct CycleBar {
   Time begin{};  ///< begin of the frame if it is as late as possible
   Time end{};
 
-  /// Time left until its limit or until the next SYNC. Returns std::nullopt if it has neither.
+  /// Returns the time left until its limit or until the next SYNC. Returns std::nullopt if it has
+  /// neither.
   std::optional<Time> margin() const noexcept;
 };
 

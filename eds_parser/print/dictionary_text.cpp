@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t widest_name = 44;
 constexpr std::size_t widest_value = 34;
 
-/// Number of characters of a UTF-8 text.
+/// Returns the number of characters of a UTF-8 text.
 std::size_t width(std::string_view text) noexcept {
   return static_cast<std::size_t>(std::ranges::count_if(
       text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));

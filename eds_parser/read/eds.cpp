@@ -147,8 +147,8 @@ class EdsReader {
                     " is not one of CiA 306; it was left out");
   }
 
-  /// The extension of the file name decides. For other extensions than .eds and .dcf, the section
-  /// that only a DCF should have decides.
+  /// The extension of the file name decides. For other extensions than .eds and .dcf, the
+  /// section that only a DCF should have decides.
   bool is_dcf(std::string_view name) noexcept {
     const auto extension = name.substr(name.size() - std::min<std::size_t>(name.size(), 4));
     if (same_word(extension, ".dcf")) return true;

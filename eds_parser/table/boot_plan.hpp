@@ -18,7 +18,8 @@ enum class NmtCommand : std::uint8_t {
   reset_communication = 130,
 };
 
-/// The object with the quick stop option code (INTEGER16) of an axis, counted from 0. CiA 402-2.
+/// Returns the object with the quick stop option code (INTEGER16) of an axis, counted from 0. CiA
+/// 402-2.
 constexpr ObjectKey quick_stop_option(unsigned axis) noexcept { return axis_object(axis, 0x605A); }
 constexpr bool is_quick_stop_option(ObjectKey object) noexcept {
   return object.index >= 0x605A && (object.index - 0x605A) % 0x800 == 0 && object.sub == 0;

@@ -37,7 +37,7 @@ enum class DataType : std::uint16_t {
   unsigned64 = 0x1B,
 };
 
-/// Width in bits; 0 if the type has no fixed width (strings, domains, unknown codes).
+/// Returns the width in bits; 0 if the type has no fixed width (strings, domains, unknown codes).
 constexpr unsigned bit_width(DataType type) noexcept {
   // By index of the type: integers, REAL32, strings; times, DOMAIN; 24 to 64 bits.
   constexpr std::uint8_t bits[]{0, 1, 8,  16, 32, 8,  16, 32, 32, 0, 0,  0,  48, 48,

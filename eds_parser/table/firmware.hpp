@@ -45,14 +45,14 @@ struct Firmware {
       text = text.substr(0, dot);
     }
   }
-  /// The version in 0x1018:03 of a device whose revision number is its firmware version. The upper
-  /// half holds the main version.
+  /// Returns the version in 0x1018:03 of a device whose revision number is its firmware version.
+  /// The upper half holds the main version.
   static constexpr Firmware of_revision(std::uint32_t revision) noexcept {
     return {{static_cast<std::uint16_t>(revision >> 16),
              static_cast<std::uint16_t>(revision & 0xFFFF), 0}};
   }
 
-  /// The version as one number with 16 bits for each part.
+  /// Returns the version as one number with 16 bits for each part.
   constexpr std::int64_t packed() const noexcept {
     return std::int64_t{parts[0]} << 32 | std::int64_t{parts[1]} << 16 | parts[2];
   }

@@ -17,7 +17,7 @@ struct SdoChannel {
   constexpr bool has(CobId id) const noexcept { return id == request || id == answer; }
 };
 
-/// The default SDO channel of a device. CiA 301, 7.3.3.
+/// Returns the default SDO channel of a device. CiA 301, 7.3.3.
 constexpr SdoChannel default_sdo_channel(NodeId server) noexcept {
   return {CobId::base(0x600U + server.value()), CobId::base(0x580U + server.value())};
 }

@@ -29,7 +29,8 @@ constexpr Time block_silence(Time sdo_timeout) noexcept { return sdo_timeout * 7
 // PDOs on request
 inline constexpr Time pdo_answer = 500ms;
 inline constexpr std::size_t pdo_requests = 16;  ///< greatest number of simultaneous requests
-/// Longest wait of a request for its turn: all others may wait for the same PDO, one after another.
+/// Returns the longest wait of a request for its turn: all others may wait for the same PDO, one
+/// after another.
 constexpr Time pdo_turn(Time timeout) noexcept {
   return static_cast<Time::rep>(pdo_requests) * timeout;
 }

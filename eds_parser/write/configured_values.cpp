@@ -17,7 +17,7 @@ bool is_configured(const SubObject& sub) noexcept {
   return sub.parameter_value && sub.is_configurable();
 }
 
-/// Whether an entry of a mapping is configured with an object.
+/// Returns whether an entry of a mapping is configured with an object.
 bool maps_something(const SubObject& sub) noexcept {
   return is_configured(sub) && integer_of(sub.parameter_value).value_or(0) != 0;
 }

@@ -85,7 +85,7 @@ class DcfWriter {
     return true;
   }
 
-  /// Whether the device would accept the value, read in the same way as in the written DCF.
+  /// Returns whether the device would accept the value, read in the same way as in the written DCF.
   bool good(const DcfValue& value, const SubObject& sub) {
     if (trim(value.text).size() != value.text.size()) {
       return refuse(sub.pos, "outer-blanks", value.object,

@@ -116,8 +116,8 @@ class FixPass {
     return entry_finding(rule, at->second);
   }
 
-  /// Whether a finding is left as it is. This is the case for most findings on modules: the objects
-  /// of modules are not connected, so nothing shows whether an edit would change them.
+  /// Returns whether a finding is left as it is. This is the case for most findings on modules: the
+  /// objects of modules are not connected, so nothing shows whether an edit would change them.
   bool is_left(const IniSection& section, std::string_view rule) const {
     const SectionName name = classify_section(section);
     if (name.kind == SectionKind::module) {

@@ -48,8 +48,8 @@ void ListFix::remove_line(const IniEntry& entry) {
   edits_.replace(text_.substr(first, end - first), "");
 }
 
-/// Whether one of the lines belongs to the section. A finding on a list is at its name or at one of
-/// its entries.
+/// Returns whether one of the lines belongs to the section. A finding on a list is at its name or
+/// at one of its entries.
 bool ListFix::within(const IniSection& section, const std::set<std::uint32_t>& lines) const {
   if (lines.contains(section.pos.line)) return true;
   return std::ranges::any_of(file_.entries(section),

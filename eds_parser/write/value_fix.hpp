@@ -9,8 +9,8 @@
 
 namespace takt {
 
-/// Whether plain_value() mends the findings of this rule. It mends all such findings of an entry at
-/// once.
+/// Returns whether plain_value() corrects the findings of this rule. It corrects all such findings
+/// of an entry at once.
 bool is_value_rule(std::string_view rule) noexcept;
 
 /// Returns the value of an entry as CiA 306 writes it, without a comment. `rules` are the rules of

@@ -1,3 +1,5 @@
+#include "master/black_box/decode_tape.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -5,7 +7,6 @@
 #include <span>
 #include <utility>
 
-#include "master/black_box/decode_tape.hpp"
 #include "master/core/set_point.hpp"
 #include "master/rt/journal/recorded_port.hpp"
 

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "master/black_box/recording_format.hpp"
 #include "master/black_box/decode_tape.hpp"
+#include "master/black_box/recording_format.hpp"
 #include "master/explain/boot_report.hpp"
 #include "master/linux/file_descriptor.hpp"
 

@@ -27,10 +27,10 @@ class FixedQueue {
     item = items_[tail_++ & (N - 1)];
     return true;
   }
-  /// The oldest item. The queue must not be empty.
+  /// Returns the oldest item. The queue must not be empty.
   const T& front() const noexcept { return items_[tail_ & (N - 1)]; }
   bool empty() const noexcept { return head_ == tail_; }
-  /// Number of refused items.
+  /// Returns the number of refused items.
   std::uint64_t lost() const noexcept { return lost_; }
 
  private:

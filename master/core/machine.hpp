@@ -31,7 +31,7 @@ class Outbox {
   /// Limits the outbox to `frames` frames in total: the budget of a cycle.
   void set_limit(std::size_t frames) noexcept { limit_ = frames < capacity ? frames : capacity; }
   std::size_t limit() const noexcept { return limit_; }
-  /// Number of frames that the outbox still accepts.
+  /// Returns the number of frames that the outbox still accepts.
   std::size_t room() const noexcept { return size_ < limit_ ? limit_ - size_ : 0; }
 
   /// Adds a frame. Returns false if the outbox is full; the machine then has to try again later.
@@ -42,7 +42,7 @@ class Outbox {
     return true;
   }
   std::span<const Frame> frames() const noexcept { return {frames_.data(), size_}; }
-  /// The answers that the frames expect, in the order of frames().
+  /// Returns the answers that the frames expect, in the order of frames().
   std::span<const Answer> answers() const noexcept { return {answers_.data(), size_}; }
   bool empty() const noexcept { return size_ == 0; }
   void clear() noexcept { size_ = 0; }

@@ -30,7 +30,7 @@ class RequestTable {
 
   RequestTable() : slots_(capacity) {}
 
-  /// The lane in which a request waits.
+  /// Returns the lane in which a request waits.
   static std::uint8_t lane(const Request& request) noexcept {
     if (request.kind == RequestKind::lss) return lss_lane;
     return request.kind == RequestKind::nmt ? std::uint8_t{0} : request.node;

@@ -11,7 +11,7 @@
 namespace takt {
 namespace {
 
-/// The interface as the subject of a sentence.
+/// Returns the interface as the subject of a sentence.
 std::string interface_name(const BusPlan& plan) {
   return plan.interface.empty() ? "the interface" : plan.interface;
 }

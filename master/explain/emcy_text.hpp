@@ -14,8 +14,8 @@ std::string_view emcy_text(std::uint16_t code) noexcept;
 /// nullptr for a node that is not in the plan.
 std::string_view emcy_text(const NodePlan* node, std::uint16_t code) noexcept;
 
-/// Names the bits that are set in the error register 0x1001, for example "generic, voltage". The
-/// text is "none" if no bit is set.
+/// Names the bits that are set in the error register 0x1001, for example "generic,
+/// voltage". The text is "none" if no bit is set.
 std::string error_register_text(std::uint8_t error_register);
 
 }  // namespace takt

@@ -14,7 +14,7 @@ namespace takt {
 
 // These functions return parts of the texts of reports.
 
-/// Bytes as text: "37 06".
+/// Returns the bytes as text: "37 06".
 inline std::string bytes_text(std::span<const std::uint8_t> bytes) {
   return fmt::format("{:02X}", fmt::join(bytes, " "));
 }
@@ -41,7 +41,7 @@ inline std::string time_text(Time time) {
   return text(1, 0, "us");
 }
 
-/// The argument of `--bus`: "can0".
+/// Returns the argument of `--bus`: "can0".
 inline std::string interface_text(const BusPlan& plan) {
   return plan.interface.empty() ? "can0" : plan.interface;
 }
@@ -51,8 +51,8 @@ inline std::string node_text(const NodePlan& node) {
   return fmt::format("node {} '{}'", node.id.value(), node.name);
 }
 
-/// The known parts of an LSS address as text: "vendor id 0x0000015A, product code 0x00000700,
-/// serial number 77".
+/// Returns the known parts of an LSS address as text: "vendor id 0x0000015A, product code
+/// 0x00000700, serial number 77".
 inline std::string identity_text(const LssPlan& lss) {
   std::string text =
       fmt::format("vendor id 0x{:08X}, product code 0x{:08X}", lss.address[0], lss.address[1]);

@@ -32,7 +32,7 @@ struct Channels {
   explicit Channels(const std::string& bus);
   std::string image, layout, command, motion, motion_command, status, sync, pdos, timing, event,
       request, reply, transfer, transfer_state;
-  /// The channels that the daemon receives.
+  /// Returns the channels that the daemon receives.
   std::vector<std::string> heard() const { return {command, motion_command, request, transfer}; }
 };
 
@@ -62,9 +62,10 @@ class Bridge {
                std::span<const std::int64_t> values);
   /// Checks whether this thread stood still. If so, messages that waited meanwhile have no effect.
   void notice_gap();
-  /// Number of gaps in which this thread did not run. Set-points that waited are discarded.
+  /// Returns the number of gaps in which this thread did not run. Set-points that waited are
+  /// discarded.
   std::uint64_t gaps() const noexcept { return gaps_; }
-  /// Number of gaps that were so long that waiting requests are discarded too.
+  /// Returns the number of gaps that were so long that waiting requests are discarded too.
   std::uint64_t long_gaps() const noexcept { return long_gaps_; }
   Time newest_gap() const noexcept { return gap_.length(); }
   Time newest_long_gap() const noexcept { return gap_.newest_long().length; }
@@ -72,8 +73,8 @@ class Bridge {
   bool serve();
   /// Returns true if events or replies of the bus thread are, or may be, left for the next round.
   bool has_unsent_reports() const noexcept { return replies_left_ || events_left_; }
-  /// Latest time of the next serve() call: at once if anything is left over, otherwise when
-  /// status_t, pdo_status_t, layout_t or timing_t is due.
+  /// Returns the latest time of the next serve() call: at once if anything is left over, otherwise
+  /// when status_t, pdo_status_t, layout_t or timing_t is due.
   Time next_message() const noexcept;
   /// Takes an event of the bus thread or of the diagnostic socket.
   void announce(const Event& event);
@@ -91,9 +92,9 @@ class Bridge {
   std::uint64_t images() const noexcept { return images_; }
   std::uint64_t commands_taken() const noexcept { return commands_.taken(); }
   std::uint64_t commands_refused() const noexcept { return commands_.refused(); }
-  /// Refused commands by reason, in the order of CommandRefusal.
+  /// Returns the refused commands by reason, in the order of CommandRefusal.
   const auto& refusals() const noexcept { return commands_.refusals(); }
-  /// Number of messages that could not be decoded.
+  /// Returns the number of messages that could not be decoded.
   std::uint64_t damaged() const noexcept { return damaged_count_; }
   const Histogram& sync_to_lcm() const noexcept { return sync_to_lcm_; }
   const Channels& channels() const noexcept { return channels_; }
@@ -112,7 +113,7 @@ class Bridge {
   std::string age_error(std::int64_t utime, Time now) const;
   void take_events();
   void take_event(const Event& event);
-  /// Events lost in the bus thread and on the way from it.
+  /// Returns the number of events lost in the bus thread and on the way from it.
   std::uint64_t events_lost() const noexcept;
   void report_lost_events();
   void warn(const std::string& kind, const std::string& text);

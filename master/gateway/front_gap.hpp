@@ -19,7 +19,7 @@ class FrontGap {
   /// Notes that the transports had no message left.
   void found_empty() noexcept { backlog_ = Backlog::none; }
 
-  /// Length of the newest gap, in which the front thread did not run.
+  /// Returns the length of the newest gap, in which the front thread did not run.
   Time length() const noexcept { return length_; }
   /// End of the newest gap; 0 if there was none.
   Time end() const noexcept { return end_; }

@@ -52,7 +52,7 @@ std::string_view text(DecodeFault fault) noexcept;
 
 /// Text of the daemon for an application whose messages have another schema.
 std::string schema_refusal(std::int16_t schema);
-/// Text of a program that receives messages of a daemon with another schema.
+/// Returns the text of a program that receives messages of a daemon with another schema.
 std::string daemon_schema_text(std::int16_t schema);
 
 /// Fingerprint of a type in schema 1; 0 if the type has not changed since.

@@ -33,7 +33,7 @@ class Intake {
   /// Takes all frames that have come, up to a SYNC that begins the next cycle.
   void drain() noexcept;
 
-  /// Predicted time from SYNC to the arrival of the last expected TPDO.
+  /// Returns the predicted time from SYNC to the arrival of the last expected TPDO.
   Time predicted() const noexcept { return prediction_.predicted(); }
   /// Returns true if no frames are left for the next cycle.
   bool empty() const noexcept { return left_from_ == left_end_; }

@@ -39,11 +39,11 @@ class SdoFollower {
   /// Takes a frame of the server. Returns the transfer if this frame ends it.
   std::optional<SeenTransfer> answer(const Frame& frame);
 
-  /// The newest transfer. It may have ended.
+  /// Returns the newest transfer. It may have ended.
   const SeenTransfer& transfer() const noexcept { return transfer_; }
   /// What the newest frame is in a block transfer, or std::nullopt.
   std::optional<BlockFollower::Part> block_part() const noexcept { return newest_.part; }
-  /// The newest block transfer.
+  /// Returns the newest block transfer.
   const BlockFollower& block() const noexcept { return block_; }
   /// Returns true if the beginning of the transfer of the newest frame was not seen.
   bool is_stray() const noexcept { return newest_.stray; }

@@ -17,7 +17,7 @@ struct Frame {
   bool rtr = false;
   std::array<std::uint8_t, 8> data{};
 
-  /// The data bytes of the frame.
+  /// Returns the data bytes of the frame.
   constexpr std::span<const std::uint8_t> payload() const noexcept { return {data.data(), length}; }
   constexpr bool operator==(const Frame&) const noexcept = default;
 };

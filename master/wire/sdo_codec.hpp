@@ -70,7 +70,7 @@ constexpr SdoAnswer sdo_answer(const Frame& frame) noexcept {
   return static_cast<SdoAnswer>(frame.data[0] >> 5);
 }
 
-/// Index and sub-index in an initiate frame or an abort.
+/// Returns the index and sub-index in an initiate frame or an abort.
 constexpr ObjectKey sdo_object(const Frame& frame) noexcept {
   return {load_le<std::uint16_t>(std::span{frame.data}.subspan(1)), frame.data[3]};
 }
@@ -84,7 +84,7 @@ struct SdoInitiate {
   std::optional<std::uint32_t> size{};  ///< std::nullopt if the size is not indicated; bytes
   std::array<std::uint8_t, 4> data{};   ///< only valid in expedited transfers
 
-  /// The expedited data. These are all four bytes if the size is not indicated.
+  /// Returns the expedited data. These are all four bytes if the size is not indicated.
   constexpr std::span<const std::uint8_t> payload() const noexcept {
     return std::span{data}.first(std::min<std::size_t>(size.value_or(4), 4));
   }

@@ -13,14 +13,14 @@ class WireTime {
   explicit WireTime(std::uint32_t bitrate) noexcept
       : bit_{1'000'000'000 / (bitrate == 0 ? 1'000'000 : bitrate)} {}
 
-  /// Bits of a frame with the most stuff bits, including the interframe space. CiA 301 does not
-  /// specify this; ISO 11898-1 stuffs after five equal bits.
+  /// Returns the number of bits of a frame with the most stuff bits, including the interframe
+  /// space. CiA 301 does not specify this; ISO 11898-1 stuffs after five equal bits.
   static constexpr std::int64_t worst_bits(const Frame& frame) noexcept {
     const std::int64_t data = data_bits(frame);
     return frame.id.is_extended() ? 67 + data + (54 + data - 1) / 4
                                   : 47 + data + (34 + data - 1) / 4;
   }
-  /// Bits of a frame with the stuff bits of random data.
+  /// Returns the number of bits of a frame with the stuff bits of random data.
   static constexpr std::int64_t mean_bits(const Frame& frame) noexcept {
     const std::int64_t data = data_bits(frame);
     return (frame.id.is_extended() ? 69 : 48) + data + data / 32;
@@ -36,7 +36,7 @@ class WireTime {
     return bit_ * bits;
   }
   std::int64_t bits_in(Time time) const noexcept { return time / bit_; }
-  /// Wire time of one request of eight bytes and its answer.
+  /// Returns the wire time of one request of eight bytes and its answer.
   Time worst_dialogue() const noexcept { return bit_ * (2 * 135); }
 
  private:

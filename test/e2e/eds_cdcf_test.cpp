@@ -82,7 +82,8 @@ TEST_F(EdsCdcf, TheDifferenceOfAUtf16FileIsDeclaredToBeForTheEyeOnly) {
   const auto mended = (folder_ / "mended.eds").string();
 
   const Ended shown = takt({"fix", file});
-  EXPECT_THAT(shown.output, HasSubstr("can't be applied with patch; -o writes the corrected file\n"));
+  EXPECT_THAT(shown.output,
+              HasSubstr("can't be applied with patch; -o writes the corrected file\n"));
   const Ended written = takt({"fix", file, "-o", mended});
   EXPECT_THAT(written.output, HasSubstr("can't be applied with patch; the output is complete\n"));
   EXPECT_THAT(read_file(mended), HasSubstr("AccessType=rw\nDefaultValue=8\n"));

@@ -101,10 +101,11 @@ int run(const DoctorOptions& options) {
 
 void add_doctor(CLI::App& app, int& exit_code) {
   auto [verb, options] = add_command<doctor::DoctorOptions>(
-      app, exit_code, "doctor", "checks whether this machine is ready for a bus, and shows corrections",
-      doctor::run);
+      app, exit_code, "doctor",
+      "checks whether this machine is ready for a bus, and shows corrections", doctor::run);
   verb.footer(
-      "Each line is good, a hint or BAD (exit code 1). The command below a line corrects the fault;\n"
+      "Each line is good, a hint or BAD (exit code 1). The command below a line corrects the "
+      "fault;\n"
       "run that command as root. takt doctor itself changes nothing.\n"
       "Examples:\n"
       "  takt doctor\n"

@@ -22,7 +22,7 @@ class OutcomeLedger {
   void keep_worst_tpdos();
   /// EMCYs from this call on count as sent after the end of the master.
   void mark_end_of_master() noexcept { emcy_before_ = wire_.emcy_frames(); }
-  /// To be called once, at the end of the run. `stopped` is true if the ordered stop was completed.
+  /// Call this once, at the end of the run. `stopped` is true if the ordered stop was completed.
   SimulationOutcome finish(sim::World& world, const StatusSnapshot& snapshot, bool stopped);
 
  private:

@@ -39,7 +39,8 @@ class WireStatistics final : public sim::BusObserver {
   const SyncOnWire& sync() const noexcept { return sync_; }
   const PdoOnWire& tpdo(std::size_t row) const noexcept { return tpdos_[row]; }
   const PdoOnWire& rpdo(std::size_t row) const noexcept { return rpdos_[row]; }
-  /// Number of bits in the busiest cycle between two SYNCs, without gaps. 0 without SYNC.
+  /// Returns the number of bits in the busiest cycle between two SYNCs, without gaps. 0 without
+  /// SYNC.
   std::uint64_t worst_cycle_bits() const noexcept { return worst_bits_; }
   std::uint64_t sdo_frames() const noexcept { return sdo_frames_; }
   std::uint64_t emcy_frames() const noexcept { return emcy_frames_; }

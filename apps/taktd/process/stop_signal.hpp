@@ -28,7 +28,7 @@ class StopSignal {
   /// From this call on, the signals interrupt the calling thread at any point. Threads that it
   /// starts inherit the mask.
   void let_through() const noexcept;
-  /// The signal mask for ppoll, which lets the signals of this class through.
+  /// Returns the signal mask for ppoll, which lets the signals of this class through.
   const sigset_t* wait_mask() const noexcept { return &wait_mask_; }
 
  private:

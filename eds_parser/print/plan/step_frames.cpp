@@ -70,11 +70,11 @@ class Frames {
                        object.index >> 8, object.sub);
   }
 
-  /// The request that initiates an upload. CiA 301, 7.2.4.3.5.
+  /// Returns the request that initiates an upload. CiA 301, 7.2.4.3.5.
   std::string upload(ObjectKey object) const { return begin(0x40, object) + "00000000"; }
 
-  /// The request that initiates a download: expedited up to 4 bytes, else with its size, segmented
-  /// or by block. CiA 301, 7.2.4.3.3 and 7.2.4.3.9.
+  /// Returns the request that initiates a download: expedited up to 4 bytes, else with its size,
+  /// segmented or by block. CiA 301, 7.2.4.3.3 and 7.2.4.3.9.
   std::string download(const BootStep& step) const {
     const std::size_t size = step.value.size();
     const bool expedited = size >= 1 && size <= 4;
@@ -97,8 +97,8 @@ class Frames {
     if (switched_.contains(object)) cob_id_ = object;
   }
 
-  /// The written value depends on the value that was read last. An earlier step may have read it
-  /// already.
+  /// The written value depends on the value that was read last. An earlier step may have
+  /// read it already.
   StepFrames after_reading(ObjectKey object, std::string write) {
     if (cob_id_ == object) return {.first = std::move(write)};
     cob_id_ = object;

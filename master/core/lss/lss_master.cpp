@@ -7,7 +7,7 @@
 namespace takt {
 namespace {
 
-/// The command specifier of the answers to a service; std::nullopt if it has no answer.
+/// Returns the command specifier of the answers to a service; std::nullopt if it has no answer.
 std::optional<lss::Service> answer_of(LssOp op) noexcept {
   switch (op) {
     case LssOp::switch_global:

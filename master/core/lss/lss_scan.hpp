@@ -33,12 +33,12 @@ class LssFastScan {
   LssFastScan(const LssAddress& known, const LssAddress& mask) noexcept
       : known_{known}, mask_{mask} {}
 
-  /// The next question, valid while the scan is running.
+  /// Returns the next question, valid while the scan is running.
   lss::FastScan question() const noexcept { return question_; }
   /// Tells the scan whether a device has answered the question.
   void on_reaction(bool answered) noexcept;
   LssScanState state() const noexcept { return state_; }
-  /// The address that was found, valid in LssScanState::found.
+  /// Returns the address that was found, valid in LssScanState::found.
   const LssAddress& address() const noexcept { return address_; }
   /// Returns true if a device may be in configuration state because it has received the last
   /// question, even if its answer was lost.
@@ -93,11 +93,11 @@ class LssSlowScan {
   explicit LssSlowScan(const std::array<std::uint32_t, 6>& ranges) noexcept
       : left_{ranges}, question_{ranges} {}
 
-  /// The six numbers of the next question, valid while the scan is running.
+  /// Returns the six numbers of the next question, valid while the scan is running.
   const std::array<std::uint32_t, 6>& question() const noexcept { return question_; }
   void on_reaction(bool answered) noexcept;
   LssScanState state() const noexcept { return state_; }
-  /// The address that was found, valid in LssScanState::found.
+  /// Returns the address that was found, valid in LssScanState::found.
   LssAddress address() const noexcept { return {left_[0], left_[1], left_[2], left_[4]}; }
 
  private:
@@ -106,7 +106,7 @@ class LssSlowScan {
   enum class Asks : std::uint8_t { everything, lower_half, address };
 
   void ask() noexcept;
-  /// Index of the lowest number of the range that is halved.
+  /// Returns the index of the lowest number of the range that is halved.
   std::size_t halved() const noexcept { return left_[2] != left_[3] ? 2 : 4; }
 
   std::array<std::uint32_t, 6> left_{};  // the ranges that still contain the device

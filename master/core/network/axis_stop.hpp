@@ -188,14 +188,14 @@ class AxisStop {
   /// Returns true if the axis was seen at standstill and disabled, and its newest statusword still
   /// shows that it is disabled.
   bool rests() const noexcept { return state_ == AxisState::stopped && !powered_; }
-  /// The controlword that this axis has to receive now.
+  /// Returns the controlword that this axis has to receive now.
   std::int64_t controlword() const noexcept;
-  /// Time since the newest sample, or since the stop began.
+  /// Returns the time since the newest sample, or since the stop began.
   Time silence(Time now) const noexcept { return now - answered_; }
-  /// The velocity when the axis was disabled, else the newest one.
+  /// Returns the velocity when the axis was disabled, else the newest one.
   std::int64_t velocity() const noexcept;
   bool by_position() const noexcept { return standstill_.by_position(); }
-  /// The abort code of AxisVerdict::refused.
+  /// Returns the abort code of AxisVerdict::refused.
   std::uint32_t refusal() const noexcept { return refusal_; }
   /// Returns the result for this axis. `exchanging` states whether the node exchanges PDOs.
   AxisVerdict verdict(Time now, bool exchanging) const noexcept;

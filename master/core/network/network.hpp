@@ -64,7 +64,8 @@ class Network {
   /// Handles time-outs, new SDO requests, the heartbeat of the master, NMT and LSS. Adds at most
   /// `service_frames` frames, or fewer if `out` has less room.
   void on_time(Time now, Outbox& out) noexcept;
-  /// The time at which on_time() has to be called. It is in the past while frames wait to be sent.
+  /// Returns the time at which on_time() has to be called. It is in the past while frames wait to
+  /// be sent.
   Time deadline() const noexcept;
 
   /// Accepts a request. Returns false if the queue is full; then the caller answers the request.
@@ -80,10 +81,10 @@ class Network {
   void withdraw(std::uint64_t id) noexcept;
   /// Takes the next event. Returns false if there is none.
   bool take(Event& event) noexcept { return events_.pop(event); }
-  /// Number of events that were lost because the queue was full.
+  /// Returns the number of events that were lost because the queue was full.
   std::uint64_t events_lost() const noexcept { return events_.lost(); }
 
-  /// The status of all nodes, in the order of plan.nodes.
+  /// Returns the status of all nodes, in the order of plan.nodes.
   std::span<const NodeStatus> nodes() const noexcept { return statuses_; }
   /// Returns true if the node is booted and, as far as is known, OPERATIONAL.
   bool exchanges_pdos(std::size_t node_index) const noexcept {
@@ -100,7 +101,7 @@ class Network {
     return sessions_[node_index].boot_refused();
   }
 
-  /// The limits and quick stop option codes that the newest boot of this node has read.
+  /// Returns the limits and quick stop option codes that the newest boot of this node has read.
   std::span<const LimitReading> limits_read(std::size_t node_index) const noexcept;
 
   /// Returns true if the loss of some node of the plan stops drives.
@@ -111,11 +112,11 @@ class Network {
   /// Returns true if a block transfer is running, so that a device may send several frames after
   /// one request.
   bool streams() const noexcept { return streaming_ != 0; }
-  /// Number of sub-blocks of block uploads that were requested, including requests that are still
-  /// to be sent.
+  /// Returns the number of sub-blocks of block uploads that were requested, including requests that
+  /// are still to be sent.
   std::size_t awaited_sub_blocks() const noexcept;
-  /// Number of SDO answers that are outstanding, including answers to frames that are still to be
-  /// sent.
+  /// Returns the number of SDO answers that are outstanding, including answers to frames that are
+  /// still to be sent.
   std::size_t awaited_answers() const noexcept { return awaited_; }
 
   /// Returns true once if the master has left the NMT state STOPPED or was reset, so that the
@@ -135,8 +136,8 @@ class Network {
   /// NMT part of the ordered stop: answers all pending requests and sends the last command to the
   /// nodes. Nodes with `keep_alive` go to PRE-OPERATIONAL in any case.
   void begin_stop(Time now, NmtCommand last = NmtCommand::enter_preoperational) noexcept;
-  /// The node whose NMT stop or enter pre-operational command waits for axes_at_rest(). 0 stands
-  /// for a command to all nodes, or for an NMT stop of the master itself, which ends SYNC.
+  /// Returns the node whose NMT stop or enter pre-operational command waits for axes_at_rest(). 0
+  /// stands for a command to all nodes, or for an NMT stop of the master itself, which ends SYNC.
   /// std::nullopt means that no command waits.
   std::optional<std::uint8_t> awaits_axes() const noexcept { return awaits_axes_; }
   /// Permits the waiting command, because its axes were stopped or their time is over.
@@ -155,7 +156,7 @@ class Network {
   /// Gives up all boots, because an ordered stop begins. From now on, the master resets, boots and
   /// starts no node by itself, and takes no NMT command by its dictionary.
   void give_up_boots(Time now) noexcept;
-  /// The NMT state of the master itself.
+  /// Returns the NMT state of the master itself.
   NmtState own_state() const noexcept { return own_state_; }
   /// Returns true if all frames of the stop have been passed to the outbox.
   bool stopped() const noexcept;

@@ -22,7 +22,7 @@ class NetworkStart {
   /// Returns true once, when the boot time is over and mandatory nodes are missing.
   bool late(Time now) noexcept;
   Time deadline() const noexcept { return ready_ ? never : late_at_; }
-  /// Number of mandatory nodes that are not ready.
+  /// Returns the number of mandatory nodes that are not ready.
   std::size_t missing(std::span<const NodeStatus> nodes) const noexcept;
   /// Returns true if the readiness of the network is worth an event, because nodes are mandatory or
   /// are started together.

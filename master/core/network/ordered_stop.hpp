@@ -83,7 +83,7 @@ class OrderedStop {
   void call_off() noexcept { stage_ = StopStage::running; }
 
   StopStage stage() const noexcept { return stage_; }
-  /// The result so far.
+  /// Returns the result so far.
   StopResult result() const noexcept;
   std::span<const StopAxis> axes() const noexcept { return axes_; }
   const AxisStop& axis(std::size_t index) const noexcept { return stops_[index]; }
@@ -91,7 +91,7 @@ class OrderedStop {
   bool reaches(std::size_t axis) const noexcept {
     return node_index_ == every_node || axes_[axis].node_index == node_index_;
   }
-  /// The node whose axes are stopped, or every_node.
+  /// Returns the node whose axes are stopped, or every_node.
   std::uint8_t target() const noexcept { return node_index_; }
   /// Returns true if every axis that is to be stopped was disabled when the stop began, or before.
   bool nothing_to_stop() const noexcept;

@@ -35,11 +35,11 @@ class StopRequests {
   /// Passes the values that were read to `stop`. Returns false if the device did not accept a write
   /// that disarms it; see refusing_node() and refused_object().
   bool take(const Reply& reply, Time now, OrderedStop& stop) noexcept;
-  /// Node-ID of the newest take() that returned false.
+  /// Returns the node-ID of the newest take() that returned false.
   std::uint8_t refusing_node() const noexcept { return refused_.node; }
-  /// Object of the newest take() that returned false.
+  /// Returns the object of the newest take() that returned false.
   ObjectKey refused_object() const noexcept { return refused_.object; }
-  /// Event::value for EventKind::still_armed.
+  /// Returns the `Event::value` for EventKind::still_armed.
   std::int64_t refusal() const noexcept { return refusal_; }
 
   /// A statusword that was read by SDO.
@@ -49,7 +49,7 @@ class StopRequests {
   };
   /// Returns the statusword in a reply, or std::nullopt if the reply carries none.
   static std::optional<AxisWord> statusword_of(const Reply& reply) noexcept;
-  /// Index of the controlword (0x6040 of the first axis) of this axis.
+  /// Returns the index of the controlword (0x6040 of the first axis) of this axis.
   static constexpr std::uint16_t controlword_of(const StopAxis& axis) noexcept {
     return static_cast<std::uint16_t>(0x6040 + axis.number * axis_step);
   }

@@ -32,13 +32,13 @@ class BootRetries {
   /// Sets the pause to its minimum again, because the node shows signs of life or an application
   /// has reset it.
   void shorten_pause() noexcept { failed_boots_ = 0; }
-  /// Counts a boot-up message. Returns true if the node restarts again and again, so that it has to
-  /// wait for its next regular boot.
+  /// Counts a boot-up message. Returns true if the node restarts again and again, so
+  /// that it has to wait for its next regular boot.
   bool boots_up_repeatedly(Time now, BootState state) noexcept;
 
-  /// The newest failure of a boot.
+  /// Returns the newest failure of a boot.
   const BootFailure& last_failure() const noexcept { return last_failure_; }
-  /// Number of failures in a row by the same cause.
+  /// Returns the number of failures in a row by the same cause.
   std::uint32_t same_failures() const noexcept { return same_failures_; }
   /// Returns true if the failure with this number is reported: the first, second, fourth, eighth
   /// ... one, so that an absent node does not fill the log.

@@ -81,14 +81,14 @@ class BootRunner {
   void on_heartbeat(NmtState state) noexcept;
   /// Takes the results of the client and runs the plan until a step has to wait.
   void on_time(Time now, SdoClient& client) noexcept;
-  /// The deadline of the waits of the runner; the client has its own deadline.
+  /// Returns the deadline of the waits of the runner; the client has its own deadline.
   Time deadline() const noexcept;
   /// Extends all deadlines by the time for which the master itself did not run.
   void extend_deadlines(Time away) noexcept;
 
-  /// The NMT command that waits to be sent to the node; call nmt_sent() after it was sent. Besides
-  /// the commands of the plan, the runner sends PRE-OPERATIONAL before a write, unless the node is
-  /// known to be in that state.
+  /// Returns the NMT command that waits to be sent to the node; call nmt_sent() after it was sent.
+  /// Besides the commands of the plan, the runner sends PRE-OPERATIONAL before a write, unless the
+  /// node is known to be in that state.
   std::optional<NmtCommand> nmt_to_send() const noexcept;
   /// Notes that the command of nmt_to_send() was sent.
   void nmt_sent(SdoClient& client) noexcept;
@@ -97,7 +97,7 @@ class BootRunner {
   bool probing() const noexcept {
     return step_ < plan_->steps.size() && current().action == BootAction::probe;
   }
-  /// The current step, as an index into BootPlan::steps.
+  /// Returns the current step, as an index into BootPlan::steps.
   std::uint16_t step() const noexcept {
     return course_ == BootCourse::probing_silent_node ? static_cast<std::uint16_t>(after_reset_)
                                                       : step_;
@@ -113,21 +113,21 @@ class BootRunner {
   /// Returns true if the boot has read nothing but the identity so far (From::identity). The value
   /// stays true if the identity was wrong.
   bool identifies() const noexcept { return course_ == BootCourse::identifying; }
-  /// Number of objects that differ from the plan in a node that was left OPERATIONAL.
+  /// Returns the number of objects that differ from the plan in a node that was left OPERATIONAL.
   std::uint16_t left_alone() const noexcept { return left_alone_; }
-  /// The first object that left_alone() counts.
+  /// Returns the first object that left_alone() counts.
   ObjectKey first_left_alone() const noexcept { return first_left_alone_; }
-  /// Serial number of the device, if the plan reads it.
+  /// Returns the serial number of the device, if the plan reads it.
   std::optional<std::uint32_t> serial_number() const noexcept { return serial_number_; }
-  /// Firmware version of the device, if the plan reads it.
+  /// Returns the firmware version of the device, if the plan reads it.
   std::optional<Firmware> firmware() const noexcept { return firmware_; }
-  /// The limits and quick stop option codes that this boot has read.
+  /// Returns the limits and quick stop option codes that this boot has read.
   std::span<const LimitReading> limits() const noexcept { return limits_.all(); }
-  /// Size in bytes of the program that is being downloaded; 0 means no download.
+  /// Returns the size in bytes of the program that is being downloaded; 0 means no download.
   std::size_t program_size() const noexcept;
   /// Returns true if the plan has reached the step from which the node is guarded.
   bool guards() const noexcept { return guarding_ == Guarding::begun; }
-  /// The record of the failure, valid if failed().
+  /// Returns the record of the failure, valid if failed().
   const BootFailure& failure() const noexcept { return failure_; }
 
  private:

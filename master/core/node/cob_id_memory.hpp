@@ -22,9 +22,9 @@ class CobIdMemory {
   bool knows(ObjectKey object) const noexcept { return object_ == object; }
 
   std::uint32_t value() const noexcept { return value_; }
-  /// The known value with bit 31 set, which switches the PDO off.
+  /// Returns the known value with bit 31 set, which switches the PDO off.
   std::uint32_t disabled() const noexcept { return value_ | pdo_invalid; }
-  /// The `wanted` COB-ID with the bit 30 of the known value.
+  /// Returns the `wanted` COB-ID with the bit 30 of the known value.
   std::uint32_t enabled(std::uint32_t wanted) const noexcept {
     return (wanted & ~no_rtr) | (value_ & no_rtr);
   }

@@ -43,7 +43,7 @@ class KnownNmtState {
   /// Notes that the boot has taken the node out of OPERATIONAL.
   void note_taken_out() noexcept { effect_ = Effect::taken_out; }
 
-  /// The newest state that the node has reported in this boot.
+  /// Returns the newest state that the node has reported in this boot.
   NmtState reported() const noexcept { return reported_; }
   bool heartbeat_seen() const noexcept { return heartbeat_seen_; }
   bool bootup_seen() const noexcept { return bootup_seen_; }

@@ -27,7 +27,7 @@ class NodeGuard {
   /// Takes a guarding answer. Returns false if the toggle bit repeats; such an answer counts as not
   /// received.
   bool on_answer(bool toggle, Time now) noexcept;
-  /// Number of answers in a row whose toggle bit repeats.
+  /// Returns the number of answers in a row whose toggle bit repeats.
   std::uint32_t repeated() const noexcept { return repeated_; }
 
   /// Extends the life time by the time for which the master itself did not run.

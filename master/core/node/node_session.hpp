@@ -107,7 +107,7 @@ class NodeSession {
   /// not run.
   void extend_deadlines(Time away) noexcept;
 
-  /// The limits and quick stop option codes that the newest boot has read.
+  /// Returns the limits and quick stop option codes that the newest boot has read.
   std::span<const LimitReading> limits_read() const noexcept { return runner_.limits(); }
   /// Returns true if the boot has sent NMT start and waits for the confirmation.
   bool starts() const noexcept { return booting() && runner_.nmt().started(); }

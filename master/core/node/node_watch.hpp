@@ -40,10 +40,10 @@ class NodeWatch {
   /// false if the node was not silent.
   bool end_silence() noexcept { return std::exchange(silent_, false); }
 
-  /// Counts an EMCY. Returns true if it is to be reported; at most ten EMCYs of a node are reported
-  /// in a second.
+  /// Counts an EMCY. Returns true if it is to be reported; at most ten EMCYs of a node
+  /// are reported in a second.
   bool on_emcy(const Emcy& emcy, Time now, NodeStatus& status) noexcept;
-  /// Number of EMCYs that were not reported since the last call.
+  /// Returns the number of EMCYs that were not reported since the last call.
   std::uint32_t take_unreported_emcys() noexcept { return std::exchange(unreported_emcys_, 0U); }
 
   template <class Archive>

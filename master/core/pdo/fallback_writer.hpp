@@ -24,9 +24,9 @@ class FallbackWriter {
 
   /// Returns true if a write waits to be submitted.
   bool waits() const noexcept { return next_ < values_.size(); }
-  /// Node index of the write that waits.
+  /// Returns the node index of the write that waits.
   std::size_t node_index() const noexcept { return values_[next_].node_index; }
-  /// The request of the write that waits.
+  /// Returns the request of the write that waits.
   const Request& request() noexcept;
   /// Notes that the network has accepted request().
   void submitted() noexcept;

@@ -125,9 +125,9 @@ std::uint16_t PdoInputs::row_of(const Frame& frame) const noexcept {
   return rows_[position].multiplexed ? find_object(position, frame) : position;
 }
 
-/// Counts a frame of wrong length, and reports it once until a frame of the right length comes.
-/// Returns true if the frame can be used. A frame that is too short is ignored completely; of a
-/// frame that is too long, the first bytes are used.
+/// Counts a frame of wrong length, and reports it once until a frame of the right
+/// length comes. Returns true if the frame can be used. A frame that is too short is ignored
+/// completely; of a frame that is too long, the first bytes are used.
 bool PdoInputs::use_odd_length(std::size_t position, const StampedFrame& stamped) noexcept {
   Row& row = rows_[position];
   const bool longer = stamped.frame.length > row.length;
@@ -141,8 +141,9 @@ bool PdoInputs::use_odd_length(std::size_t position, const StampedFrame& stamped
   return longer;
 }
 
-/// Counts a synchronous frame that has come after its window. The first such frame is reported,
-/// unless the TPDO already counts as missing. Returns false if the frame must not be used.
+/// Counts a synchronous frame that has come after its window. The first such frame is
+/// reported, unless the TPDO already counts as missing. Returns false if the frame must not be
+/// used.
 bool PdoInputs::use_late(std::size_t position, const StampedFrame& stamped) noexcept {
   Row& row = rows_[position];
   ++row.late;

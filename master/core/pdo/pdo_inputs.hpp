@@ -43,9 +43,9 @@ class PdoInputs {
 
   /// Returns true if no TPDO that this beat waits for is outstanding.
   bool complete() const noexcept { return outstanding_ == 0; }
-  /// Number of TPDOs for which this beat waits or has waited.
+  /// Returns the number of TPDOs for which this beat waits or has waited.
   std::uint32_t expected() const noexcept { return expected_; }
-  /// Arrival of the newest expected TPDO of this beat.
+  /// Returns the arrival of the newest expected TPDO of this beat.
   Time last_arrival() const noexcept { return last_arrival_; }
 
   /// Ends the window of this beat; TPDOs that have not come are missing. Returns their number.
@@ -65,7 +65,8 @@ class PdoInputs {
   /// Status of a TPDO; `row` is the index into PdoTable::tpdos.
   PdoStatus status(std::size_t row) const noexcept;
   static constexpr std::uint16_t no_row = PdoTable::no_row;
-  /// The row of a received frame; for an MPDO, the row of its object. no_row if there is none.
+  /// Returns the row of a received frame; for an MPDO, the row of its object. no_row if there is
+  /// none.
   std::uint16_t row_of(const Frame& frame) const noexcept;
 
   template <class Archive>

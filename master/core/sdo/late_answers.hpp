@@ -42,8 +42,8 @@ class LateAnswers {
     return true;
   }
 
-  /// The longest time from a request that had timed out to its answer; 0 means that no such answer
-  /// has come.
+  /// Returns the longest time from a request that had timed out to its answer; 0 means that no such
+  /// answer has come.
   Time longest() const noexcept { return longest_; }
   /// Notes that the server was reset and will not answer the earlier requests.
   void forget_requests() noexcept { count_ = 0; }
@@ -71,7 +71,7 @@ class LateAnswers {
     }
   };
 
-  /// The first request from `begin` that the frame answers; count_ if there is none.
+  /// Returns the first request from `begin` that the frame answers; count_ if there is none.
   std::size_t find(const Frame& frame, std::size_t begin) const noexcept {
     while (begin < count_ && !open_[begin].request.is_answered_by(frame)) ++begin;
     return begin;

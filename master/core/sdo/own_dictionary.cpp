@@ -41,7 +41,7 @@ Value count_of(Time time) noexcept {
   return Value::number(static_cast<T>(std::chrono::duration_cast<Unit>(time).count()));
 }
 
-/// Value of 0x1F80.
+/// Returns the value of 0x1F80.
 std::uint32_t start_up_of(const BusPlan& plan) noexcept {
   using namespace start_up;
   std::uint32_t bits = is_master;
@@ -84,7 +84,7 @@ Value OwnDictionary::read_communication(ObjectKey key) const noexcept {
   return known && key.sub != 0 ? Value::refused(abort_code::no_sub_index) : value;
 }
 
-/// Value of an object that has only sub-index 0.
+/// Returns the value of an object that has only sub-index 0.
 Value OwnDictionary::read_variable(std::uint16_t index) const noexcept {
   const CyclePlan& cycle = plan_.cycle;
   switch (index) {
@@ -117,7 +117,7 @@ Value OwnDictionary::read_variable(std::uint16_t index) const noexcept {
   }
 }
 
-/// Value of 0x1016: the heartbeat consumers, in the order of the nodes.
+/// Returns the value of 0x1016: the heartbeat consumers, in the order of the nodes.
 Value OwnDictionary::read_consumers(std::uint8_t sub) const noexcept {
   const std::size_t count = plan_.nodes.size();
   if (sub == 0) return Value::number(static_cast<std::uint8_t>(count));

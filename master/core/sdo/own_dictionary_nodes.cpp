@@ -31,7 +31,7 @@ constexpr std::uint16_t node_states = 0x1F82;  // NMT state, NMT request
 constexpr ObjectKey software{0x1F56, 1};
 constexpr std::uint16_t restore_defaults = 0x1011;
 
-/// Value of 0x1F82: 0 means unknown, 1 missing; other values are as in the heartbeat.
+/// Returns the value of 0x1F82: 0 means unknown, 1 missing; other values are as in the heartbeat.
 std::uint32_t state_of(const NodePlan&, const NodeStatus& status) noexcept {
   if (status.boot == BootState::lost || status.boot == BootState::failed) return 1;
   return status.nmt == NmtState::unknown ? 0U : std::to_underlying(status.nmt);
@@ -48,7 +48,7 @@ constexpr NmtRequest nmt_requests[] = {{4, NmtCommand::stop},
                                        {7, NmtCommand::reset_communication},
                                        {127, NmtCommand::enter_preoperational}};
 
-/// Value of 0x1F8A for a node; 0 means that nothing is restored.
+/// Returns the value of 0x1F8A for a node; 0 means that nothing is restored.
 std::uint32_t restored_sub(const NodePlan& node, const NodeStatus&) noexcept {
   const auto restores = [](const BootStep& step) {
     return step.action == BootAction::write && step.object.index == restore_defaults;
@@ -57,7 +57,7 @@ std::uint32_t restored_sub(const NodePlan& node, const NodeStatus&) noexcept {
   return found == node.boot_plan.steps.end() ? 0U : found->object.sub;
 }
 
-/// The value that the boot of a node expects in an object; 0 means none.
+/// Returns the value that the boot of a node expects in an object; 0 means none.
 std::uint32_t expected(const NodePlan& node, ObjectKey object) noexcept {
   for (const BootStep& step : node.boot_plan.steps) {
     const bool looks = step.action == BootAction::expect || step.action == BootAction::compare;
@@ -66,7 +66,7 @@ std::uint32_t expected(const NodePlan& node, ObjectKey object) noexcept {
   return 0;
 }
 
-/// Value of 0x1F81 for a node.
+/// Returns the value of 0x1F81 for a node.
 std::uint32_t assignment_of(const NodePlan& node, const NodeStatus& status) noexcept {
   using namespace assigned;
   const auto has = [&](BootAction action) {

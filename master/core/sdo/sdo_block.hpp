@@ -12,7 +12,8 @@ namespace takt {
 /// not occupy the channel forever.
 inline constexpr std::uint8_t most_stalled_blocks = 16;
 
-/// The number of segments that a device may send in one sub-block, 1..127; `bitrate` is in bit/s.
+/// Returns the number of segments that a device may send in one sub-block, 1..127; `bitrate` is in
+/// bit/s.
 constexpr std::uint8_t sub_block_segments(std::uint32_t bitrate) noexcept {
   // Bits of a segment in the worst case, including stuff bits.
   constexpr std::int64_t worst_bits = 135;

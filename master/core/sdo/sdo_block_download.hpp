@@ -25,10 +25,10 @@ class SdoBlockDownload {
  public:
   /// Begins a download. `value` must live until its end.
   void begin(SdoChannel channel, ObjectKey object, std::span<const std::byte> value) noexcept;
-  /// The value of begin().
+  /// Returns the value of begin().
   std::span<const std::byte> value() const noexcept { return value_; }
 
-  /// The frame to send now, or std::nullopt if the client waits for the server.
+  /// Returns the frame to send now, or std::nullopt if the client waits for the server.
   std::optional<Frame> to_send() const noexcept;
   /// Notes that the frame of to_send() was sent.
   void sent() noexcept;
@@ -40,7 +40,7 @@ class SdoBlockDownload {
 
   /// Returns true if the server has not accepted the transfer yet.
   bool initiates() const noexcept { return state_ == State::initiate; }
-  /// Bytes that the server has confirmed.
+  /// Returns the number of bytes that the server has confirmed.
   std::size_t moved() const noexcept { return confirmed_; }
 
  private:

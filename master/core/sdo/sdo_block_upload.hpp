@@ -38,10 +38,10 @@ class SdoBlockUpload {
   };
   /// Begins an upload. `buffer` must live until its end.
   void begin(const Begin& begin, std::span<std::byte> buffer) noexcept;
-  /// The buffer of begin().
+  /// Returns the buffer of begin().
   std::span<std::byte> buffer() const noexcept { return buffer_; }
 
-  /// The frame to send now, or std::nullopt if the client waits for the server.
+  /// Returns the frame to send now, or std::nullopt if the client waits for the server.
   std::optional<Frame> to_send() const noexcept;
   /// Notes that the frame of to_send() was sent.
   void sent() noexcept { to_send_ = Next::nothing; }
@@ -69,10 +69,10 @@ class SdoBlockUpload {
 
   /// Returns true if the server has not accepted the transfer yet.
   bool initiates() const noexcept { return state_ == State::initiate; }
-  /// Number of bytes that were received in sequence. At the end, the number is exact; before, it
-  /// does not include the newest segment.
+  /// Returns the number of bytes that were received in sequence. At the end, the number is exact;
+  /// before, it does not include the newest segment.
   std::size_t moved() const noexcept { return done_; }
-  /// Size that the server has announced, or std::nullopt.
+  /// Returns the size that the server has announced, or std::nullopt.
   std::optional<std::uint32_t> announced() const noexcept { return announced_; }
 
  private:

@@ -106,9 +106,9 @@ class SdoClient {
   };
   /// Reports once that the device does not support block transfer.
   std::optional<NoBlock> take_no_block() noexcept;
-  /// Number of transferred bytes of the running transfer.
+  /// Returns the number of transferred bytes of the running transfer.
   std::size_t progress() const noexcept;
-  /// Size of the running upload that the device has announced; 0 means none.
+  /// Returns the size of the running upload that the device has announced; 0 means none.
   std::size_t announced() const noexcept;
 
   /// Extends the time-out by the time for which the master itself did not run.
@@ -126,16 +126,16 @@ class SdoClient {
   /// Returns true if a frame was sent, and the server has not answered it.
   bool awaits_answer() const noexcept { return deadline_ != never && !next_frame(); }
   const SdoChannel& channel() const noexcept { return channel_; }
-  /// The newest frames of the newest transfer.
+  /// Returns the newest frames of the newest transfer.
   const SdoTrace& trace() const noexcept { return trace_; }
   /// Returns true if a frame of the newest transfer was sent.
   bool begun() const noexcept { return trace_.sent.length != 0; }
   /// Returns the time at which the newest frame of the server came, of whatever kind it was.
   Time heard_at() const noexcept { return heard_at_; }
-  /// The object of an answer that did not fit the request; std::nullopt if there was none.
+  /// Returns the object of an answer that did not fit the request; std::nullopt if there was none.
   std::optional<ObjectKey> answered() const noexcept { return answered_; }
-  /// The longest time until the answer to a request that had timed out; 0 means that no such answer
-  /// came.
+  /// Returns the longest time until the answer to a request that had timed out; 0 means that no
+  /// such answer came.
   Time lateness() const noexcept { return late_.longest(); }
   void forget_lateness() noexcept { late_.reset(); }
 

@@ -29,19 +29,19 @@ class SdoDownload {
         value_{value},
         to_send_{download_request(channel.request, sdo_initiate(object, value))} {}
 
-  /// The frame to send now, or std::nullopt if the client waits for the server.
+  /// Returns the frame to send now, or std::nullopt if the client waits for the server.
   std::optional<Frame> to_send() const noexcept { return to_send_; }
   /// Notes that the frame of to_send() was sent.
   void sent() noexcept { to_send_.reset(); }
 
-  /// The request that was sent last.
+  /// Returns the request that was sent last.
   SdoQuestion question() const noexcept;
   /// Returns true if no data were transferred yet.
   bool initiates() const noexcept { return state_ == State::initiate; }
   /// Takes a frame that fits question().
   SdoStep on_answer(const Frame& frame) noexcept;
 
-  /// Number of bytes that were sent, including the segment that is to be sent next.
+  /// Returns the number of bytes that were sent, including the segment that is to be sent next.
   std::size_t moved() const noexcept { return moved_; }
 
  private:

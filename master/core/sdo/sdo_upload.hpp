@@ -29,12 +29,12 @@ class SdoUpload {
         buffer_{buffer},
         to_send_{upload_request(channel.request, object)} {}
 
-  /// The frame to send now, or std::nullopt if the client waits for the server.
+  /// Returns the frame to send now, or std::nullopt if the client waits for the server.
   std::optional<Frame> to_send() const noexcept { return to_send_; }
   /// Notes that the frame of to_send() was sent.
   void sent() noexcept { to_send_.reset(); }
 
-  /// The request that was sent last.
+  /// Returns the request that was sent last.
   SdoQuestion question() const noexcept;
   /// Returns true if no data were transferred yet.
   bool initiates() const noexcept { return state_ == State::initiate; }
@@ -43,9 +43,9 @@ class SdoUpload {
     return initiates() ? on_initiate(frame) : on_segment(frame);
   }
 
-  /// Number of bytes that were received.
+  /// Returns the number of bytes that were received.
   std::size_t moved() const noexcept { return moved_; }
-  /// Size that the server has announced, or std::nullopt.
+  /// Returns the size that the server has announced, or std::nullopt.
   std::optional<std::uint32_t> announced() const noexcept { return announced_; }
 
  private:

@@ -92,7 +92,7 @@ FirstLine judge_first_line(std::string_view line);
 /// Returns false if `beginning`, the start of a line, cannot become a command or a comment.
 bool may_become_command(std::string_view beginning) noexcept;
 
-/// The answer to `help`.
+/// Returns the answer to `help`.
 std::string_view ascii_help() noexcept;
 
 }  // namespace takt

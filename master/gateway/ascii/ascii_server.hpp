@@ -60,7 +60,7 @@ class AsciiServer {
   /// Accepts clients, takes their lines and sends as much as possible.
   void serve();
   void watch(std::vector<pollfd>& descriptors) const;
-  /// The address as other programs write it: "unix:/run/takt.sock", "tcp:127.0.0.1:7711".
+  /// Returns the address as other programs write it: "unix:/run/takt.sock", "tcp:127.0.0.1:7711".
   const std::string& where() const noexcept { return where_; }
 
  private:

@@ -43,7 +43,7 @@ std::string emcy_event(const Event& event) {
                      fmt::join(bytes.subspan(3), " "));
 }
 
-/// The first number of each result, in hex.
+/// Returns the first number of each result, in hex.
 std::string first_numbers(std::span<const LssResult> results) {
   std::string text;
   for (const LssResult& result : results) {

@@ -21,7 +21,7 @@ AsciiError error_of(const Reply& reply);
 
 std::vector<LssResult> lss_results(const Reply& reply);
 std::string address_text(const LssResult& result);
-/// Answer to an LSS service that succeeded.
+/// Returns the answer to an LSS service that succeeded.
 std::string lss_answer(const AsciiCommand& command, const Reply& reply);
 
 // Texts of events for clients; empty if clients are not informed of the event.

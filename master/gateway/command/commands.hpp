@@ -83,7 +83,7 @@ class Commands {
   std::uint64_t refused() const noexcept {
     return std::accumulate(refused_.begin(), refused_.end(), std::uint64_t{0});
   }
-  /// Refused commands by reason, in the order of CommandRefusal.
+  /// Returns the refused commands by reason, in the order of CommandRefusal.
   const std::array<std::uint64_t, command_refusals>& refusals() const noexcept { return refused_; }
   std::string_view holder(std::size_t node_index, std::uint64_t cycle) const noexcept {
     return leases_.holder(node_index, cycle);

@@ -25,10 +25,10 @@ class BusView {
   void take(const sync_status_t& sync);
   void take(event_t event);
 
-  /// All nodes of one status_t round; empty before the first complete round.
+  /// Returns all nodes of one status_t round; empty before the first complete round.
   const std::optional<status_t>& status() const noexcept { return status_; }
   const std::optional<timing_t>& timing() const noexcept { return timing_; }
-  /// All PDOs of one round; empty before the first complete round.
+  /// Returns all PDOs of one round; empty before the first complete round.
   const std::optional<pdo_status_t>& pdos() const noexcept { return pdos_; }
   const std::optional<sync_status_t>& sync() const noexcept { return sync_; }
   const std::deque<event_t>& events() const noexcept { return events_; }
@@ -41,7 +41,7 @@ class BusView {
   const Units& units() const noexcept { return units_; }
   std::int64_t cycle() const noexcept { return cycle_; }
   std::int64_t session() const noexcept { return session_; }
-  /// Number of images whose parts all arrived.
+  /// Returns the number of images whose parts all arrived.
   std::uint64_t images() const noexcept { return images_; }
   /// Returns true if the messages come from two daemons with the same bus name.
   bool two_daemons() const noexcept { return two_daemons_; }

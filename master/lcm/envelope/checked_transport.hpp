@@ -34,7 +34,7 @@ class CheckedTransport final : public Transport {
   bool good() const override { return inner_->good(); }
   std::string url() const override { return inner_->url() + " (signed messages only)"; }
 
-  /// Number of dropped messages.
+  /// Returns the number of dropped messages.
   std::uint64_t refused() const noexcept { return refused_; }
 
  private:

@@ -7,7 +7,7 @@
 
 namespace takt {
 
-/// The identifier in SocketCAN format, with its EFF and RTR flags.
+/// Returns the identifier in SocketCAN format, with its EFF and RTR flags.
 constexpr canid_t kernel_id(const Frame& frame) noexcept {
   return frame.id.id() | (frame.id.is_extended() ? CAN_EFF_FLAG : 0U) |
          (frame.rtr ? CAN_RTR_FLAG : 0U);

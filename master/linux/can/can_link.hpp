@@ -45,7 +45,7 @@ struct CanLink {
 /// Queries the kernel by netlink (RTM_GETLINK). Needs no privilege.
 std::expected<CanLink, BusError> read_can_link(const std::string& interface);
 
-/// The command that changes a setting of an interface: `ip link set can0 down && ...`.
+/// Returns the command that changes a setting of an interface: `ip link set can0 down && ...`.
 std::string link_command(const std::string& interface, const std::string& setting);
 
 /// Lists what contradicts the network file or will cause trouble in operation, one sentence each

@@ -38,7 +38,7 @@ class Beat {
   Time sync_at() const noexcept { return sync_at_; }            ///< when its SYNC was handed over
   Time next_deadline() const noexcept { return clock_.deadline() + clock_.period(); }
   Time outputs_due() const noexcept { return clock_.deadline() + plan_.output_deadline; }
-  /// Time at which the image is published, whatever is missing in it.
+  /// Returns the time at which the image is published, whatever is missing in it.
   Time window_end() const noexcept {
     return std::min(sync_at_ + plan_.receive_window, outputs_due());
   }

@@ -29,8 +29,8 @@ class SyncFollower {
   Time arrival() const noexcept { return *arrival_; }
   /// Returns the arrival of that SYNC and clears it.
   Time take() noexcept { return *std::exchange(arrival_, std::nullopt); }
-  /// Time at which the newest SYNC was due: its arrival, unless it was a single late one among
-  /// punctual ones.
+  /// Returns the time at which the newest SYNC was due: its arrival, unless it was a single late
+  /// one among punctual ones.
   Time beat() const noexcept { return beat_; }
 
   /// Notes that a cycle begins without SYNC. While nodes boot, the follower does not miss the first

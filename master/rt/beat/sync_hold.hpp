@@ -42,8 +42,8 @@ class SyncHold {
   }
 
  private:
-  /// Index of the wait for the first heartbeat, or of the start itself. Returns the end of the plan
-  /// if there is neither.
+  /// Returns the index of the wait for the first heartbeat, or of the start itself. Returns the end
+  /// of the plan if there is neither.
   static std::size_t last_before_start(const BootPlan& plan) noexcept {
     const auto start = std::ranges::find_if(plan.steps, [](const BootStep& step) {
       return step.action == BootAction::nmt && step.command == NmtCommand::start;

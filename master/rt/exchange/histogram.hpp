@@ -19,12 +19,13 @@ struct HistogramSnapshot {
   std::array<std::uint64_t, bins> counts{};
 
   std::uint64_t total() const noexcept;
-  /// Upper edge of the bin below which the fraction `p` of all times lies. Returns 0 if the
-  /// histogram is empty.
+  /// Returns the upper edge of the bin below which the fraction `p` of all times lies. Returns 0 if
+  /// the histogram is empty.
   Time percentile(double p) const noexcept;
   Time minimum() const noexcept { return percentile(0.0); }
   Time maximum() const noexcept { return percentile(1.0); }
-  /// Counts per octave: element i counts the times in [2^i, 2^(i+1)) * 125 ns, as in timing_t.
+  /// Returns the counts per octave: element i counts the times in [2^i, 2^(i+1)) * 125 ns, as in
+  /// timing_t.
   std::array<std::uint64_t, octaves> by_octave() const noexcept;
 
   HistogramSnapshot operator-(const HistogramSnapshot& earlier) const noexcept;

@@ -51,7 +51,7 @@ class ImageRing {
   /// Front thread: takes the newest image and skips older ones. Returns false if there is none.
   bool take_newest(ImageView& view) noexcept;
 
-  /// Images lost because the front thread was too slow. Any thread.
+  /// Returns the number of images lost because the front thread was too slow. Any thread.
   std::uint64_t overruns() const noexcept { return overruns_.load(std::memory_order_relaxed); }
 
  private:

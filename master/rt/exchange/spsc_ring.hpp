@@ -46,7 +46,7 @@ class SpscRing {
     return true;
   }
 
-  /// Items refused so far. Any thread.
+  /// Returns the number of items refused so far. Any thread.
   std::uint64_t overruns() const noexcept { return overruns_.load(std::memory_order_relaxed); }
 
  private:

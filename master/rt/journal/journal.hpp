@@ -165,8 +165,8 @@ class Journal {
     if (room != nullptr) ++beginnings_;
     return room;
   }
-  /// Number of places so far at which a replay can begin: a new tape, and each checkpoint. What is
-  /// recorded only when it changes is recorded again behind each of them.
+  /// Returns the number of places so far at which a replay can begin: a new tape, and each
+  /// checkpoint. What is recorded only when it changes is recorded again behind each of them.
   unsigned beginnings() const noexcept { return beginnings_; }
 
   /// Front side: requests the running tape. At the next cycle, recording continues on the other

@@ -38,7 +38,7 @@ class ServiceQueue {
     }
     return count;
   }
-  /// Number of frames to SDO servers among the first `most` frames.
+  /// Returns the number of frames to SDO servers among the first `most` frames.
   std::size_t to_servers(std::size_t most) const noexcept {
     return static_cast<std::size_t>(
         std::ranges::count_if(outbox_.answers().first(std::min(most, size())), by_server));

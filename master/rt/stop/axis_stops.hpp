@@ -91,7 +91,7 @@ class AxisStops {
   }
 
  private:
-  /// The stop that acts on the axes now. The ordered stop supersedes a halt.
+  /// Returns the stop that acts on the axes now. The ordered stop supersedes a halt.
   OrderedStop& active() noexcept { return stopping() ? ordered_ : halt_; }
   StopView view() const noexcept {
     const S& services = bus_.services;

@@ -13,7 +13,7 @@ namespace takt {
 class Agenda {
  public:
   void add(Time when, std::function<void()> what) { items_.push_back({when, std::move(what)}); }
-  /// Time of the earliest action; `never` if the agenda is empty.
+  /// Returns the time of the earliest action; `never` if the agenda is empty.
   Time next() const noexcept {
     Time first = never;
     for (const Item& item : items_) first = std::min(first, item.when);

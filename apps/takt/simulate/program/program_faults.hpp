@@ -36,10 +36,10 @@ struct ProgramFault {
 };
 using ProgramFaults = std::vector<ProgramFault>;
 
-/// Name of the kind in fault files, for example `kill_application`.
+/// Returns the name of the kind in fault files, for example `kill_application`.
 std::string_view name(ProgramFaultKind kind) noexcept;
 std::optional<ProgramFaultKind> program_fault_kind(std::string_view name) noexcept;
-/// All names, in the order of the kinds.
+/// Returns all names, in the order of the kinds.
 std::vector<std::string_view> program_fault_names();
 /// Returns true if the fault concerns an application, so that a fault file can choose one.
 bool concerns_application(ProgramFaultKind kind) noexcept;

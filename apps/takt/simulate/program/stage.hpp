@@ -10,7 +10,7 @@ namespace takt {
 class Actor {
  public:
   virtual ~Actor() = default;
-  /// Time of the actor's next action; `never` if it only reacts to others.
+  /// Returns the time of the actor's next action; `never` if it only reacts to others.
   virtual Time next() const noexcept = 0;
   /// Performs the action that is due at `now`. Afterwards next() is later, or again due at once.
   virtual void act(Time now) = 0;

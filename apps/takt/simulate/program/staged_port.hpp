@@ -46,7 +46,8 @@ class StagedPort {
   PortNews news() const noexcept { return port_.news(); }
 
  private:
-  /// Time of the next action. An actor that is overdue acts now, because time never goes back.
+  /// Returns the time of the next action. An actor that is overdue acts now, because time never
+  /// goes back.
   Time due() const noexcept { return std::max(stage_.next(), world_.now()); }
   void pass_to(Time until) noexcept {
     for (Time at = due(); at <= until && at != never; at = due()) {

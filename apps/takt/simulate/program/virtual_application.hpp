@@ -57,7 +57,7 @@ class VirtualApplication final : public Actor {
   bool commands(std::size_t node_index) const { return options_.nodes[node_index]; }
   /// From now on the program needs this additional time for each image.
   void slow_down(Time reaction) noexcept { slowness_ = reaction; }
-  /// Number of axes that the program moves at this moment.
+  /// Returns the number of axes that the program moves at this moment.
   std::size_t leads() const noexcept;
   std::uint64_t images() const noexcept { return images_; }  ///< images used
   std::uint64_t sent() const noexcept { return sent_; }      ///< commands sent

@@ -72,7 +72,8 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   std::int64_t session() const noexcept { return session_; }
   const MasterRun& master() const noexcept { return *master_; }
   const Bridge& bridge() const noexcept { return *bridge_; }
-  /// Number of messages lost because the queue was full, over all processes of this daemon.
+  /// Returns the number of messages lost because the queue was full, over all processes of this
+  /// daemon.
   std::uint64_t lost() const noexcept { return lcm_.dropped(); }
   Time stalled_until() const noexcept { return stalled_until_; }
 

@@ -25,21 +25,21 @@ class LimitJudge {
  public:
   LimitJudge(const BusPlan& plan, sim::World& world, Verdict& verdict);
 
-  /// To be called when the master begins a cycle, in which it reads all frames since the last one.
+  /// Call this when the master begins a cycle, in which it reads all frames since the last one.
   void begin_cycle(Time now);
-  /// To be called when the master passes a value of an output to the interface. `begins` is true if
+  /// Call this when the master passes a value of an output to the interface. `begins` is true if
   /// the output was not sent in the last cycles.
   void sent(SignalIndex signal, std::uint64_t bits, bool begins);
   /// Judges the values that were sent. To be called when the master has passed all its frames.
   void judge(Time now);
-  /// To be called with each frame on the wire. The sender does not matter, because the master
-  /// cannot know it.
+  /// Call this with each frame on the wire. The sender does not matter, because the master cannot
+  /// know it.
   void heard(const Frame& frame);
-  /// To be called when the daemon is a new process, which has sent nothing so far.
+  /// Call this when the daemon is a new process, which has sent nothing so far.
   void begin_anew();
   /// Returns true if this target equals one of the newest actual positions on the wire.
   bool is_actual(SignalIndex signal, std::uint64_t bits) const noexcept;
-  /// Number of values that were checked against a limit.
+  /// Returns the number of values that were checked against a limit.
   std::uint64_t judged() const noexcept { return judged_; }
 
  private:

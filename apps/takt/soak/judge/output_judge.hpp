@@ -21,7 +21,7 @@ class OutputJudge {
   /// `time_to_live` is in cycles and must not be 0.
   void commanded(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live, Time now);
   void sent(std::span<const Frame> frames, Time now);
-  /// To be called for an NMT command to the master itself, which causes no frame.
+  /// Call this for an NMT command to the master itself, which causes no frame.
   void ordered() noexcept { ++own_orders_; }
 
  private:

@@ -17,14 +17,15 @@ class StopJudge {
  public:
   StopJudge(const BusPlan& plan, sim::World& world, Verdict& verdict);
 
-  /// To be called when the stop is requested.
+  /// Call this when the stop is requested.
   void begin();
-  /// To be called after each cycle of the stop.
+  /// Call this after each cycle of the stop.
   void look();
   void hear(const Event& event);
-  /// To be called when the stop is over.
+  /// Call this when the stop is over.
   void judge(StopResult result);
-  /// Number of confirmed axes whose power stage was on at some time since the stop began.
+  /// Returns the number of confirmed axes whose power stage was on at some time since the stop
+  /// began.
   std::uint64_t confirmed() const noexcept { return confirmed_; }
 
  private:

@@ -28,24 +28,24 @@ class WireJudge {
  public:
   WireJudge(const BusPlan& plan, sim::World& world, Verdict& verdict);
 
-  /// To be called when an application has sent this value.
+  /// Call this when an application has sent this value.
   void commanded(SignalIndex signal, std::int64_t value, const SentCommand& command);
-  /// To be called with a forged value, which must never appear on the wire.
+  /// Call this with a forged value, which must never appear on the wire.
   void forged(SignalIndex signal, std::int64_t value);
-  /// To be called when this sender has given up its outputs.
+  /// Call this when this sender has given up its outputs.
   void released(SenderBit sender, Time now);
-  /// To be called when the daemon is a new process: no sender holds the outputs, and nothing was
-  /// sent so far.
+  /// Call this when the daemon is a new process: no sender holds the outputs, and nothing was sent
+  /// so far.
   void begin_anew();
-  /// To be called when the master begins a cycle.
+  /// Call this when the master begins a cycle.
   void begin_cycle(Time now) { limits_.begin_cycle(now); }
-  /// To be called with each frame on the wire.
+  /// Call this with each frame on the wire.
   void heard(const Frame& frame) { limits_.heard(frame); }
-  /// To be called with the frames that the master passes to the interface.
+  /// Call this with the frames that the master passes to the interface.
   void sent(std::span<const Frame> frames, Time now);
-  /// Number of positions on the wire that an application had commanded.
+  /// Returns the number of positions on the wire that an application had commanded.
   std::uint64_t moves() const noexcept { return moves_; }
-  /// Time at which a position of this sender was last on the wire.
+  /// Returns the time at which a position of this sender was last on the wire.
   Time last_move(SenderBit sender) const noexcept;
 
  private:
