@@ -198,9 +198,20 @@ TEST(MotionCommand, AHaltOfTheDriveStopsTheMotion) {
   bus.move_one(1, 50.0);
   bus.each_cycle = [&] { bus.keep_alive(); };
   ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == moving; }, 20));
+  bus.run(200);
   bus.send_controlword(0, 0x010F);
-  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == 0; }, 10));
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == stopping; }, 10));
   EXPECT_EQ(bus.axis(0).outcome, stopped);
+  EXPECT_TRUE(bus.said("motion_stopped", "has a Halt"));
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == standing; }));
+  bus.move_one(2, 50.0);
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).ended_id == 2; }, 20));
+  EXPECT_EQ(bus.axis(0).outcome, refused);
+  EXPECT_TRUE(bus.said("motion_refused", "without a Halt"));
+  bus.send_controlword(0, 0x000F);
+  bus.run(5);
+  bus.move_one(3, 50.0);
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == moving; }, 20));
 }
 
 TEST(MotionCommand, AJogRunsUntilItsDeadManIsSilent) {

@@ -121,9 +121,74 @@ TEST(MotionStage, TheGroupStopsIfTheNodeOfOneAxisIsLost) {
   bus.move({40.0, 40.0});
   bus.each_cycle = [&] { bus.keep_alive(); };
   ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[1].state == AxisState::stopping; }));
-  EXPECT_EQ(bus.now.axes[1].stop.cause, StopCause::node_lost);
+  EXPECT_EQ(bus.now.axes[1].stop.cause, StopCause::no_statusword);
   EXPECT_EQ(bus.now.axes[1].stop.axis, 0);
   EXPECT_LT(bus.world.now(), std::chrono::milliseconds{4015});
+  ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[0].state == AxisState::unpowered; }));
+  EXPECT_LT(bus.world.now(), std::chrono::milliseconds{4500}) << "its heartbeat is missing";
+}
+
+/// Sharpest bend of the target position that the drive of an axis has received, in counts.
+class Bend {
+ public:
+  void observe(std::int64_t target) {
+    if (seen_ > 1) most_ = std::max(most_, std::abs(target - 2 * last_ + before_));
+    before_ = last_;
+    last_ = target;
+    ++seen_;
+  }
+  /// 20 rad/s^2 are 0.13 counts in a beat squared, and rounding adds at most two counts.
+  bool is_smooth() const { return most_ <= 2; }
+
+ private:
+  std::int64_t last_ = 0;
+  std::int64_t before_ = 0;
+  std::int64_t most_ = 0;
+  int seen_ = 0;
+};
+
+/// A drive in cyclic synchronous position mode may ignore a Halt, as the simulated one does.
+TEST(MotionStage, AHaltStopsTheAxisWithoutAStepOfItsTarget) {
+  MovedAxes bus;
+  bus.enable();
+  bus.move({40.0});
+  Bend bend;
+  bus.each_cycle = [&] {
+    bus.keep_alive();
+    bend.observe(bus.target(0));
+  };
+  bus.run(300);
+  bus.master.set(*bus.axes[0].controlword, 0x010F);
+  bus.master.publish_outputs(bus.world.now());
+  ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[0].state == AxisState::stopping; }, 5));
+  EXPECT_EQ(bus.now.axes[0].stop.cause, StopCause::halted);
+  ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[0].state == AxisState::standing; }));
+  bus.run(100);
+  EXPECT_TRUE(bend.is_smooth());
+  EXPECT_EQ(bus.now.axes[0].state, AxisState::standing);
+}
+
+TEST(MotionStage, MissingStatuswordsStopTheAxisWithoutAStepOfItsTarget) {
+  MovedAxes bus{{{.kind = sim::FaultKind::mute_pdo,
+                  .node = 1_node,
+                  .at = std::chrono::milliseconds{3500},
+                  .until = std::chrono::milliseconds{3520}}}};
+  bus.enable();
+  bus.run_until([&] { return bus.world.now() > std::chrono::milliseconds{2900}; });
+  bus.enable();
+  bus.move({40.0});
+  Bend bend;
+  bus.each_cycle = [&] {
+    bus.keep_alive();
+    bend.observe(bus.target(0));
+  };
+  ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[0].state == AxisState::stopping; }, 400));
+  EXPECT_EQ(bus.now.axes[0].stop.cause, StopCause::no_statusword);
+  EXPECT_LT(bus.world.now(), std::chrono::milliseconds{3515});
+  ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[0].state == AxisState::standing; }));
+  bus.run(100);
+  EXPECT_TRUE(bend.is_smooth());
+  EXPECT_TRUE(bus.enabled(0));
 }
 
 TEST(MotionStage, AnOrderedStopEndsEachMotion) {

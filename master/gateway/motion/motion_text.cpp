@@ -35,8 +35,9 @@ std::string_view text(const motion::PlanRefusal& refusal) noexcept {
     case busy:
       return "another motion of the axis is about to begin";
     case not_enabled:
-      return "the drive does not follow set-points: it must be in Operation enabled and in cyclic "
-             "synchronous position mode";
+      return "the drive does not follow set-points: it must be in Operation enabled, without a "
+             "Halt "
+             "and in cyclic synchronous position mode";
     case stopping:
       return "the axis is stopping, and must come to rest first";
     case foreign:
@@ -82,6 +83,10 @@ std::string_view text(motion::StopCause cause) noexcept {
       return "the drive is in fault";
     case node_lost:
       return "the node is lost";
+    case halted:
+      return "the controlword of the drive has a Halt";
+    case no_statusword:
+      return "the statusword of the drive is missing";
     case following_error:
       return "the following error is above its limit";
     case end_of_range:

@@ -14,7 +14,9 @@ enum class AxisCondition : std::uint8_t {
   enabled,   ///< it follows set-points of position (CiA 402: Operation enabled)
   disabled,  ///< it does not, without a fault
   fault,
-  lost,  ///< its node is not heard
+  lost,    ///< its node is not heard
+  halted,  ///< it is enabled, but has a Halt: some drives follow set-points nevertheless
+  silent,  ///< its statusword is missing, so it may follow set-points
 };
 
 struct AxisInput {
@@ -34,6 +36,8 @@ enum class StopCause : std::uint8_t {
   disabled,         ///< an axis left Operation enabled
   fault,            ///< of an axis
   node_lost,        ///< of an axis
+  halted,           ///< the controlword of an axis has a Halt
+  no_statusword,    ///< of an axis
   following_error,  ///< of an axis, above its limit
   end_of_range,     ///< a later stop would leave the range of positions
   limit,            ///< a set-point of an axis was outside the limits of the network file

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "master/motion/beat/stop_profile.hpp"
 
@@ -18,8 +19,18 @@ StopCause cause_of(AxisCondition condition) noexcept {
       return StopCause::fault;
     case AxisCondition::lost:
       return StopCause::node_lost;
+    case AxisCondition::halted:
+      return StopCause::halted;
+    case AxisCondition::silent:
+      return StopCause::no_statusword;
   }
   return StopCause::none;
+}
+
+/// Returns true if the drive follows set-points, or nobody knows that it does not.
+bool may_follow(AxisCondition condition) noexcept {
+  return condition == AxisCondition::enabled || condition == AxisCondition::halted ||
+         condition == AxisCondition::silent;
 }
 
 bool is_close(double a, double b, double size) noexcept {
@@ -60,7 +71,7 @@ const MotionOrder* AxisRunner::due(BeatNumber beat) const noexcept {
 
 Outcome AxisRunner::objection(BeatNumber beat) noexcept {
   if (waiting_->begin < beat) return Outcome::too_late;
-  if (report_.state == AxisState::unpowered) return Outcome::not_powered;
+  if (report_.state == AxisState::unpowered || !follows_) return Outcome::not_powered;
   if (report_.state == AxisState::stopping) return Outcome::is_stopping;
   if (!ends_as_it_says(*waiting_)) return Outcome::no_rest;
   return is_same(waiting_->from, commanded_at(beat), waiting_->stop) ? Outcome::none
@@ -92,6 +103,7 @@ void AxisRunner::refuse(Outcome why) noexcept {
 
 StopCause AxisRunner::observe(BeatNumber beat, const AxisInput& input,
                               BeatNumber silence) noexcept {
+  const bool followed = std::exchange(follows_, input.condition == AxisCondition::enabled);
   report_.actual = input.actual;
   report_.following_error = report_.commanded.position - input.actual.position;
   if (report_.state == AxisState::unpowered) {
@@ -102,7 +114,7 @@ StopCause AxisRunner::observe(BeatNumber beat, const AxisInput& input,
     report_.state = AxisState::standing;
     return StopCause::none;
   }
-  if (input.condition != AxisCondition::enabled) {
+  if (!may_follow(input.condition)) {
     if (report_.state == AxisState::moving) end(Outcome::stopped);
     report_.state = AxisState::unpowered;
     report_.kept_alive = false;
@@ -113,6 +125,7 @@ StopCause AxisRunner::observe(BeatNumber beat, const AxisInput& input,
   if (report_.state == AxisState::standing && input.set_point) {
     report_.commanded = {.position = *input.set_point};
   }
+  if (followed && !follows_) return cause_of(input.condition);
   if (report_.state != AxisState::moving) return StopCause::none;
   if (std::abs(report_.following_error) > max_following_error_) return StopCause::following_error;
   if (silence > timeout_) return StopCause::sender_silent;

@@ -18,7 +18,7 @@ namespace takt::motion {
 /// | moving           | stopping  | stop()                                                    |
 /// | stopping         | standing  | the axis is at rest                                       |
 /// | moving, stopping | standing  | abandon()                                                 |
-/// | each other       | unpowered | the drive is no longer enabled                            |
+/// | each other       | unpowered | the drive is certainly not enabled any longer             |
 ///
 /// A beat calls observe(), then stop() if the group stops, then begin() or refuse() if an order is
 /// due, then run(). No call allocates; the bound of instructions is that of stop().
@@ -67,7 +67,7 @@ class AxisRunner {
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(report_, player_, began_, stop_limits_, timeout_, latest_stop_, max_following_error_,
-          waiting_, newest_, last_run_, has_taken_);
+          waiting_, newest_, last_run_, has_taken_, follows_);
     state.position(group_, max_axes);
     state.position(sender_, max_axes + 1);
   }
@@ -93,6 +93,7 @@ class AxisRunner {
   std::optional<MotionOrder> waiting_;
   std::uint32_t newest_ = 0;
   bool has_taken_ = false;  ///< an order since the last run()
+  bool follows_ = false;    ///< the drive follows set-points in this beat
   std::uint8_t group_;
   std::uint8_t sender_ = 0;
 };

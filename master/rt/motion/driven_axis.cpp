@@ -56,16 +56,20 @@ std::optional<std::int64_t> DrivenAxis::Scale::raw(double number) const noexcept
 }
 
 AxisCondition DrivenAxis::condition(const WorkingImage& image, bool exchanging) noexcept {
+  ignores_target_ = false;
   if (!exchanging) return AxisCondition::lost;
   if (image.is_stale(axis_.statusword)) {
     if (silent_beats_ < most_silent_beats) ++silent_beats_;
-    return silent_beats_ == most_silent_beats ? AxisCondition::lost : condition_;
+    return silent_beats_ == most_silent_beats ? AxisCondition::silent : condition_;
   }
   silent_beats_ = 0;
   const AxisCondition found = condition_of(image.values[axis_.statusword]);
+  const bool in_mode = !axis_.mode || follows_each_target(image.values[*axis_.mode]);
+  ignores_target_ = found != AxisCondition::enabled || !in_mode;
+  if (found != AxisCondition::enabled) return found;
+  if (!in_mode) return AxisCondition::disabled;
   const bool halted = axis_.controlword && (image.values[*axis_.controlword] & halt) != 0;
-  const bool follows = !halted && (!axis_.mode || follows_each_target(image.values[*axis_.mode]));
-  return found == AxisCondition::enabled && !follows ? AxisCondition::disabled : found;
+  return halted ? AxisCondition::halted : found;
 }
 
 /// While the actual position is missing, the following error counts as unchanged.
@@ -101,7 +105,7 @@ bool DrivenAxis::write(PdoOutputs& outputs, const motion::AxisReport& report,
   stop_leading(outputs);
   if (report.state == AxisState::standing) return true;
   const auto raw = target_.raw(report.actual.position);
-  if (writer_ == Writer::others || !raw) return true;
+  if (writer_ == Writer::others || !ignores_target_ || !raw) return true;
   outputs.trail(axis_.target, *raw);
   written_ = *raw;
   if (axis_.velocity_offset) outputs.trail(*axis_.velocity_offset, 0);

@@ -21,9 +21,9 @@ class DrivenAxis {
   motion::AxisInput read(PdoExchange& pdos, bool exchanging,
                          const motion::AxisReport& last) noexcept;
   /// Commands the target position, and the velocity as its offset, while the axis moves. While the
-  /// drive is not enabled, the target position follows the actual position if a motion has
-  /// commanded it last, so that the drive does not jump when it is enabled. Returns false if a
-  /// set-point was not taken, see PdoOutputs::lead().
+  /// drive says that it does not follow its target position, this one follows the actual position
+  /// if a motion has commanded it last, so that the drive does not jump when it is enabled. Returns
+  /// false if a set-point was not taken, see PdoOutputs::lead().
   bool write(PdoOutputs& outputs, const motion::AxisReport& report, OutputMoment moment) noexcept;
   /// Keeps the commands of all outputs of the node valid in this cycle.
   void keep_alive(PdoOutputs& outputs, OutputMoment moment) const noexcept {
@@ -32,7 +32,7 @@ class DrivenAxis {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(condition_, silent_beats_, written_, writer_);
+    state(condition_, silent_beats_, ignores_target_, written_, writer_);
   }
 
  private:
@@ -53,7 +53,7 @@ class DrivenAxis {
     std::optional<std::int64_t> raw(double number) const noexcept;
   };
   static Scale scale_of(const BusPlan& plan, SignalIndex signal) noexcept;
-  /// A drive whose statusword is missing in so many beats in a row is lost.
+  /// A drive whose statusword is missing in so many beats in a row is silent.
   static constexpr std::uint8_t most_silent_beats = 3;
 
   motion::AxisCondition condition(const WorkingImage& image, bool exchanging) noexcept;
@@ -68,7 +68,8 @@ class DrivenAxis {
   std::vector<SignalIndex> node_outputs_;
   motion::AxisCondition condition_ = motion::AxisCondition::disabled;
   std::uint8_t silent_beats_ = 0;
-  std::int64_t written_ = 0;  ///< target position that a motion has written last
+  bool ignores_target_ = false;  ///< the statusword of this beat says so
+  std::int64_t written_ = 0;     ///< target position that a motion has written last
   Writer writer_ = Writer::others;
 };
 

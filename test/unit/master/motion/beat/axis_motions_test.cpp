@@ -318,6 +318,50 @@ TEST(AxisMotions, AGroupStopsInTheBeatInWhichOneOfItsAxesFails) {
   }
 }
 
+/// The drive may still follow its set-points, so the axis itself stops along its limits as well.
+TEST(AxisMotions, AnAxisThatIsHaltedOrSilentStopsAlongItsLimitsAndTakesNoOrderMeanwhile) {
+  struct Case {
+    AxisCondition condition;
+    StopCause cause;
+  };
+  for (const Case& failure : {Case{AxisCondition::halted, StopCause::halted},
+                              Case{AxisCondition::silent, StopCause::no_statusword}}) {
+    Plant plant{3};
+    start_groups(plant);
+    plant.inputs[1].condition = failure.condition;
+    plant.step();
+    for (const std::size_t axis : {0U, 1U}) {
+      EXPECT_EQ(plant.last[axis].state, AxisState::stopping);
+      EXPECT_EQ(plant.last[axis].stop.cause, failure.cause);
+      EXPECT_EQ(plant.last[axis].stop.axis, 1);
+    }
+    EXPECT_EQ(plant.last[2].state, AxisState::moving);
+    plant.steps(1000);
+    EXPECT_EQ(plant.last[1].state, AxisState::standing);
+    plant.ids = 2;
+    ASSERT_TRUE(plant.take(plant.order(1, {.position = 0.0}, 1)));
+    plant.step();
+    EXPECT_EQ(plant.ended[1].outcome, Outcome::not_powered);
+    plant.inputs[1].condition = AxisCondition::enabled;
+    plant.step();
+    ASSERT_TRUE(plant.take(plant.order(1, {.position = 0.0}, 1)));
+    plant.step();
+    EXPECT_EQ(plant.last[1].state, AxisState::moving);
+  }
+}
+
+TEST(AxisMotions, AHaltDoesNotStopTheNextMotionsOfAGroupAgain) {
+  Plant plant{3};
+  start_groups(plant);
+  plant.inputs[1].condition = AxisCondition::halted;
+  plant.steps(1000);
+  ASSERT_EQ(plant.last[0].state, AxisState::standing);
+  plant.ids = 2;
+  ASSERT_TRUE(plant.take(plant.order(0, {.position = 0.0})));
+  plant.steps(10);
+  EXPECT_EQ(plant.last[0].state, AxisState::moving);
+}
+
 TEST(AxisMotions, AGroupStopsForAFollowingErrorAndAllStopForAnOrderedStop) {
   Plant plant{3};
   start_groups(plant);

@@ -94,7 +94,7 @@ TEST(DrivenAxis, ReadsTheConditionFromTheStatusword) {
   EXPECT_EQ(bench.condition(false), AxisCondition::lost);
 }
 
-TEST(DrivenAxis, OneMissingFrameIsNoLossButThreeAre) {
+TEST(DrivenAxis, OneMissingFrameIsNoSilenceButThreeAre) {
   Bench bench;
   bench.hear(0x0027, 100);
   bench.last.commanded.position = 1.5;
@@ -107,9 +107,41 @@ TEST(DrivenAxis, OneMissingFrameIsNoLossButThreeAre) {
   bench.hear_nothing();
   EXPECT_EQ(bench.condition(), AxisCondition::enabled);
   bench.hear_nothing();
-  EXPECT_EQ(bench.condition(), AxisCondition::lost);
+  EXPECT_EQ(bench.condition(), AxisCondition::silent);
   bench.hear(0x0027, 100);
   EXPECT_EQ(bench.condition(), AxisCondition::enabled);
+}
+
+TEST(DrivenAxis, AHaltIsNoLossOfOperationEnabled) {
+  Bench bench;
+  bench.points[0] = {.value = 0x010F, .generation = 1, .when = Time{2'000'000}};
+  bench.pdos.outputs().pack(bench.points, {.cycle = 1, .now = Time{2'000'000}});
+  bench.hear(0x0027, 0);
+  EXPECT_EQ(bench.condition(), AxisCondition::halted);
+  bench.hear(0x0008, 0);
+  EXPECT_EQ(bench.condition(), AxisCondition::fault);
+}
+
+/// A drive that nobody hears may still follow its target position.
+TEST(DrivenAxis, TheTargetFollowsTheActualPositionOnlyWhileTheStatuswordSaysThatItHasNoEffect) {
+  Bench bench;
+  bench.hear(0x0027, 100);
+  bench.condition();
+  ASSERT_TRUE(bench.write(AxisState::moving, {.position = 1.2}));
+  const auto hold = [&](bool exchanging) {
+    bench.condition(exchanging);
+    bench.last.actual.position = 1.0;
+    return bench.write(AxisState::unpowered, {.position = 1.0});
+  };
+  bench.hear(0x0027, 100);
+  ASSERT_TRUE(hold(false));
+  EXPECT_EQ(bench.target(), 120) << "the node is lost";
+  bench.hear_nothing();
+  ASSERT_TRUE(hold(true));
+  EXPECT_EQ(bench.target(), 120) << "the statusword is missing";
+  bench.hear(0x0023, 100);
+  ASSERT_TRUE(hold(true));
+  EXPECT_EQ(bench.target(), 100);
 }
 
 TEST(DrivenAxis, WritesPositionAndVelocityInCounts) {
