@@ -191,6 +191,31 @@ TEST(MotionStage, MissingStatuswordsStopTheAxisWithoutAStepOfItsTarget) {
   EXPECT_TRUE(bus.enabled(0));
 }
 
+/// The file permits 4 rad/s.
+TEST(MotionStage, AfterARefusedSetPointTheDriveIsEnabledAgainWhereItStands) {
+  MovedAxes bus{{}, MovedAxes::velocity_offset};
+  bus.enable();
+  motion::Limits fast = MovedAxes::limits;
+  fast.max_velocity = 5.0;
+  fast.min_velocity = -5.0;
+  bus.move({40.0}, fast);
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  ASSERT_TRUE(bus.run_until([&] { return bus.said(EventKind::limit_exceeded); }));
+  bus.cycle();
+  EXPECT_EQ(bus.velocity_offset_of(0), 0) << "in the cycle of the refusal";
+  EXPECT_EQ(bus.now.axes[0].state, AxisState::standing);
+  EXPECT_EQ(bus.now.axes[0].stop.cause, StopCause::limit);
+  ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[0].state == AxisState::unpowered; }));
+  bus.run(1000);
+  const double rest = bus.position(0);
+  EXPECT_NEAR(static_cast<double>(bus.target(0)) * 6.283185307179586e-4, rest, 1e-3);
+  bus.events.clear();
+  bus.enable();
+  bus.run(100);
+  EXPECT_FALSE(bus.said(EventKind::limit_exceeded));
+  EXPECT_NEAR(bus.position(0), rest, 1e-3);
+}
+
 TEST(MotionStage, AnOrderedStopEndsEachMotion) {
   MovedAxes bus;
   bus.enable();

@@ -16,7 +16,7 @@
 
 namespace takt::test {
 
-/// The two axes of share/demo/two_axes.yaml in virtual time, and an application that enables them
+/// Two axes in virtual time, and an application that enables them
 /// by set-points and moves them by orders.
 class MovedAxes {
  public:
@@ -26,8 +26,13 @@ class MovedAxes {
                                          .min_acceleration = -20.0,
                                          .jerk = 400.0};
 
-  explicit MovedAxes(sim::Faults faults = {})
-      : network{load_network(TAKT_SOURCE_DIR "/share/demo/two_axes.yaml")},
+  static constexpr const char* demo = TAKT_SOURCE_DIR "/share/demo/two_axes.yaml";
+  /// Maps 60B1, and has limits of velocity (4 rad/s) and acceleration (100 rad/s^2).
+  static constexpr const char* velocity_offset =
+      TAKT_SOURCE_DIR "/test/motions/data/velocity_offset.yaml";
+
+  explicit MovedAxes(sim::Faults faults = {}, const char* file = demo)
+      : network{load_network(file)},
         axes{motion_axes(network.plan)},
         world{network.devices,
               {.seed = 3, .bitrate = network.plan.bitrate, .faults = std::move(faults)}},
@@ -83,11 +88,11 @@ class MovedAxes {
   }
 
   /// Moves the axes from standstill to these positions as one group.
-  void move(std::vector<double> targets) {
+  void move(std::vector<double> targets, motion::Limits within = limits) {
     std::vector<motion::AxisTask> tasks;
     for (std::size_t i = 0; i < targets.size(); ++i) {
       tasks.push_back(
-          {.from = now.axes[i].commanded, .to = {.position = targets[i]}, .limits = limits});
+          {.from = now.axes[i].commanded, .to = {.position = targets[i]}, .limits = within});
     }
     std::vector<motion::PlannedAxis> planned(tasks.size());
     ASSERT_TRUE(motion::plan_trajectory(tasks, {}, planned).has_value());
@@ -101,7 +106,7 @@ class MovedAxes {
                        .begin = now.cycle + 3,
                        .from = tasks[i].from,
                        .profile = planned[i].profile,
-                       .stop = limits,
+                       .stop = within,
                        .timeout = 250,  // 500 ms
                        .max_following_error = 0.5};
       ASSERT_TRUE(master.submit(message));
@@ -113,6 +118,12 @@ class MovedAxes {
     return static_cast<double>(values[axes[axis].position]) * signal.scale + signal.offset;
   }
   std::int64_t target(std::size_t axis) const { return values[axes[axis].target]; }
+  std::int64_t velocity_offset_of(std::size_t axis) const {
+    return values[*axes[axis].velocity_offset];
+  }
+  bool said(EventKind kind) const {
+    return std::ranges::find(events, kind, &Event::kind) != events.end();
+  }
 
   LoadedNetwork network;
   std::vector<MotionAxis> axes;

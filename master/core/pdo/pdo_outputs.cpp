@@ -265,7 +265,7 @@ bool PdoOutputs::lead(SignalIndex signal, std::int64_t value, OutputMoment momen
 void PdoOutputs::trail(SignalIndex signal, std::int64_t value) noexcept {
   const Output& output = outputs_[output_of(signal)];
   const bool fallen = output.fallen && plan_.layout.signals[signal].fallback == Fallback::value;
-  if (!output.known || refuses(output) || fallen) return;
+  if (!output.known || stopping_ || output.forced || fallen) return;
   image_.values[signal] = value;
 }
 

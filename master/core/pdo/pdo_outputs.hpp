@@ -92,8 +92,9 @@ class PdoOutputs {
   bool lead(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
   /// Ends lead(). The output keeps its value and accepts its next command.
   void release_lead(SignalIndex signal) noexcept { outputs_[output_of(signal)].led = false; }
-  /// Sets the value of an output that has no effect now, because its axis is not enabled. This is
-  /// no command. Does nothing if another value is in force.
+  /// Sets the value of an output of a motion without judging it: a target position that has no
+  /// effect because its axis is not enabled, or the velocity offset 0 of an axis whose target
+  /// position stands still. This is no command. Does nothing if another value is in force.
   void trail(SignalIndex signal, std::int64_t value) noexcept;
   /// The command of the output stays valid in this cycle, if it was valid before.
   void keep_alive(SignalIndex signal, OutputMoment moment) noexcept {

@@ -85,7 +85,8 @@ motion::AxisInput DrivenAxis::read(PdoExchange& pdos, bool exchanging,
   const std::int64_t target = image.values[axis_.target];
   if (target != written_) writer_ = Writer::others;
   const bool starts = last.state == AxisState::unpowered;
-  if ((starts || writer_ == Writer::others) && pdos.outputs().known(axis_.target)) {
+  const bool by_motion = writer_ == Writer::motion || writer_ == Writer::in_motion;
+  if ((starts || !by_motion) && pdos.outputs().known(axis_.target)) {
     input.set_point = target_.number(target);
   }
   return input;
@@ -108,21 +109,30 @@ bool DrivenAxis::write(PdoOutputs& outputs, const motion::AxisReport& report,
   if (writer_ == Writer::others || !ignores_target_ || !raw) return true;
   outputs.trail(axis_.target, *raw);
   written_ = *raw;
-  if (axis_.velocity_offset) outputs.trail(*axis_.velocity_offset, 0);
+  clear_velocity(outputs);
   return true;
 }
 
+/// If a set-point is refused, the target position stands still, and so the velocity is 0.
 bool DrivenAxis::lead(PdoOutputs& outputs, const motion::State& state,
                       OutputMoment moment) noexcept {
   const auto raw = target_.raw(state.position);
   const auto speed = velocity_offset_.raw(state.velocity);
-  bool taken = raw && speed && outputs.lead(axis_.target, *raw, moment);
-  if (taken && axis_.velocity_offset) {
-    taken = outputs.lead(*axis_.velocity_offset, *speed, moment);
+  const bool target_taken = raw && speed && outputs.lead(axis_.target, *raw, moment);
+  if (target_taken) written_ = *raw;
+  const bool taken = target_taken && (!axis_.velocity_offset ||
+                                      outputs.lead(*axis_.velocity_offset, *speed, moment));
+  if (taken) {
+    writer_ = Writer::in_motion;
+  } else if (target_taken || writer_ != Writer::others) {
+    writer_ = Writer::refused;
+    clear_velocity(outputs);
   }
-  writer_ = taken ? Writer::in_motion : Writer::others;
-  if (taken) written_ = *raw;
   return taken;
+}
+
+void DrivenAxis::clear_velocity(PdoOutputs& outputs) const noexcept {
+  if (axis_.velocity_offset) outputs.trail(*axis_.velocity_offset, 0);
 }
 
 void DrivenAxis::stop_leading(PdoOutputs& outputs) noexcept {

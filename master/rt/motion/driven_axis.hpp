@@ -41,6 +41,7 @@ class DrivenAxis {
     others,     ///< set-points of applications, or a fallback
     motion,     ///< a motion that has ended
     in_motion,  ///< a motion that runs
+    refused,    ///< a motion, of which a later set-point was not taken
   };
   /// One signal as a number in its unit.
   struct Scale {
@@ -59,6 +60,7 @@ class DrivenAxis {
   motion::AxisCondition condition(const WorkingImage& image, bool exchanging) noexcept;
   bool lead(PdoOutputs& outputs, const motion::State& state, OutputMoment moment) noexcept;
   void stop_leading(PdoOutputs& outputs) noexcept;
+  void clear_velocity(PdoOutputs& outputs) const noexcept;
 
   MotionAxis axis_;
   Scale position_;

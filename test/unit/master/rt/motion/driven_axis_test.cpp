@@ -164,6 +164,38 @@ TEST(DrivenAxis, APositionThatInteger32CannotHoldIsNotWritten) {
   EXPECT_EQ(bench.target(), 100);
 }
 
+/// The second set-point of the motion can't be written.
+TEST(DrivenAxis, AfterARefusedSetPointTheVelocityIsZeroAndTheTargetFollowsADriveThatIsNotEnabled) {
+  Bench bench;
+  bench.hear(0x0027, 0);
+  ASSERT_TRUE(bench.write(AxisState::moving, {.position = 1.0, .velocity = 0.7}));
+  ASSERT_EQ(bench.offset(), 7);
+  EXPECT_FALSE(bench.write(AxisState::moving, {.position = 3e7, .velocity = 0.7}));
+  EXPECT_EQ(bench.target(), 100);
+  EXPECT_EQ(bench.offset(), 0);
+  bench.hear(0x0027, 90);
+  const motion::AxisInput input = bench.axis.read(bench.pdos, true, bench.last);
+  ASSERT_TRUE(input.set_point.has_value());
+  EXPECT_EQ(*input.set_point, 1.0) << "where the motion has led the axis";
+  bench.hear(0x0023, 95);
+  bench.last.actual = bench.axis.read(bench.pdos, true, bench.last).actual;
+  ASSERT_TRUE(bench.write(AxisState::unpowered, {.position = 0.95}));
+  EXPECT_EQ(bench.target(), 95);
+}
+
+TEST(DrivenAxis, AMotionWhoseFirstSetPointIsRefusedLeavesTheOutputsToOthers) {
+  Bench bench;
+  bench.hear(0x0023, 40);
+  bench.points[1] = {.value = 55, .generation = 1, .when = Time{2'000'000}};
+  bench.points[2] = {.value = 3, .generation = 1, .when = Time{2'000'000}};
+  bench.pdos.outputs().pack(bench.points, {.cycle = 1, .now = Time{2'000'000}});
+  bench.condition();
+  EXPECT_FALSE(bench.write(AxisState::moving, {.position = 3e7, .velocity = 0.7}));
+  ASSERT_TRUE(bench.write(AxisState::unpowered, {.position = 0.4}));
+  EXPECT_EQ(bench.target(), 55);
+  EXPECT_EQ(bench.offset(), 3);
+}
+
 TEST(DrivenAxis, TheTargetFollowsTheActualPositionWhileTheDriveIsNotEnabled) {
   Bench bench;
   bench.hear(0x0027, 100);
