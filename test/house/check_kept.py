@@ -16,7 +16,7 @@ SHOWN = "decides nothing: is only shown, or says when to show"
 NOT_KEPT = {
     "ArrivalPrediction": {PLAN: "window_"},
     "AxisStops": {SHARED: "bus_", IDLE: "ordered_ halt_ requests_"},
-    "AxisRunner": {PLAN: "period_"},
+    "AxisRunner": {PLAN: "period_ axis_"},
     "AxisMemories": {PLAN: "axes_", SHARED: "bus_"},
     "Beat": {PLAN: "plan_", SHARED: "status_ timing_", ANEW: "began_"},
     "BusLoop": {PLAN: "state_words_", SHARED: "port_ front_", SHOWN: "report_", IDLE: "requests_",

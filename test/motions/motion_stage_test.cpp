@@ -216,6 +216,55 @@ TEST(MotionStage, AfterARefusedSetPointTheDriveIsEnabledAgainWhereItStands) {
   EXPECT_NEAR(bus.position(0), rest, 1e-3);
 }
 
+/// The file permits 100 rad/s^2. A motion that ends at once from 2.5 rad/s has 1250 rad/s^2.
+TEST(MotionStage, AfterAGapOfSyncTheAxesStandEnabledAtTheirLastSetPoints) {
+  MovedAxes bus{{{.kind = sim::FaultKind::stall_master,
+                  .at = std::chrono::milliseconds{3500},
+                  .until = std::chrono::milliseconds{3520}}},
+                MovedAxes::velocity_offset};
+  bus.enable();
+  bus.run_until([&] { return bus.world.now() > std::chrono::milliseconds{2900}; });
+  bus.enable();
+  bus.move({40.0, 0.001});
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  bus.events.clear();
+  ASSERT_TRUE(
+      bus.run_until([&] { return bus.world.now() > std::chrono::milliseconds{3490}; }, 400));
+  ASSERT_GT(bus.now.axes[0].commanded.velocity, 2.5);
+  ASSERT_TRUE(bus.run_until([&] { return bus.now.axes[0].state != AxisState::moving; }, 20));
+  EXPECT_EQ(bus.now.axes[0].state, AxisState::standing);
+  EXPECT_EQ(bus.now.axes[0].stop.cause, StopCause::no_sync);
+  bus.cycle();
+  EXPECT_EQ(bus.velocity_offset_of(0), 0);
+  bus.move({-1.0});
+  bus.run(1000);
+  EXPECT_FALSE(bus.said(EventKind::limit_exceeded));
+  EXPECT_FALSE(bus.said(EventKind::fallback_begun));
+  EXPECT_TRUE(bus.enabled(0));
+  EXPECT_TRUE(bus.enabled(1)) << "it stood";
+  EXPECT_NEAR(bus.position(0), -1.0, 2e-3);
+}
+
+/// The master goes on with its cycles, and can't send in them.
+TEST(MotionStage, ADriveIsKeptEnabledWhileSyncIsMissingAndItsSenderIsAlive) {
+  MovedAxes bus{{{.kind = sim::FaultKind::interface_down,
+                  .at = std::chrono::milliseconds{4500},
+                  .until = std::chrono::milliseconds{4530}}}};
+  bus.enable();
+  bus.run_until([&] { return bus.world.now() > std::chrono::milliseconds{2900}; });
+  bus.enable();
+  bus.move({0.001});
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  bus.events.clear();
+  ASSERT_TRUE(bus.run_until([&] { return bus.world.now() > std::chrono::milliseconds{4500}; }));
+  const std::uint64_t beat = bus.now.cycle;
+  bus.run(10);
+  EXPECT_LE(bus.now.cycle, beat + 1);
+  bus.run(50);
+  EXPECT_GT(bus.now.cycle, beat + 10);
+  EXPECT_TRUE(bus.enabled(0));
+}
+
 TEST(MotionStage, AnOrderedStopEndsEachMotion) {
   MovedAxes bus;
   bus.enable();

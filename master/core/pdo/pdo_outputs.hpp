@@ -90,6 +90,9 @@ class PdoOutputs {
   /// was not taken: it is outside the limits, or an ordered stop or the loss of a node commands the
   /// output.
   bool lead(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
+  /// Commands the value that the last lead() has commanded once more. It is not judged: the axis
+  /// stands, although the limits would have it brake. Does nothing if another value is in force.
+  void hold(SignalIndex signal, OutputMoment moment) noexcept;
   /// Ends lead(). The output keeps its value and accepts its next command.
   void release_lead(SignalIndex signal) noexcept { outputs_[output_of(signal)].led = false; }
   /// Sets the value of an output of a motion without judging it: a target position that has no

@@ -266,6 +266,20 @@ bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
   return true;
 }
 
+/// The next step is measured from a standing axis.
+void PdoOutputs::hold(SignalIndex signal, OutputMoment moment) noexcept {
+  Output& output = outputs_[output_of(signal)];
+  if (!output.commanded || output.fallen || stopping_ || output.forced) return;
+  const std::int64_t value = image_.values[signal];
+  const std::uint16_t place = limits_.place_of(signal);
+  if (place != OutputLimits::no_place) {
+    limits_.admit(place, command_with(place, signal, value), moment.cycle);
+  }
+  take(output, signal,
+       {.value = value, .generation = output.generation, .time_to_live = 0, .when = moment.now},
+       moment);
+}
+
 /// Returns 1 plus the index of the input whose first value a set-point of this RPDO waits for, see
 /// OutputLimits::lacks_start(). 0 means that no set-point waits.
 std::uint32_t PdoOutputs::awaited_start(const PdoRow& pdo) const noexcept {

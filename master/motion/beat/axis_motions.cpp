@@ -32,6 +32,11 @@ void AxisMotions::sender_left(std::uint8_t axis) noexcept {
 void AxisMotions::abandon(std::uint8_t axis, StopCause cause) noexcept {
   add_stop(axis, cause);
   runners_[axis].abandon({.cause = cause, .axis = axis});
+  runners_[axis].leave_group();
+}
+
+bool AxisMotions::outlives_gap(std::uint8_t axis, BeatNumber cycle) const noexcept {
+  return runners_[axis].outlives(silence_of(runners_[axis].sender(), cycle));
 }
 
 void AxisMotions::abandon_all(StopCause cause) noexcept {
@@ -48,9 +53,11 @@ void AxisMotions::add_stop(std::size_t axis, StopCause cause) noexcept {
   GroupStop& stop = stops_[runners_[axis].group()];
   const std::uint32_t id = runners_[axis].newest();
   if (stop.stop.cause == StopCause::none) {
-    stop = {.stop = {.cause = cause, .axis = static_cast<std::uint8_t>(axis)}, .id = id};
+    stop = {.stop = {.cause = cause, .axis = static_cast<std::uint8_t>(axis)},
+            .id = id,
+            .of_all = false};
   } else if (stop.id != id) {
-    stop.id = 0;
+    stop.of_all = true;
   }
 }
 
@@ -78,7 +85,7 @@ void AxisMotions::stop_groups() noexcept {
   for (AxisRunner& runner : runners_) {
     const GroupStop& stop = stops_[runner.group()];
     if (stop.stop.cause == StopCause::none) continue;
-    if (stop.id == 0 || stop.id == runner.newest()) runner.stop(stop.stop);
+    if (stop.of_all || stop.id == runner.newest()) runner.stop(stop.stop);
   }
   stops_ = {};
 }

@@ -36,10 +36,12 @@ class AxisMotions {
   /// until the next call.
   std::span<const AxisReport> run(BeatNumber beat, std::span<const AxisInput> inputs) noexcept;
   /// Ends the motion of the axis at once, because its last set-point did not reach the drive. The
-  /// other axes of its group stop along their limits.
+  /// other axes of its group stop along their limits. The axis is not kept alive any longer.
   void abandon(std::uint8_t axis, StopCause cause) noexcept;
   /// Ends all motions at once.
   void abandon_all(StopCause cause) noexcept;
+  /// Returns true if the drive of the axis has to stay enabled in a cycle without SYNC.
+  bool outlives_gap(std::uint8_t axis, BeatNumber cycle) const noexcept;
   /// The reports of the last run.
   std::span<const AxisReport> reports() const noexcept { return reports_; }
 
@@ -49,14 +51,15 @@ class AxisMotions {
   }
 
  private:
-  /// A stop of those axes of a group whose newest motion has this id.
+  /// A stop of those axes of a group whose newest motion has this id, or of all of its axes.
   struct GroupStop {
     Stop stop;
-    std::uint32_t id = 0;  ///< 0: of all axes of the group
+    std::uint32_t id = 0;
+    bool of_all = false;
 
     template <class Archive>
     void keep(Archive& state) noexcept {
-      state(stop, id);
+      state(stop, id, of_all);
     }
   };
 

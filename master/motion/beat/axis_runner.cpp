@@ -145,13 +145,17 @@ void AxisRunner::stop(const Stop& stop) noexcept {
 
 void AxisRunner::abandon(const Stop& stop) noexcept {
   if (waiting_) refuse(Outcome::stopped);
-  newest_ = 0;
-  report_.kept_alive = false;
   if (report_.state != AxisState::moving && report_.state != AxisState::stopping) return;
   if (report_.stop.cause == StopCause::none) report_.stop = stop;
   if (report_.state == AxisState::moving) end(Outcome::stopped);
   report_.state = AxisState::standing;
   report_.commanded = {.position = report_.commanded.position};
+}
+
+void AxisRunner::leave_group() noexcept {
+  newest_ = 0;
+  group_ = axis_;
+  report_.kept_alive = false;
 }
 
 const AxisReport& AxisRunner::run(BeatNumber beat) noexcept {

@@ -29,7 +29,8 @@ class AxisRunner {
   static constexpr double start_tolerance = 1e-9;
 
   /// `period` is in s. An axis is in a group of its own until a motion begins.
-  AxisRunner(double period, std::uint8_t axis) noexcept : period_{period}, group_{axis} {}
+  AxisRunner(double period, std::uint8_t axis) noexcept
+      : period_{period}, axis_{axis}, group_{axis} {}
 
   /// The order waits for its first beat. It replaces another one that waits. Returns a refusal if
   /// it is unsound, or the second one since the last run().
@@ -49,8 +50,10 @@ class AxisRunner {
   /// Starts the shortest stop from the commanded state of the beat before. It also ends an order
   /// that waits. An axis that doesn't move keeps its state.
   void stop(const Stop& stop) noexcept;
-  /// Ends the motion at once: the axis stands at its commanded position. It is not kept alive.
+  /// Ends the motion at once: the axis stands at its commanded position.
   void abandon(const Stop& stop) noexcept;
+  /// The axis is in a group of its own until its next motion, and is not kept alive.
+  void leave_group() noexcept;
   /// The sender counts as silent from now on.
   void forget_sender() noexcept { sender_ = no_sender; }
   /// Gives the commanded state of the beat.
@@ -63,6 +66,11 @@ class AxisRunner {
   std::uint8_t sender() const noexcept { return sender_; }
   /// Id of the newest motion that began; 0 for none.
   std::uint32_t newest() const noexcept { return newest_; }
+  /// Returns true if a drive with a motion has to stay enabled although no beat comes. `silence` is
+  /// the number of cycles since the sender was heard.
+  bool outlives(BeatNumber silence) const noexcept {
+    return newest_ != 0 && report_.state != AxisState::unpowered && silence <= timeout_;
+  }
 
   template <class Archive>
   void keep(Archive& state) noexcept {
@@ -82,6 +90,7 @@ class AxisRunner {
   }
 
   double period_;
+  std::uint8_t axis_;
   AxisReport report_;
   ProfilePlayer player_;
   BeatNumber began_ = 0;

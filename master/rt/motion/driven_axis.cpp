@@ -98,11 +98,7 @@ bool DrivenAxis::write(PdoOutputs& outputs, const motion::AxisReport& report,
                        OutputMoment moment) noexcept {
   if (moves(report)) return lead(outputs, report.commanded, moment);
   const bool ends = report.state == AxisState::standing && writer_ == Writer::in_motion;
-  if (ends) {
-    const bool taken = lead(outputs, report.commanded, moment);
-    if (taken) writer_ = Writer::motion;
-    return taken;
-  }
+  if (ends) return end_motion(outputs, report.commanded, moment);
   stop_leading(outputs);
   if (report.state == AxisState::standing) return true;
   const auto raw = target_.raw(report.actual.position);
@@ -129,6 +125,20 @@ bool DrivenAxis::lead(PdoOutputs& outputs, const motion::State& state,
     clear_velocity(outputs);
   }
   return taken;
+}
+
+/// If the target position is that of the beat before, the axis stands at once, whatever its speed
+/// was: no limit can ask for anything else.
+bool DrivenAxis::end_motion(PdoOutputs& outputs, const motion::State& state,
+                            OutputMoment moment) noexcept {
+  if (target_.raw(state.position) == written_) {
+    outputs.hold(axis_.target, moment);
+    clear_velocity(outputs);
+  } else if (!lead(outputs, state, moment)) {
+    return false;
+  }
+  writer_ = Writer::motion;
+  return true;
 }
 
 void DrivenAxis::clear_velocity(PdoOutputs& outputs) const noexcept {

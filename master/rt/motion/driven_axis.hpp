@@ -59,6 +59,7 @@ class DrivenAxis {
 
   motion::AxisCondition condition(const WorkingImage& image, bool exchanging) noexcept;
   bool lead(PdoOutputs& outputs, const motion::State& state, OutputMoment moment) noexcept;
+  bool end_motion(PdoOutputs& outputs, const motion::State& state, OutputMoment moment) noexcept;
   void stop_leading(PdoOutputs& outputs) noexcept;
   void clear_velocity(PdoOutputs& outputs) const noexcept;
 

@@ -37,9 +37,11 @@ class MotionStage {
     take_messages(moment.cycle);
     if (!active_) return;
     if (bus_.status.beats != beats_) run_beat(moment, stopping);
-    if (is_late(moment)) return;
+    const bool late = is_late(moment);
     for (std::size_t i = 0; i < axes_.size(); ++i) {
-      if (motions_.reports()[i].kept_alive) axes_[i].keep_alive(bus_.pdos.outputs(), moment);
+      const bool kept = late ? motions_.outlives_gap(static_cast<std::uint8_t>(i), moment.cycle)
+                             : motions_.reports()[i].kept_alive;
+      if (kept) axes_[i].keep_alive(bus_.pdos.outputs(), moment);
     }
   }
 

@@ -414,6 +414,45 @@ TEST(AxisMotions, OneMotionThatReplacesPartOfAGroupLeavesTheRestAlone) {
   EXPECT_EQ(plant.last[0].state, AxisState::moving);
 }
 
+/// The axis with the number of the group is the one that was abandoned.
+TEST(AxisMotions, AnAbandonedAxisStopsNoLaterMotionOfItsGroup) {
+  Plant plant{3};
+  start_groups(plant);
+  plant.motions.abandon(0, StopCause::limit);
+  plant.inputs[0].set_point = plant.last[0].commanded.position;  // no judgement of the jump
+  plant.steps(1000);
+  EXPECT_EQ(plant.last[0].state, AxisState::standing);
+  EXPECT_FALSE(plant.last[0].kept_alive);
+  EXPECT_EQ(plant.last[1].stop.cause, StopCause::limit);
+  ASSERT_EQ(plant.last[1].state, AxisState::standing);
+  plant.ids = 2;
+  ASSERT_TRUE(plant.take(plant.order(1, {.position = 0.0})));
+  plant.inputs[0].condition = AxisCondition::fault;
+  plant.steps(10);
+  EXPECT_EQ(plant.last[1].state, AxisState::moving);
+}
+
+TEST(AxisMotions, AxesWhoseMotionsEndAtOnceAreKeptAliveWhileTheirSenderIsAlive) {
+  Plant plant{2};
+  plant.step();
+  ASSERT_TRUE(plant.take(plant.order(0, {.position = 0.001}, 1)));
+  ASSERT_TRUE(plant.take(plant.order(1, {.position = 5.0}, 1)));
+  plant.steps(400);
+  ASSERT_EQ(plant.last[0].state, AxisState::standing);
+  ASSERT_EQ(plant.last[1].state, AxisState::moving);
+  plant.motions.abandon_all(StopCause::no_sync);
+  plant.inputs[1].set_point = plant.last[1].commanded.position;  // no judgement of the jump
+  plant.step();
+  for (const AxisReport& report : plant.last) {
+    EXPECT_EQ(report.state, AxisState::standing);
+    EXPECT_TRUE(report.kept_alive);
+  }
+  EXPECT_EQ(plant.last[0].stop.cause, StopCause::none);
+  EXPECT_EQ(plant.last[1].stop.cause, StopCause::no_sync);
+  EXPECT_TRUE(plant.motions.outlives_gap(0, plant.beat + 99));
+  EXPECT_FALSE(plant.motions.outlives_gap(0, plant.beat + 100)) << "its sender is silent";
+}
+
 TEST(AxisMotions, TheReportKeepsTheFirstCauseOfAStop) {
   Plant plant{3};
   start_groups(plant);
