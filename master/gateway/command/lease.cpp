@@ -38,9 +38,11 @@ LeaseVerdict LeaseTable::take(std::size_t node, const Sender& sender, const Leas
   if (others) return LeaseVerdict::held;
   const LeaseVerdict verdict = judge(lease, sender.instance, term);
   if (verdict != LeaseVerdict::taken) return verdict;
+  const bool goes_on = lease.instance == sender.instance && lease.newest <= term.now + 1;
+  const std::uint64_t end = term.now + (term.cycles == 0 ? unlimited_ : term.cycles);
+  lease.end = goes_on ? std::max(lease.end, end) : end;
   lease.instance = sender.instance;
   if (lease.sender != sender.name) lease.sender = sender.name;
-  lease.end = term.now + (term.cycles == 0 ? unlimited_ : term.cycles);
   lease.newest = term.computed_from;
   lease.released = false;
   return LeaseVerdict::taken;

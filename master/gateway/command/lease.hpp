@@ -53,9 +53,9 @@ struct LeaseTerm {
 };
 
 /// Tells who may command the outputs of each node. The first sender holds the node until the time
-/// to live of its newest command has expired or until it releases the node. The commands of a node
-/// do not go back: none may be computed from an earlier cycle than the newest accepted one. Times
-/// count in cycles. Front thread.
+/// to live of each of its commands has expired or until it releases the node. The commands of a
+/// node do not go back: none may be computed from an earlier cycle than the newest accepted one.
+/// Times count in cycles. Front thread.
 class LeaseTable {
  public:
   /// `unlimited` is the number of cycles for which a command without time to live holds its node.

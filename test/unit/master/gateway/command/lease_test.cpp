@@ -106,6 +106,21 @@ TEST(Lease, EachCommandProlongsIt) {
   EXPECT_TRUE(take(leases, 0, b_sender, 105, 3));
 }
 
+/// A motion may have a longer time-out than the command that enables its drive.
+TEST(Lease, AShorterCommandOfTheHolderDoesNotShortenIt) {
+  LeaseTable leases{1, 500};
+  take(leases, 0, a_sender, 100, 50);
+
+  EXPECT_TRUE(take(leases, 0, a_sender, 101, 3));
+
+  EXPECT_TRUE(leases.holds(0, a_sender.instance, 149));
+  EXPECT_FALSE(leases.holds(0, a_sender.instance, 150));
+  EXPECT_TRUE(take(leases, 0, a_sender, 149, 50));
+  EXPECT_TRUE(leases.release(0, 151, 151));
+  EXPECT_TRUE(take(leases, 0, a_sender, 152, 3));
+  EXPECT_FALSE(leases.holds(0, a_sender.instance, 155)) << "the release has ended the longer one";
+}
+
 TEST(Lease, NodesAreHeldSeparately) {
   LeaseTable leases{2, 500};
   take(leases, 0, a_sender, 1, 10);
@@ -171,6 +186,7 @@ TEST(Lease, ACycleThatHasNotComeYetKeepsNobodyOut) {
   EXPECT_TRUE(take(leases, 0, a_sender, 900, 50)) << "the clock ran on while SYNC stood still";
 
   EXPECT_EQ(take_from(leases, 109), LeaseVerdict::taken);
+  EXPECT_FALSE(leases.holds(0, a_sender.instance, 160)) << "nor does it hold the node";
 }
 
 TEST(Lease, NobodyHoldsANodeThatIsNotThere) {
