@@ -273,7 +273,7 @@ bool MotionCommands::plan(Job& job, const CommandContext& context) {
   for (const motion::MotionOrder& order : *orders) {
     std::vector<Sent>& sent = sent_[order.axis];
     if (sent.size() == most_sent) sent.erase(sent.begin() + 1);  // the first one may run
-    sent.push_back({.order = order.id, .id = job.id, .instance = job.instance});
+    sent.push_back({.order = order.id, .id = job.id, .owner = {job.instance, job.group.sender}});
     submit_({.kind = motion::MessageKind::order, .order = order});
   }
   return false;
@@ -287,7 +287,7 @@ void MotionCommands::observe(const MotionSnapshot& snapshot, const CommandContex
     const std::uint32_t running = snapshot.axes[i].running;
     const auto found = std::ranges::find(sent_[i], running, &Sent::order);
     shown_[i].id = found == sent_[i].end() ? 0 : found->id;
-    if (found != sent_[i].end()) owners_[i] = found->instance;
+    if (found != sent_[i].end()) owners_[i] = found->owner;
     if (found != sent_[i].end()) sent_[i].erase(sent_[i].begin(), found);
   }
   std::erase_if(jobs_, [&](const Job& job) {
@@ -312,11 +312,12 @@ bool MotionCommands::holds(const Job& job, const CommandContext& context) const 
 void MotionCommands::serve(const CommandContext& context) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (stops_[i]) stop(i);
-    const bool lost =
-        owners_[i] != 0 && !commands_.holds(axes_[i].node_index, owners_[i], context.cycle);
-    if (lost &&
-        submit_({.kind = motion::MessageKind::left, .axis = static_cast<std::uint8_t>(i)})) {
-      owners_[i] = 0;
+    const bool lost = owners_[i].instance != 0 &&
+                      !commands_.holds(axes_[i].node_index, owners_[i].instance, context.cycle);
+    if (lost && submit_({.kind = motion::MessageKind::left,
+                         .sender = owners_[i].number,
+                         .axis = static_cast<std::uint8_t>(i)})) {
+      owners_[i] = {};
     }
   }
   std::erase_if(jobs_, [&](const Job& job) {

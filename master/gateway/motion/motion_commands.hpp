@@ -64,11 +64,16 @@ class MotionCommands {
     std::string why{};
     std::optional<std::size_t> axis{};
   };
+  /// A sender as the nodes and as the bus thread know it.
+  struct Owner {
+    std::int64_t instance = 0;  ///< 0 for none
+    std::uint8_t number = 0;
+  };
   /// Numbers of an order for an axis.
   struct Sent {
     std::uint32_t order = 0;
     std::int32_t id = 0;
-    std::int64_t instance = 0;
+    Owner owner{};
   };
 
   std::optional<std::vector<std::size_t>> axes_of(const motion_command_t& command,
@@ -102,8 +107,8 @@ class MotionCommands {
   std::vector<Job> jobs_;  ///< at most one for each axis
   std::vector<std::vector<Sent>> sent_;
   std::vector<ShownMotion> shown_;
-  std::vector<std::int64_t> owners_;  ///< by axis: instance whose motion began last; 0 for none
-  std::vector<bool> stops_;           ///< by axis: a stop has to be handed over
+  std::vector<Owner> owners_;  ///< by axis: the sender of the motion that began last
+  std::vector<bool> stops_;    ///< by axis: a stop has to be handed over
   bool active_ = false;
 };
 

@@ -1,6 +1,7 @@
 #include "master/motion/beat/axis_motions.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace takt::motion {
 
@@ -25,8 +26,8 @@ void AxisMotions::stop_axis(std::uint8_t axis, StopCause cause) noexcept {
   add_stop(axis, cause);
 }
 
-void AxisMotions::sender_left(std::uint8_t axis) noexcept {
-  if (axis < runners_.size()) runners_[axis].forget_sender();
+void AxisMotions::sender_left(std::uint8_t axis, std::uint8_t sender) noexcept {
+  if (axis < runners_.size() && runners_[axis].sender() == sender) runners_[axis].forget_sender();
 }
 
 void AxisMotions::abandon(std::uint8_t axis, StopCause cause) noexcept {
@@ -130,7 +131,8 @@ Outcome AxisMotions::objection_of(std::size_t axis, BeatNumber beat) noexcept {
 }
 
 BeatNumber AxisMotions::silence_of(std::uint8_t sender, BeatNumber beat) const noexcept {
-  return sender < max_axes ? beat - std::min(heard_[sender], beat) : beat;
+  if (sender >= max_axes) return std::numeric_limits<BeatNumber>::max();
+  return beat - std::min(heard_[sender], beat);
 }
 
 }  // namespace takt::motion

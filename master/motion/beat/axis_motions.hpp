@@ -23,9 +23,9 @@ class AxisMotions {
   Outcome take(const MotionOrder& order) noexcept;
   /// The sender was alive in this cycle, which is not later than the present one.
   void sender_heard(std::uint8_t sender, BeatNumber cycle) noexcept;
-  /// The sender of the newest motion of this axis may not command it any longer: it counts as
-  /// silent from now on.
-  void sender_left(std::uint8_t axis) noexcept;
+  /// The sender may not command this axis any longer. If it is that of the newest motion, it counts
+  /// as silent from now on.
+  void sender_left(std::uint8_t axis, std::uint8_t sender) noexcept;
   /// Stops the axis and its group, each axis along its own limits, in the next run(). An order of
   /// the axis that waits ends as well.
   void stop_axis(std::uint8_t axis, StopCause cause) noexcept;

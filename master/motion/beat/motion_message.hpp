@@ -11,13 +11,13 @@ enum class MessageKind : std::uint8_t {
   heard,  ///< the sender is alive
   order,  ///< `order` waits for its first beat
   stop,   ///< the axis and its group stop along their limits
-  left,   ///< the sender of the axis may not command it any longer
+  left,   ///< this sender may not command the axis any longer
 };
 
 /// A message of the front thread about motions. Plain data.
 struct MotionMessage {
   MessageKind kind = MessageKind::heard;
-  std::uint8_t sender = 0;  ///< of `heard`
+  std::uint8_t sender = 0;  ///< of `heard` and `left`
   BeatNumber cycle = 0;     ///< of `heard`: the cycle whose image the sender has seen
   std::uint8_t axis = 0;    ///< of `stop` and `left`
   MotionOrder order{};      ///< of `order`

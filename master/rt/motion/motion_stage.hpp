@@ -93,7 +93,7 @@ void MotionStage<L, S>::accept(const motion::MotionMessage& message,
       motions_.stop_axis(message.axis, motion::StopCause::application);
       break;
     case motion::MessageKind::left:
-      motions_.sender_left(message.axis);
+      motions_.sender_left(message.axis, message.sender);
       break;
     case motion::MessageKind::order: {
       const motion::Outcome refusal = motions_.take(message.order);

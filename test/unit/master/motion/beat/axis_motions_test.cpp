@@ -265,6 +265,21 @@ TEST(AxisMotions, AMotionOutlivesItsSenderByTheTimeout) {
   EXPECT_EQ(plant.last[0].commanded.velocity, 0.0);
 }
 
+/// The motion is younger than its timeout.
+TEST(AxisMotions, AMotionStopsWhenItsSenderMayNotCommandTheAxisAnyLonger) {
+  Plant plant{1};
+  plant.step();
+  ASSERT_TRUE(plant.take(plant.order(0, {.position = 5.0}, 1)));
+  plant.steps(100);
+  plant.motions.sender_left(0, 1);
+  plant.step();
+  EXPECT_EQ(plant.last[0].state, AxisState::moving) << "another sender has left";
+  plant.motions.sender_left(0, 0);
+  plant.step();
+  EXPECT_EQ(plant.last[0].state, AxisState::stopping);
+  EXPECT_EQ(plant.last[0].stop.cause, StopCause::sender_silent);
+}
+
 TEST(AxisMotions, AnOrderOfASilentSenderDoesNotBegin) {
   Plant plant{1};
   plant.step();
