@@ -53,13 +53,14 @@ class WorldClocks final : public Clocks {
   const sim::World& world_;
 };
 
-/// The demo of two axes in virtual time with its gateway, and an application that sends messages.
+/// Two axes in virtual time with their gateway, and an application that sends messages.
 class MotionBus {
  public:
   static constexpr std::int64_t session = 7;
 
-  explicit MotionBus(sim::Faults faults = {})
-      : network{load_network(TAKT_SOURCE_DIR "/share/demo/two_axes.yaml")},
+  explicit MotionBus(sim::Faults faults = {},
+                     const char* file = TAKT_SOURCE_DIR "/share/demo/two_axes.yaml")
+      : network{load_network(file)},
         axes{motion_axes(network.plan)},
         world{network.devices,
               {.seed = 3, .bitrate = network.plan.bitrate, .faults = std::move(faults)}},
@@ -139,7 +140,7 @@ class MotionBus {
   }
   void keep_alive() { send(command("alive", 0)); }
   /// A command_t of one controlword.
-  void send_controlword(std::size_t axis, std::int64_t word) {
+  void send_controlword(std::size_t axis, std::int64_t word, std::int32_t time_to_live = 0) {
     command_t message{};
     message.schema = message_schema;
     message.session = session;
@@ -148,6 +149,7 @@ class MotionBus {
     message.cycle = static_cast<std::int64_t>(bridge.status().bus.cycle);
     message.signals = {static_cast<std::int32_t>(*axes[axis].controlword)};
     message.values = {word};
+    message.time_to_live = time_to_live;
     message.num_values = 1;
     lcm.send(bridge.channels().command, message);
   }

@@ -189,7 +189,65 @@ TEST(MotionCommand, AMotionStopsWhenItsSenderKeepsOnlyAnotherNode) {
     alive.goals = {MotionBus::goal("elbow", 0.0)};
     bus.send(alive);
   };
-  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == stopping; }, 300));
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == stopping; }, 510))
+      << "the commands that have enabled the drive hold its node for 500 cycles";
+}
+
+/// The timeout is over before the motion can begin, but the sender is alive.
+TEST(MotionCommand, AMotionWithAShortTimeoutBeginsAndIsNotRefusedMeanwhile) {
+  MotionBus bus;
+  bus.enable();
+  motion_command_t message = bus.command("move", 1);
+  message.goals = {MotionBus::goal("shoulder", 1.0)};
+  message.timeout_ms = 5;
+  bus.send(message);
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).id == 1; }, 20));
+  EXPECT_FALSE(bus.said("motion_refused", ""));
+}
+
+TEST(MotionCommand, ACommandOfOutputsDoesNotShortenTheHoldOfAMotion) {
+  MotionBus bus;
+  bus.enable();
+  bus.move_one(1, 50.0);
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == moving; }, 20));
+  bus.send_controlword(0, 0x000F, 10);
+  bus.run(200);
+  EXPECT_EQ(bus.axis(0).state, moving);
+  EXPECT_TRUE(bus.enabled(0));
+}
+
+TEST(MotionCommand, AStopOfOneAxisIsASignOfLifeForTheOthers) {
+  MotionBus bus;
+  bus.enable();
+  bus.move_one(1, 50.0);
+  bus.each_cycle = [&] {
+    motion_command_t stop = bus.command("stop", 0);
+    stop.goals = {MotionBus::goal("elbow", 0.0)};
+    bus.send(stop);
+  };
+  bus.run(400);
+  EXPECT_EQ(bus.axis(0).state, moving);
+}
+
+/// The elbow is without power for a moment, while its sender holds it.
+TEST(MotionCommand, ASignOfLifeWithoutGoalsIsForTheNodesThatAreReady) {
+  MotionBus bus{
+      {{.kind = sim::FaultKind::power_off, .node = 2_node, .at = 3500ms, .until = 3520ms}},
+      TAKT_SOURCE_DIR "/test/motions/data/velocity_offset.yaml"};
+  bus.enable();
+  bus.run_until([&] { return bus.world.now() > 2900ms; });
+  bus.enable();
+  bus.move_one(1, 50.0);
+  motion_command_t move = bus.command("move", 2);
+  move.goals = {MotionBus::goal("elbow", 1.0)};
+  move.timeout_ms = 10'000;
+  bus.send(move);
+  bus.notices.clear();
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  bus.run_until([&] { return bus.world.now() > 6000ms; });
+  EXPECT_FALSE(bus.said("command_refused", ""));
+  EXPECT_EQ(bus.axis(0).state, moving);
 }
 
 TEST(MotionCommand, AHaltOfTheDriveStopsTheMotion) {

@@ -141,8 +141,10 @@ std::vector<std::size_t> MotionCommands::nodes_of(const motion_command_t& comman
   for (const std::size_t axis : axes) add(axes_[axis].node_index);
   if (!axes.empty() || command.kind != "alive") return nodes;
   for (const MotionAxis& axis : axes_) {
-    const bool held = commands_.holds(axis.node_index, command.instance, context.cycle);
-    if (held && context.nodes[axis.node_index].nmt == NmtState::operational) add(axis.node_index);
+    const std::size_t node = axis.node_index;
+    const bool boots = plan_.nodes[node].boot && context.nodes[node].boot != BootState::ready;
+    const bool held = commands_.holds(node, command.instance, context.cycle);
+    if (held && !boots && context.nodes[node].nmt == NmtState::operational) add(node);
   }
   return nodes;
 }
@@ -169,19 +171,21 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
   const auto lease = static_cast<std::uint32_t>(cycles_in(timeout_of(command), plan_.cycle.period));
   const std::vector<std::size_t> nodes = nodes_of(command, *axes, context);
   if (nodes.empty() || !commands_.lease(header, nodes, lease, context)) return;
+  const auto sender = senders_.number_of(command.instance, context.now);
+  if (sender) {
+    submit_({.kind = motion::MessageKind::heard,
+             .sender = *sender,
+             .cycle = static_cast<motion::BeatNumber>(command.cycle)});
+  }
   if (command.kind == "stop") {
     for (const std::size_t axis : *axes) stop(axis);
     return;
   }
-  const auto sender = senders_.number_of(command.instance, context.now);
   if (!sender) {
     return refuse({.id = command.id, .sender = command.sender},
                   {.why = "too many programs command motions"}, context);
   }
   active_ = true;
-  submit_({.kind = motion::MessageKind::heard,
-           .sender = *sender,
-           .cycle = static_cast<motion::BeatNumber>(command.cycle)});
   if (command.kind != "alive") begin(command, *axes, *sender, context);
 }
 
@@ -269,6 +273,7 @@ bool MotionCommands::plan(Job& job, const CommandContext& context) {
     return true;
   }
   job.order = orders->front().id;
+  job.begin = orders->front().begin;
   ++job.tries;
   for (const motion::MotionOrder& order : *orders) {
     std::vector<Sent>& sent = sent_[order.axis];
@@ -309,6 +314,12 @@ bool MotionCommands::holds(const Job& job, const CommandContext& context) const 
   });
 }
 
+/// Orders on their way can't be called back, so the bus thread decides whether they begin. It also
+/// knows whether their sender is silent. An order that the bus thread could not take has no answer.
+bool MotionCommands::has_begin_ahead(const Job& job, const CommandContext& context) {
+  return job.order != 0 && context.cycle <= job.begin + lead_beats;
+}
+
 void MotionCommands::serve(const CommandContext& context) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (stops_[i]) stop(i);
@@ -321,7 +332,7 @@ void MotionCommands::serve(const CommandContext& context) {
     }
   }
   std::erase_if(jobs_, [&](const Job& job) {
-    if (context.now <= job.until) return false;
+    if (context.now <= job.until || has_begin_ahead(job, context)) return false;
     refuse(job, {.why = "it did not begin in time"}, context);
     return true;
   });

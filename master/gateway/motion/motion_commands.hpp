@@ -53,11 +53,12 @@ class MotionCommands {
     std::int32_t id = 0;  ///< of the application
     std::string sender{};
     std::int64_t instance = 0;
-    Time until{};  ///< a job that has not begun by then is refused
+    Time until{};  ///< a job is refused if it has no orders by then
     motion::GroupGoal group{};
     std::vector<motion::AxisGoal> goals{};
     unsigned tries = 0;
-    std::uint32_t order = 0;  ///< id of its orders; 0 while it waits to be planned
+    std::uint32_t order = 0;       ///< id of its orders; 0 while it waits to be planned
+    motion::BeatNumber begin = 0;  ///< of its orders
   };
   /// Why a command is refused, and the axis that it concerns.
   struct Refusal {
@@ -86,6 +87,7 @@ class MotionCommands {
   bool plan(Job& job, const CommandContext& context);
   void stop(std::size_t axis);
   bool holds(const Job& job, const CommandContext& context) const;
+  static bool has_begin_ahead(const Job& job, const CommandContext& context);
   void drop_replaced(const Job& job);
   void on_refused(const motion::MotionEnd& end, const CommandContext& context);
   void refuse(const Job& job, const Refusal& refusal, const CommandContext& context);
