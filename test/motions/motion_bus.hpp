@@ -6,12 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "eds_parser/network_file/load_network.hpp"
-#include "eds_parser/table/motion_axes.hpp"
-#include "master/attach.hpp"
 #include "master/gateway/bridge.hpp"
-#include "master/sim/bus/sim_port.hpp"
 #include "master/sim/device/device.hpp"
+#include "test/motions/axes_in_virtual_time.hpp"
 
 namespace takt::test {
 
@@ -54,40 +51,16 @@ class WorldClocks final : public Clocks {
 };
 
 /// Two axes in virtual time with their gateway, and an application that sends messages.
-class MotionBus {
+class MotionBus final : public AxesInVirtualTime {
  public:
   static constexpr std::int64_t session = 7;
 
-  explicit MotionBus(sim::Faults faults = {},
-                     const char* file = TAKT_SOURCE_DIR "/share/demo/two_axes.yaml")
-      : network{load_network(file)},
-        axes{motion_axes(network.plan)},
-        world{network.devices,
-              {.seed = 3, .bitrate = network.plan.bitrate, .faults = std::move(faults)}},
-        port{world, {.sync = network.plan.cycle.sync_cob_id}},
-        master{network.plan},
+  explicit MotionBus(sim::Faults faults = {}, const char* file = demo)
+      : AxesInVirtualTime{std::move(faults), file},
         clocks{world},
         bridge{master, lcm, clocks, options(),
                [this](const Notice& notice) { notices.push_back(notice); }} {
-    master.attach(port);
-    master.begin();
-  }
-
-  void cycle() {
-    master.cycle();
-    if (front_runs) bridge.serve();
-    if (each_cycle) each_cycle();
-  }
-  void run(int cycles) {
-    for (int i = 0; i < cycles; ++i) cycle();
-  }
-  template <class Condition>
-  bool run_until(Condition condition, int most = 5000) {
-    for (int i = 0; i < most; ++i) {
-      cycle();
-      if (condition()) return true;
-    }
-    return false;
+    begin();
   }
 
   /// Boots both drives, and leads them to Operation enabled by command_t of `instance`. The time to
@@ -164,19 +137,17 @@ class MotionBus {
   }
 
   static constexpr double scale = 6.283185307179586e-4;
-  LoadedNetwork network;
-  std::vector<MotionAxis> axes;
-  sim::World world;
-  sim::SimPort port;
-  MasterRun master;
   MotionLcm lcm;
   WorldClocks clocks;
   std::vector<Notice> notices;
   Bridge bridge;
-  std::function<void()> each_cycle;
   bool front_runs = true;
 
  private:
+  void run_cycle() override {
+    master.cycle();
+    if (front_runs) bridge.serve();
+  }
   static BridgeOptions options() {
     BridgeOptions made;
     made.session = session;

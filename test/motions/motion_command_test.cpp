@@ -234,7 +234,7 @@ TEST(MotionCommand, AStopOfOneAxisIsASignOfLifeForTheOthers) {
 TEST(MotionCommand, ASignOfLifeWithoutGoalsIsForTheNodesThatAreReady) {
   MotionBus bus{
       {{.kind = sim::FaultKind::power_off, .node = 2_node, .at = 3500ms, .until = 3520ms}},
-      TAKT_SOURCE_DIR "/test/motions/data/velocity_offset.yaml"};
+      MotionBus::velocity_offset};
   bus.enable();
   bus.run_until([&] { return bus.world.now() > 2900ms; });
   bus.enable();

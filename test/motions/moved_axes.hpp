@@ -4,21 +4,17 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <optional>
-#include <string>
+#include <utility>
 #include <vector>
 
-#include "eds_parser/network_file/load_network.hpp"
-#include "eds_parser/table/motion_axes.hpp"
-#include "master/attach.hpp"
-#include "master/master_run.hpp"
 #include "master/motion/trajectory.hpp"
-#include "master/sim/bus/sim_port.hpp"
+#include "test/motions/axes_in_virtual_time.hpp"
 
 namespace takt::test {
 
 /// Two axes in virtual time, and an application that enables them
 /// by set-points and moves them by orders.
-class MovedAxes {
+class MovedAxes final : public AxesInVirtualTime {
  public:
   static constexpr motion::Limits limits{.max_velocity = 3.0,
                                          .min_velocity = -3.0,
@@ -26,45 +22,9 @@ class MovedAxes {
                                          .min_acceleration = -20.0,
                                          .jerk = 400.0};
 
-  static constexpr const char* demo = TAKT_SOURCE_DIR "/share/demo/two_axes.yaml";
-  /// Maps 60B1, and has limits of velocity (4 rad/s) and acceleration (100 rad/s^2).
-  static constexpr const char* velocity_offset =
-      TAKT_SOURCE_DIR "/test/motions/data/velocity_offset.yaml";
-
   explicit MovedAxes(sim::Faults faults = {}, const char* file = demo)
-      : network{load_network(file)},
-        axes{motion_axes(network.plan)},
-        world{network.devices,
-              {.seed = 3, .bitrate = network.plan.bitrate, .faults = std::move(faults)}},
-        port{world, {.sync = network.plan.cycle.sync_cob_id}},
-        master{network.plan} {
-    master.attach(port);
-    master.begin();
-  }
-
-  void cycle() {
-    if (commands) command_drives();
-    master.cycle();
-    ImageView image;
-    if (master.take_newest(image)) {
-      values.assign(image.values.begin(), image.values.end());
-      last_cycle = image.cycle;
-    }
-    master.motions(now);
-    for (motion::MotionEnd end; master.take(end);) ends.push_back(end);
-    for (Event event; master.take(event);) events.push_back(event);
-    if (each_cycle) each_cycle();
-  }
-  void run(int cycles) {
-    for (int i = 0; i < cycles; ++i) cycle();
-  }
-  template <class Condition>
-  bool run_until(Condition condition, int most = 5000) {
-    for (int i = 0; i < most; ++i) {
-      cycle();
-      if (condition()) return true;
-    }
-    return false;
+      : AxesInVirtualTime{std::move(faults), file} {
+    begin();
   }
 
   /// Boots and enables both axes; from then on no set-point is sent.
@@ -125,21 +85,27 @@ class MovedAxes {
     return std::ranges::find(events, kind, &Event::kind) != events.end();
   }
 
-  LoadedNetwork network;
-  std::vector<MotionAxis> axes;
-  sim::World world;
-  sim::SimPort port;
-  MasterRun master;
   std::vector<std::int64_t> values;  ///< of the newest image
   MotionSnapshot now;
   std::vector<motion::MotionEnd> ends;
   std::vector<Event> events;
-  std::function<void()> each_cycle;
   std::uint64_t last_cycle = 0;
   std::uint32_t id = 0;
   bool commands = false;
 
  private:
+  void run_cycle() override {
+    if (commands) command_drives();
+    master.cycle();
+    ImageView image;
+    if (master.take_newest(image)) {
+      values.assign(image.values.begin(), image.values.end());
+      last_cycle = image.cycle;
+    }
+    master.motions(now);
+    for (motion::MotionEnd end; master.take(end);) ends.push_back(end);
+    for (Event event; master.take(event);) events.push_back(event);
+  }
   std::optional<SignalIndex> output(std::size_t axis, std::uint16_t index) const {
     const auto& signals = network.plan.layout.signals;
     for (std::size_t i = network.plan.layout.inputs; i < signals.size(); ++i) {
