@@ -19,7 +19,6 @@ constexpr Time default_timeout = std::chrono::milliseconds{500};
 /// in time.
 constexpr motion::BeatNumber lead_beats = 3;
 constexpr unsigned most_tries = 100;  ///< also limits the wait for the first report
-constexpr std::size_t most_sent = 6;
 
 std::optional<motion::Synchronisation> synchronisation_of(const std::string& name) {
   if (name.empty() || name == "time") return motion::Synchronisation::time;
@@ -64,7 +63,6 @@ MotionCommands::MotionCommands(const BusPlan& plan, Commands& commands, SubmitMo
       axes_{motion_axes(plan)},
       limits_{plan},
       planner_{axes_.size(), std::chrono::duration<double>{plan.cycle.period}.count()},
-      sent_(axes_.size()),
       shown_(axes_.size()),
       owners_(axes_.size()),
       stops_(axes_.size()) {}
@@ -212,7 +210,8 @@ void MotionCommands::begin(const motion_command_t& command, std::span<const std:
   job.group = {.goal = command.kind == "jog" ? motion::Goal::velocity : motion::Goal::position,
                .synchronisation = *synchronisation,
                .sender = sender,
-               .timeout = cycles_in(timeout_of(command), plan_.cycle.period)};
+               .timeout = cycles_in(timeout_of(command), plan_.cycle.period),
+               .tag = {command.id, command.instance}};
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const motion_goal_t& goal = command.goals[i];
     const auto limits = limits_.of(axes[i], goal);
@@ -276,9 +275,6 @@ bool MotionCommands::plan(Job& job, const CommandContext& context) {
   job.begin = orders->front().begin;
   ++job.tries;
   for (const motion::MotionOrder& order : *orders) {
-    std::vector<Sent>& sent = sent_[order.axis];
-    if (sent.size() == most_sent) sent.erase(sent.begin() + 1);  // the first one may run
-    sent.push_back({.order = order.id, .id = job.id, .owner = {job.instance, job.group.sender}});
     submit_({.kind = motion::MessageKind::order, .order = order});
   }
   return false;
@@ -289,11 +285,9 @@ void MotionCommands::observe(const MotionSnapshot& snapshot, const CommandContex
   snapshot_ = snapshot;
   planner_.observe(snapshot.cycle, snapshot.axes);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const std::uint32_t running = snapshot.axes[i].running;
-    const auto found = std::ranges::find(sent_[i], running, &Sent::order);
-    shown_[i].id = found == sent_[i].end() ? 0 : found->id;
-    if (found != sent_[i].end()) owners_[i] = found->owner;
-    if (found != sent_[i].end()) sent_[i].erase(sent_[i].begin(), found);
+    const motion::TaggedOrder* running = planner_.order(i, snapshot.axes[i].running);
+    shown_[i].id = running == nullptr ? 0 : running->tag.id;
+    if (running != nullptr) owners_[i] = {running->tag.instance, running->order.sender};
   }
   std::erase_if(jobs_, [&](const Job& job) {
     return job.order != 0 && snapshot.axes[job.goals.front().axis].running == job.order;
@@ -340,8 +334,8 @@ void MotionCommands::serve(const CommandContext& context) {
 
 void MotionCommands::take(const motion::MotionEnd& end, const CommandContext& context) {
   if (end.axis >= axes_.size()) return;
-  const auto sent = std::ranges::find(sent_[end.axis], end.order.id, &Sent::order);
-  const std::int32_t id = sent == sent_[end.axis].end() ? 0 : sent->id;
+  const motion::TaggedOrder* order = planner_.order(end.axis, end.order.id);
+  const std::int32_t id = order == nullptr ? 0 : order->tag.id;
   switch (end.order.outcome) {
     case motion::Outcome::done:
       note_end(end.axis, id, ShownMotion::Ended::done);

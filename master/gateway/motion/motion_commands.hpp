@@ -70,12 +70,6 @@ class MotionCommands {
     std::int64_t instance = 0;  ///< 0 for none
     std::uint8_t number = 0;
   };
-  /// Numbers of an order for an axis.
-  struct Sent {
-    std::uint32_t order = 0;
-    std::int32_t id = 0;
-    Owner owner{};
-  };
 
   std::optional<std::vector<std::size_t>> axes_of(const motion_command_t& command,
                                                   const CommandContext& context);
@@ -107,7 +101,6 @@ class MotionCommands {
   motion::MotionPlanner planner_;
   MotionSnapshot snapshot_;
   std::vector<Job> jobs_;  ///< at most one for each axis
-  std::vector<std::vector<Sent>> sent_;
   std::vector<ShownMotion> shown_;
   std::vector<Owner> owners_;  ///< by axis: the sender of the motion that began last
   std::vector<bool> stops_;    ///< by axis: a stop has to be handed over

@@ -8,6 +8,8 @@
 namespace takt::motion {
 namespace {
 
+std::uint32_t id_of(const TaggedOrder& sent) noexcept { return sent.order.id; }
+
 State state_of(const MotionOrder& order, BeatNumber beat, double period) {
   ProfilePlayer player{order.profile, order.from, order.ending};
   return player.at(static_cast<double>(beat - order.begin) * period);
@@ -16,11 +18,11 @@ State state_of(const MotionOrder& order, BeatNumber beat, double period) {
 }  // namespace
 
 const MotionOrder* MotionPlanner::Axis::waiting(BeatNumber beat) const noexcept {
-  return !sent.empty() && sent.back().begin > beat ? &sent.back() : nullptr;
+  return !sent.empty() && sent.back().order.begin > beat ? &sent.back().order : nullptr;
 }
 
-const MotionOrder* MotionPlanner::Axis::running() const noexcept {
-  const auto found = std::ranges::find(sent, report.running, &MotionOrder::id);
+const TaggedOrder* MotionPlanner::Axis::find(std::uint32_t id) const noexcept {
+  const auto found = std::ranges::find(sent, id, id_of);
   return found == sent.end() ? nullptr : &*found;
 }
 
@@ -30,7 +32,7 @@ void MotionPlanner::observe(BeatNumber beat, std::span<const AxisReport> reports
   for (std::size_t i = 0; i < axes_.size() && i < reports.size(); ++i) {
     Axis& axis = axes_[i];
     axis.report = reports[i];
-    const auto running = std::ranges::find(axis.sent, axis.report.running, &MotionOrder::id);
+    const auto running = std::ranges::find(axis.sent, axis.report.running, id_of);
     if (running != axis.sent.end()) axis.sent.erase(axis.sent.begin(), running);
   }
 }
@@ -48,9 +50,9 @@ std::expected<State, PlanFault> MotionPlanner::state_at(const Axis& axis, BeatNu
     case AxisState::moving:
       break;
   }
-  const MotionOrder* running = axis.running();
+  const TaggedOrder* running = axis.find(axis.report.running);
   if (running == nullptr) return std::unexpected{PlanFault::foreign};
-  return state_of(*running, beat, period_);
+  return state_of(running->order, beat, period_);
 }
 
 std::expected<BeatNumber, PlanRefusal> MotionPlanner::begin_of(std::span<const AxisGoal> goals,
@@ -144,9 +146,9 @@ std::expected<std::span<const MotionOrder>, PlanRefusal> MotionPlanner::plan(
   if (const auto set = set_orders(group, goals, *first); !set) return std::unexpected{set.error()};
   ++id_;
   for (const MotionOrder& order : orders_) {
-    std::vector<MotionOrder>& sent = axes_[order.axis].sent;
+    std::vector<TaggedOrder>& sent = axes_[order.axis].sent;
     if (sent.size() == Axis::most_sent) sent.erase(sent.begin() + 1);  // the first one may run
-    sent.push_back(order);
+    sent.push_back({.order = order, .tag = group.tag});
   }
   return orders_;
 }

@@ -23,12 +23,25 @@ struct AxisGoal {
   double max_following_error = std::numeric_limits<double>::infinity();
 };
 
+/// Whose motion it is, in the numbers of the caller, who finds it again by the order.
+struct MotionTag {
+  std::int32_t id = 0;
+  std::int64_t instance = 0;
+};
+
 /// What an application wants of a group of axes, which begin and stop together.
 struct GroupGoal {
   Goal goal = Goal::position;  ///< velocity: a jog
   Synchronisation synchronisation = Synchronisation::time;
   std::uint8_t sender = 0;
   BeatNumber timeout = 0;  ///< periods for which the motion outlives the silence of its sender
+  MotionTag tag{};
+};
+
+/// An order that was planned, and whose it is.
+struct TaggedOrder {
+  MotionOrder order;
+  MotionTag tag;
 };
 
 /// Why there is no motion.
@@ -64,6 +77,11 @@ class MotionPlanner {
   /// Takes the reports of all axes in this beat.
   void observe(BeatNumber beat, std::span<const AxisReport> reports);
   BeatNumber beat() const noexcept { return beat_; }
+  /// Returns the order of the axis with this id. Null if it is unknown, or older than the one that
+  /// runs. Valid until the next call of observe() or plan().
+  const TaggedOrder* order(std::size_t axis, std::uint32_t id) const noexcept {
+    return axes_[axis].find(id);
+  }
 
   /// Plans a motion that begins in `begin`, which must be later than the next beat. If an order of
   /// one of the axes waits, the motion begins in its beat instead and replaces it. The orders have
@@ -74,14 +92,14 @@ class MotionPlanner {
 
  private:
   struct Axis {
-    static constexpr std::size_t most_sent = 4;
+    static constexpr std::size_t most_sent = 6;
 
     /// The order that begins after the newest report; null if there is none.
     const MotionOrder* waiting(BeatNumber beat) const noexcept;
-    const MotionOrder* running() const noexcept;
+    const TaggedOrder* find(std::uint32_t id) const noexcept;
 
     AxisReport report;
-    std::vector<MotionOrder> sent;  ///< the newest orders, at most `most_sent`
+    std::vector<TaggedOrder> sent;  ///< the newest orders, at most `most_sent`
   };
 
   std::expected<State, PlanFault> state_at(const Axis& axis, BeatNumber beat) const;
