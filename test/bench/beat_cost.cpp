@@ -32,7 +32,7 @@ struct MovingAxes {
       order.id = 1;
       order.axis = static_cast<std::uint8_t>(i);
       order.axes = axes;
-      order.begin = beat + 1;
+      order.begin = cycle + 1;
       order.profile = planned[i].profile;
       order.stop = limits;
       order.timeout = 1'000'000'000;
@@ -42,13 +42,13 @@ struct MovingAxes {
   }
 
   std::span<const AxisReport> run() {
-    ++beat;
-    return motions.run(beat, inputs);
+    ++cycle;
+    return motions.run(cycle, inputs);
   }
 
   AxisMotions motions;
   std::vector<AxisInput> inputs;
-  BeatNumber beat = 0;
+  CycleNumber cycle = 0;
 };
 
 void moving(benchmark::State& state) {

@@ -15,9 +15,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Time default_timeout = std::chrono::milliseconds{500};
-/// The bus thread takes an order in the next cycle, so two beats more are enough if this thread is
+/// The bus thread takes an order in the next cycle, so two cycles more are enough if this thread is
 /// in time.
-constexpr motion::BeatNumber lead_beats = 3;
+constexpr motion::CycleNumber lead_cycles = 3;
 constexpr unsigned most_tries = 100;  ///< also limits the wait for the first report
 
 std::optional<motion::Synchronisation> synchronisation_of(const std::string& name) {
@@ -49,7 +49,8 @@ Time timeout_of(const motion_command_t& command) {
 /// The order was planned too late or from another state: a new plan can succeed.
 bool can_be_planned_again(motion::Outcome outcome) {
   return outcome == motion::Outcome::too_late || outcome == motion::Outcome::other_start ||
-         outcome == motion::Outcome::second_in_beat || outcome == motion::Outcome::group_incomplete;
+         outcome == motion::Outcome::second_in_cycle ||
+         outcome == motion::Outcome::group_incomplete;
 }
 
 }  // namespace
@@ -173,7 +174,7 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
   if (sender) {
     submit_({.kind = motion::MessageKind::heard,
              .sender = *sender,
-             .cycle = static_cast<motion::BeatNumber>(command.cycle)});
+             .cycle = static_cast<motion::CycleNumber>(command.cycle)});
   }
   if (command.kind == "stop") {
     for (const std::size_t axis : *axes) stop(axis);
@@ -258,7 +259,7 @@ bool MotionCommands::plan(Job& job, const CommandContext& context) {
     return true;
   }
   const std::uint64_t since = context.cycle - std::min(context.cycle, snapshot_.cycle);
-  const auto orders = planner_.plan(job.group, job.goals, planner_.beat() + since + lead_beats);
+  const auto orders = planner_.plan(job.group, job.goals, planner_.cycle() + since + lead_cycles);
   if (!orders) {
     const motion::PlanRefusal& refusal = orders.error();
     const bool waits =
@@ -311,7 +312,7 @@ bool MotionCommands::holds(const Job& job, const CommandContext& context) const 
 /// Orders on their way can't be called back, so the bus thread decides whether they begin. It also
 /// knows whether their sender is silent. An order that the bus thread could not take has no answer.
 bool MotionCommands::has_begin_ahead(const Job& job, const CommandContext& context) {
-  return job.order != 0 && context.cycle <= job.begin + lead_beats;
+  return job.order != 0 && context.cycle <= job.begin + lead_cycles;
 }
 
 void MotionCommands::serve(const CommandContext& context) {

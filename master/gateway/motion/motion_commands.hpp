@@ -57,8 +57,8 @@ class MotionCommands {
     motion::GroupGoal group{};
     std::vector<motion::AxisGoal> goals{};
     unsigned tries = 0;
-    std::uint32_t order = 0;       ///< id of its orders; 0 while it waits to be planned
-    motion::BeatNumber begin = 0;  ///< of its orders
+    std::uint32_t order = 0;        ///< id of its orders; 0 while it waits to be planned
+    motion::CycleNumber begin = 0;  ///< of its orders
   };
   /// Why a command is refused, and the axis that it concerns.
   struct Refusal {

@@ -25,7 +25,7 @@ axis_motion_t to_message(const MotionAxis& axis, const motion::AxisReport& repor
   message.actual_position = report.actual.position;
   message.actual_velocity = report.actual.velocity;
   message.following_error = report.following_error;
-  message.time_left = static_cast<double>(report.beats_left) * period;
+  message.time_left = static_cast<double>(report.cycles_left) * period;
   return message;
 }
 

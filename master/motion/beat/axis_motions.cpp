@@ -16,7 +16,7 @@ Outcome AxisMotions::take(const MotionOrder& order) noexcept {
   return runners_[order.axis].wait(order);
 }
 
-void AxisMotions::sender_heard(std::uint8_t sender, BeatNumber cycle) noexcept {
+void AxisMotions::sender_heard(std::uint8_t sender, CycleNumber cycle) noexcept {
   if (sender < max_axes) heard_[sender] = std::max(heard_[sender], cycle);
 }
 
@@ -36,7 +36,7 @@ void AxisMotions::abandon(std::uint8_t axis, StopCause cause) noexcept {
   runners_[axis].leave_group();
 }
 
-bool AxisMotions::outlives_gap(std::uint8_t axis, BeatNumber cycle) const noexcept {
+bool AxisMotions::outlives_gap(std::uint8_t axis, CycleNumber cycle) const noexcept {
   return runners_[axis].outlives(silence_of(runners_[axis].sender(), cycle));
 }
 
@@ -49,7 +49,7 @@ void AxisMotions::stop_all(StopCause cause) noexcept {
 }
 
 /// Two motions can have the same group while one of them replaces the other axis by axis. If both
-/// have a cause in the same beat, all axes of the group stop.
+/// have a cause in the same cycle, all axes of the group stop.
 void AxisMotions::add_stop(std::size_t axis, StopCause cause) noexcept {
   GroupStop& stop = stops_[runners_[axis].group()];
   const std::uint32_t id = runners_[axis].newest();
@@ -62,22 +62,22 @@ void AxisMotions::add_stop(std::size_t axis, StopCause cause) noexcept {
   }
 }
 
-std::span<const AxisReport> AxisMotions::run(BeatNumber beat,
+std::span<const AxisReport> AxisMotions::run(CycleNumber cycle,
                                              std::span<const AxisInput> inputs) noexcept {
-  observe(beat, inputs);
+  observe(cycle, inputs);
   stop_groups();
-  begin_orders(beat);
+  begin_orders(cycle);
   for (std::size_t i = 0; i < runners_.size(); ++i) {
-    reports_[i] = runners_[i].run(beat);
+    reports_[i] = runners_[i].run(cycle);
     runners_[i].forget_ended();
   }
   return reports_;
 }
 
-void AxisMotions::observe(BeatNumber beat, std::span<const AxisInput> inputs) noexcept {
+void AxisMotions::observe(CycleNumber cycle, std::span<const AxisInput> inputs) noexcept {
   for (std::size_t i = 0; i < runners_.size(); ++i) {
-    const BeatNumber silence = silence_of(runners_[i].sender(), beat);
-    const StopCause cause = runners_[i].observe(beat, inputs[i], silence);
+    const CycleNumber silence = silence_of(runners_[i].sender(), cycle);
+    const StopCause cause = runners_[i].observe(cycle, inputs[i], silence);
     if (cause != StopCause::none) add_stop(i, cause);
   }
 }
@@ -92,47 +92,47 @@ void AxisMotions::stop_groups() noexcept {
 }
 
 /// An order begins if all orders of its group are due, have its id, and may begin.
-void AxisMotions::begin_orders(BeatNumber beat) noexcept {
+void AxisMotions::begin_orders(CycleNumber cycle) noexcept {
   std::array<Outcome, max_axes> objections{};
   std::array<std::uint8_t, max_axes> ready{};  // orders of each group
   const auto leads = [&](const MotionOrder& order) {
     if (order.group >= runners_.size()) return false;
-    const MotionOrder* first = runners_[order.group].due(beat);
+    const MotionOrder* first = runners_[order.group].due(cycle);
     return first != nullptr && first->id == order.id;
   };
   for (std::size_t i = 0; i < runners_.size(); ++i) {
-    const MotionOrder* order = runners_[i].due(beat);
+    const MotionOrder* order = runners_[i].due(cycle);
     if (order == nullptr) continue;
-    objections[i] = objection_of(i, beat);
+    objections[i] = objection_of(i, cycle);
     if (objections[i] == Outcome::none && leads(*order)) ++ready[order->group];
   }
   std::array<Outcome, max_axes> verdicts{};
   for (std::size_t i = 0; i < runners_.size(); ++i) {
-    const MotionOrder* order = runners_[i].due(beat);
+    const MotionOrder* order = runners_[i].due(cycle);
     if (order == nullptr) continue;
     const bool complete = leads(*order) && ready[order->group] == order->axes;
     const Outcome rest = complete ? Outcome::none : Outcome::group_incomplete;
     verdicts[i] = objections[i] != Outcome::none ? objections[i] : rest;
   }
   for (std::size_t i = 0; i < runners_.size(); ++i) {
-    if (runners_[i].due(beat) == nullptr) continue;
+    if (runners_[i].due(cycle) == nullptr) continue;
     if (verdicts[i] == Outcome::none) {
-      runners_[i].begin(beat);
+      runners_[i].begin(cycle);
     } else {
       runners_[i].refuse(verdicts[i]);
     }
   }
 }
 
-Outcome AxisMotions::objection_of(std::size_t axis, BeatNumber beat) noexcept {
-  const MotionOrder& order = *runners_[axis].due(beat);
-  if (silence_of(order.sender, beat) > order.timeout) return Outcome::sender_was_silent;
-  return runners_[axis].objection(beat);
+Outcome AxisMotions::objection_of(std::size_t axis, CycleNumber cycle) noexcept {
+  const MotionOrder& order = *runners_[axis].due(cycle);
+  if (silence_of(order.sender, cycle) > order.timeout) return Outcome::sender_was_silent;
+  return runners_[axis].objection(cycle);
 }
 
-BeatNumber AxisMotions::silence_of(std::uint8_t sender, BeatNumber beat) const noexcept {
-  if (sender >= max_axes) return std::numeric_limits<BeatNumber>::max();
-  return beat - std::min(heard_[sender], beat);
+CycleNumber AxisMotions::silence_of(std::uint8_t sender, CycleNumber cycle) const noexcept {
+  if (sender >= max_axes) return std::numeric_limits<CycleNumber>::max();
+  return cycle - std::min(heard_[sender], cycle);
 }
 
 }  // namespace takt::motion

@@ -14,15 +14,15 @@ namespace takt::motion {
 /// The motions of all axes of a bus, and their groups. After construction it allocates nothing.
 class AxisMotions {
  public:
-  /// `axes` is at most max_axes, `period` is that of the beat in s.
+  /// `axes` is at most max_axes, `period` is that of the cycle in s.
   AxisMotions(std::size_t axes, double period);
 
-  /// Takes an order before its first beat or in it. This is no sign of life of its sender, because
+  /// Takes an order before its first cycle or in it. This is no sign of life of its sender, because
   /// the order may have been planned late. Returns a refusal, or Outcome::none if the order waits
-  /// for its first beat.
+  /// for its first cycle.
   Outcome take(const MotionOrder& order) noexcept;
   /// The sender was alive in this cycle, which is not later than the present one.
-  void sender_heard(std::uint8_t sender, BeatNumber cycle) noexcept;
+  void sender_heard(std::uint8_t sender, CycleNumber cycle) noexcept;
   /// The sender may not command this axis any longer. If it is that of the newest motion, it counts
   /// as silent from now on.
   void sender_left(std::uint8_t axis, std::uint8_t sender) noexcept;
@@ -32,16 +32,16 @@ class AxisMotions {
   /// Does the same for all axes.
   void stop_all(StopCause cause) noexcept;
 
-  /// Runs one beat. `inputs` has one element for each axis, and so has the result, which is valid
+  /// Runs one cycle. `inputs` has one element for each axis, and so has the result, which is valid
   /// until the next call.
-  std::span<const AxisReport> run(BeatNumber beat, std::span<const AxisInput> inputs) noexcept;
+  std::span<const AxisReport> run(CycleNumber cycle, std::span<const AxisInput> inputs) noexcept;
   /// Ends the motion of the axis at once, because its last set-point did not reach the drive. The
   /// other axes of its group stop along their limits. The axis is not kept alive any longer.
   void abandon(std::uint8_t axis, StopCause cause) noexcept;
   /// Ends all motions at once.
   void abandon_all(StopCause cause) noexcept;
   /// Returns true if the drive of the axis has to stay enabled in a cycle without SYNC.
-  bool outlives_gap(std::uint8_t axis, BeatNumber cycle) const noexcept;
+  bool outlives_gap(std::uint8_t axis, CycleNumber cycle) const noexcept;
   /// The reports of the last run.
   std::span<const AxisReport> reports() const noexcept { return reports_; }
 
@@ -64,16 +64,16 @@ class AxisMotions {
   };
 
   void add_stop(std::size_t axis, StopCause cause) noexcept;
-  void observe(BeatNumber beat, std::span<const AxisInput> inputs) noexcept;
+  void observe(CycleNumber cycle, std::span<const AxisInput> inputs) noexcept;
   void stop_groups() noexcept;
-  void begin_orders(BeatNumber beat) noexcept;
-  Outcome objection_of(std::size_t axis, BeatNumber beat) noexcept;
-  BeatNumber silence_of(std::uint8_t sender, BeatNumber beat) const noexcept;
+  void begin_orders(CycleNumber cycle) noexcept;
+  Outcome objection_of(std::size_t axis, CycleNumber cycle) noexcept;
+  CycleNumber silence_of(std::uint8_t sender, CycleNumber cycle) const noexcept;
 
   std::vector<AxisRunner> runners_;
   std::vector<AxisReport> reports_;
-  std::array<GroupStop, max_axes> stops_{};   ///< of each group in the next beat
-  std::array<BeatNumber, max_axes> heard_{};  ///< of each sender
+  std::array<GroupStop, max_axes> stops_{};    ///< of each group in the next cycle
+  std::array<CycleNumber, max_axes> heard_{};  ///< of each sender
 };
 
 }  // namespace takt::motion

@@ -64,13 +64,13 @@ enum class Outcome : std::uint8_t {
   replaced,  ///< by a later order
   // The others are refusals: the order did not begin.
   unsound,            ///< see is_sound()
-  second_in_beat,     ///< the axis has got another order in the same beat
-  too_late,           ///< its first beat had passed
+  second_in_cycle,    ///< the axis has got another order in the same cycle
+  too_late,           ///< its first cycle had passed
   other_start,        ///< it does not begin where the axis is commanded to be
   no_rest,            ///< the end of its profile contradicts `ending`
   not_powered,        ///< the drive does not follow set-points
   is_stopping,        ///< the axis must come to rest first
-  sender_was_silent,  ///< longer than the timeout, before its first beat
+  sender_was_silent,  ///< longer than the timeout, before its first cycle
   group_incomplete,   ///< an order of the group is missing, or was refused
 };
 
@@ -80,7 +80,7 @@ struct EndedOrder {
   Outcome outcome = Outcome::none;
 };
 
-/// The orders of one axis that ended in one beat: at most one that waited and was replaced by a
+/// The orders of one axis that ended in one cycle: at most one that waited and was replaced by a
 /// newer one, the newer one, and the motion that ran.
 class EndedOrders {
  public:
@@ -97,23 +97,23 @@ class EndedOrders {
   std::size_t size_ = 0;
 };
 
-/// What an axis does in a beat.
+/// What an axis does in a cycle.
 struct AxisReport {
   AxisState state = AxisState::unpowered;
   State commanded;
   State actual;
   double following_error = 0.0;  ///< last commanded position minus actual position
-  std::uint32_t running = 0;     ///< id of the motion of this beat, 0 for none
-  BeatNumber beats_left = 0;     ///< until the end of the profile that runs
+  std::uint32_t running = 0;     ///< id of the motion of this cycle, 0 for none
+  CycleNumber cycles_left = 0;   ///< until the end of the profile that runs
   /// The sender of the newest motion is alive, or the axis moves: the drive has to stay enabled.
   bool kept_alive = false;
   Stop stop;
-  EndedOrders ended;  ///< in this beat
+  EndedOrders ended;  ///< in this cycle
 
-  /// Not the orders that have ended: they are told in the beat in which they end.
+  /// Not the orders that have ended: they are told in the cycle in which they end.
   template <class Archive>
   void keep(Archive& archive) noexcept {
-    archive(state, commanded, actual, following_error, running, beats_left, kept_alive, stop);
+    archive(state, commanded, actual, following_error, running, cycles_left, kept_alive, stop);
   }
 };
 

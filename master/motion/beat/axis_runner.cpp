@@ -58,31 +58,31 @@ bool ends_as_it_says(const MotionOrder& order) noexcept {
 
 Outcome AxisRunner::wait(const MotionOrder& order) noexcept {
   if (!is_sound(order)) return Outcome::unsound;
-  if (has_taken_) return Outcome::second_in_beat;
+  if (has_taken_) return Outcome::second_in_cycle;
   has_taken_ = true;
   if (waiting_) refuse(Outcome::replaced);
   waiting_ = order;
   return Outcome::none;
 }
 
-const MotionOrder* AxisRunner::due(BeatNumber beat) const noexcept {
-  return waiting_ && waiting_->begin <= beat ? &*waiting_ : nullptr;
+const MotionOrder* AxisRunner::due(CycleNumber cycle) const noexcept {
+  return waiting_ && waiting_->begin <= cycle ? &*waiting_ : nullptr;
 }
 
-Outcome AxisRunner::objection(BeatNumber beat) noexcept {
-  if (waiting_->begin < beat) return Outcome::too_late;
+Outcome AxisRunner::objection(CycleNumber cycle) noexcept {
+  if (waiting_->begin < cycle) return Outcome::too_late;
   if (report_.state == AxisState::unpowered || !follows_) return Outcome::not_powered;
   if (report_.state == AxisState::stopping) return Outcome::is_stopping;
   if (!ends_as_it_says(*waiting_)) return Outcome::no_rest;
-  return is_same(waiting_->from, commanded_at(beat), waiting_->stop) ? Outcome::none
-                                                                     : Outcome::other_start;
+  return is_same(waiting_->from, commanded_at(cycle), waiting_->stop) ? Outcome::none
+                                                                      : Outcome::other_start;
 }
 
-void AxisRunner::begin(BeatNumber beat) noexcept {
+void AxisRunner::begin(CycleNumber cycle) noexcept {
   if (report_.state == AxisState::moving) end(Outcome::replaced);
   const MotionOrder& order = *waiting_;
   player_ = ProfilePlayer{order.profile, order.from, order.ending};
-  began_ = beat;
+  began_ = cycle;
   stop_limits_ = order.stop;
   timeout_ = order.timeout;
   latest_stop_ = order.latest_stop;
@@ -101,8 +101,8 @@ void AxisRunner::refuse(Outcome why) noexcept {
   waiting_.reset();
 }
 
-StopCause AxisRunner::observe(BeatNumber beat, const AxisInput& input,
-                              BeatNumber silence) noexcept {
+StopCause AxisRunner::observe(CycleNumber cycle, const AxisInput& input,
+                              CycleNumber silence) noexcept {
   const bool followed = std::exchange(follows_, input.condition == AxisCondition::enabled);
   report_.actual = input.actual;
   report_.following_error = report_.commanded.position - input.actual.position;
@@ -129,7 +129,7 @@ StopCause AxisRunner::observe(BeatNumber beat, const AxisInput& input,
   if (report_.state != AxisState::moving) return StopCause::none;
   if (std::abs(report_.following_error) > max_following_error_) return StopCause::following_error;
   if (silence > timeout_) return StopCause::sender_silent;
-  if (beat - began_ > latest_stop_) return StopCause::end_of_range;
+  if (cycle - began_ > latest_stop_) return StopCause::end_of_range;
   return StopCause::none;
 }
 
@@ -158,22 +158,22 @@ void AxisRunner::leave_group() noexcept {
   report_.kept_alive = false;
 }
 
-const AxisReport& AxisRunner::run(BeatNumber beat) noexcept {
+const AxisReport& AxisRunner::run(CycleNumber cycle) noexcept {
   has_taken_ = false;
-  last_run_ = beat;
-  report_.beats_left = 0;
+  last_run_ = cycle;
+  report_.cycles_left = 0;
   if (report_.state == AxisState::unpowered) {
     report_.commanded = {.position = report_.actual.position};
     report_.following_error = 0.0;
     return report_;
   }
-  report_.commanded = commanded_at(beat);
+  report_.commanded = commanded_at(cycle);
   if (report_.state == AxisState::standing) return report_;
   if (!player_.is_over()) {
-    const double left = player_.duration() - static_cast<double>(beat - began_) * period_;
+    const double left = player_.duration() - static_cast<double>(cycle - began_) * period_;
     constexpr double most = 1e15;
-    report_.beats_left =
-        static_cast<BeatNumber>(std::min(std::ceil(std::max(left, 0.0) / period_), most));
+    report_.cycles_left =
+        static_cast<CycleNumber>(std::min(std::ceil(std::max(left, 0.0) / period_), most));
   } else if (player_.ending() == Ending::rest) {
     if (report_.state == AxisState::moving) end(Outcome::done);
     report_.state = AxisState::standing;
@@ -181,9 +181,9 @@ const AxisReport& AxisRunner::run(BeatNumber beat) noexcept {
   return report_;
 }
 
-State AxisRunner::commanded_at(BeatNumber beat) noexcept {
+State AxisRunner::commanded_at(CycleNumber cycle) noexcept {
   if (report_.state == AxisState::standing) return report_.commanded;
-  return player_.at(static_cast<double>(beat - began_) * period_);
+  return player_.at(static_cast<double>(cycle - began_) * period_);
 }
 
 void AxisRunner::end(Outcome outcome) noexcept {

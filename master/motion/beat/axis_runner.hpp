@@ -8,19 +8,19 @@
 
 namespace takt::motion {
 
-/// Runs the motions of one axis, beat by beat. Its states:
+/// Runs the motions of one axis, cycle by cycle. Its states:
 ///
 /// | from             | to        | when                                                      |
 /// |------------------|-----------|-----------------------------------------------------------|
 /// | unpowered        | standing  | the drive is enabled: it stands at its commanded position |
-/// | standing, moving | moving    | an order begins in its beat                               |
+/// | standing, moving | moving    | an order begins in its cycle                              |
 /// | moving           | standing  | the motion has ended at rest                              |
 /// | moving           | stopping  | stop()                                                    |
 /// | stopping         | standing  | the axis is at rest                                       |
 /// | moving, stopping | standing  | abandon()                                                 |
 /// | each other       | unpowered | the drive is certainly not enabled any longer             |
 ///
-/// A beat calls observe(), then stop() if the group stops, then begin() or refuse() if an order is
+/// A cycle calls observe(), then stop() if the group stops, then begin() or refuse() if an order is
 /// due, then run(). No call allocates; the bound of instructions is that of stop().
 class AxisRunner {
  public:
@@ -32,22 +32,22 @@ class AxisRunner {
   AxisRunner(double period, std::uint8_t axis) noexcept
       : period_{period}, axis_{axis}, group_{axis} {}
 
-  /// The order waits for its first beat. It replaces another one that waits. Returns a refusal if
+  /// The order waits for its first cycle. It replaces another one that waits. Returns a refusal if
   /// it is unsound, or the second one since the last run().
   Outcome wait(const MotionOrder& order) noexcept;
   /// Returns the order that waits.
   const MotionOrder* waiting() const noexcept { return waiting_ ? &*waiting_ : nullptr; }
-  /// Returns the order that waits if its first beat is this one or has passed.
-  const MotionOrder* due(BeatNumber beat) const noexcept;
+  /// Returns the order that waits if its first cycle is this one or has passed.
+  const MotionOrder* due(CycleNumber cycle) const noexcept;
   /// Returns Outcome::none if the order that is due may begin.
-  Outcome objection(BeatNumber beat) noexcept;
-  void begin(BeatNumber beat) noexcept;
+  Outcome objection(CycleNumber cycle) noexcept;
+  void begin(CycleNumber cycle) noexcept;
   void refuse(Outcome why) noexcept;
 
   /// Takes what the drive tells. Returns the cause if the axis makes its group stop. `silence` is
   /// the number of cycles since the sender was heard.
-  StopCause observe(BeatNumber beat, const AxisInput& input, BeatNumber silence) noexcept;
-  /// Starts the shortest stop from the commanded state of the beat before. It also ends an order
+  StopCause observe(CycleNumber cycle, const AxisInput& input, CycleNumber silence) noexcept;
+  /// Starts the shortest stop from the commanded state of the cycle before. It also ends an order
   /// that waits. An axis that doesn't move keeps its state.
   void stop(const Stop& stop) noexcept;
   /// Ends the motion at once: the axis stands at its commanded position.
@@ -56,9 +56,9 @@ class AxisRunner {
   void leave_group() noexcept;
   /// The sender counts as silent from now on.
   void forget_sender() noexcept { sender_ = no_sender; }
-  /// Gives the commanded state of the beat.
-  const AxisReport& run(BeatNumber beat) noexcept;
-  /// Forgets which orders have ended. Called before the orders of the next beat are taken.
+  /// Gives the commanded state of the cycle.
+  const AxisReport& run(CycleNumber cycle) noexcept;
+  /// Forgets which orders have ended. Called before the orders of the next cycle are taken.
   void forget_ended() noexcept { report_.ended.clear(); }
 
   std::uint8_t group() const noexcept { return group_; }
@@ -66,9 +66,9 @@ class AxisRunner {
   std::uint8_t sender() const noexcept { return sender_; }
   /// Id of the newest motion that began; 0 for none.
   std::uint32_t newest() const noexcept { return newest_; }
-  /// Returns true if a drive with a motion has to stay enabled although no beat comes. `silence` is
-  /// the number of cycles since the sender was heard.
-  bool outlives(BeatNumber silence) const noexcept {
+  /// Returns true if a drive with a motion has to stay enabled although no SYNC is sent. `silence`
+  /// is the number of cycles since the sender was heard.
+  bool outlives(CycleNumber silence) const noexcept {
     return newest_ != 0 && report_.state != AxisState::unpowered && silence <= timeout_;
   }
 
@@ -83,7 +83,7 @@ class AxisRunner {
  private:
   static constexpr std::uint8_t no_sender = max_axes;
 
-  State commanded_at(BeatNumber beat) noexcept;
+  State commanded_at(CycleNumber cycle) noexcept;
   void end(Outcome outcome) noexcept;
   void end(std::uint32_t id, Outcome outcome) noexcept {
     report_.ended.add({.id = id, .outcome = outcome});
@@ -93,16 +93,16 @@ class AxisRunner {
   std::uint8_t axis_;
   AxisReport report_;
   ProfilePlayer player_;
-  BeatNumber began_ = 0;
-  BeatNumber last_run_ = 0;  ///< the beat of the commanded state
+  CycleNumber began_ = 0;
+  CycleNumber last_run_ = 0;  ///< the cycle of the commanded state
   Limits stop_limits_;
-  BeatNumber timeout_ = 0;
-  BeatNumber latest_stop_ = 0;
+  CycleNumber timeout_ = 0;
+  CycleNumber latest_stop_ = 0;
   double max_following_error_ = 0.0;
   std::optional<MotionOrder> waiting_;
   std::uint32_t newest_ = 0;
   bool has_taken_ = false;  ///< an order since the last run()
-  bool follows_ = false;    ///< the drive follows set-points in this beat
+  bool follows_ = false;    ///< the drive follows set-points in this cycle
   std::uint8_t group_;
   std::uint8_t sender_ = 0;
 };

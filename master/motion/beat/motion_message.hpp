@@ -9,7 +9,7 @@ namespace takt::motion {
 /// What a message of the front thread is about.
 enum class MessageKind : std::uint8_t {
   heard,  ///< the sender is alive
-  order,  ///< `order` waits for its first beat
+  order,  ///< `order` waits for its first cycle
   stop,   ///< the axis and its group stop along their limits
   left,   ///< this sender may not command the axis any longer
 };
@@ -18,7 +18,7 @@ enum class MessageKind : std::uint8_t {
 struct MotionMessage {
   MessageKind kind = MessageKind::heard;
   std::uint8_t sender = 0;  ///< of `heard` and `left`
-  BeatNumber cycle = 0;     ///< of `heard`: the cycle whose image the sender has seen
+  CycleNumber cycle = 0;    ///< of `heard`: the cycle whose image the sender has seen
   std::uint8_t axis = 0;    ///< of `stop` and `left`
   MotionOrder order{};      ///< of `order`
 

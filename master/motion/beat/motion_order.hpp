@@ -8,10 +8,9 @@
 
 namespace takt::motion {
 
-/// Number of a beat, which is a cycle whose SYNC was sent: the number of this cycle. The numbers
-/// jump where periods have no SYNC, so that their differences are times by the clock. They never
-/// wrap.
-using BeatNumber = std::uint64_t;
+/// Number of a cycle. Motions advance in the cycles whose SYNC was sent, by the clock: these
+/// numbers jump where periods have no SYNC, so that their differences are times. They never wrap.
+using CycleNumber = std::uint64_t;
 
 /// Axes, groups and senders are numbered from 0. A bus has at most 127 nodes, and axes above this
 /// number can't be moved.
@@ -23,7 +22,7 @@ enum class Ending : std::uint8_t {
   cruise,  ///< it keeps the velocity of the end until it is stopped (jog)
 };
 
-/// A planned motion of one axis, which the bus thread runs from one beat on. All orders of a group
+/// A planned motion of one axis, which the bus thread runs from one cycle on. All orders of a group
 /// that have the same id begin together, or none does. Plain data.
 struct MotionOrder {
   std::uint32_t id = 0;   ///< not 0
@@ -33,14 +32,14 @@ struct MotionOrder {
   std::uint8_t axes = 1;  ///< number of orders with this id
   std::uint8_t sender = 0;  ///< less than max_axes
   Ending ending = Ending::rest;
-  BeatNumber begin = 0;    ///< the axis is at `from` in this beat
-  State from;              ///< must be what the axis is commanded in the beat `begin`
-  Profile profile;         ///< of the motion that starts at `from`
-  Limits stop;             ///< of a stop
-  BeatNumber timeout = 0;  ///< periods for which the motion outlives the silence of its sender
-  /// The axis is stopped at the latest from the state that it has so many beats after `begin`, see
-  /// beats_with_stop().
-  BeatNumber latest_stop = std::numeric_limits<BeatNumber>::max();
+  CycleNumber begin = 0;    ///< the axis is at `from` in this cycle
+  State from;               ///< must be what the axis is commanded in the cycle `begin`
+  Profile profile;          ///< of the motion that starts at `from`
+  Limits stop;              ///< of a stop
+  CycleNumber timeout = 0;  ///< periods for which the motion outlives the silence of its sender
+  /// The axis is stopped at the latest from the state that it has so many cycles after `begin`, see
+  /// cycles_with_stop().
+  CycleNumber latest_stop = std::numeric_limits<CycleNumber>::max();
   /// Distance between commanded and actual position above which the group stops.
   double max_following_error = std::numeric_limits<double>::infinity();
 

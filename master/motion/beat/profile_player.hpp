@@ -6,7 +6,7 @@
 namespace takt::motion {
 
 /// Gives the states of a motion at times that only rise. It passes each segment once, so that a
-/// beat costs as much for a long motion as for a short one.
+/// cycle costs as much for a long motion as for a short one.
 class ProfilePlayer {
  public:
   ProfilePlayer() noexcept = default;

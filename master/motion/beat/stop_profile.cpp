@@ -35,9 +35,9 @@ Profile stop_profile(const State& from, const Limits& limits) noexcept {
 
 namespace {
 
-/// Beats for which an axis can go on with this velocity, when a stop from `state` covers `stop`.
-double beats_of_cruise(const State& state, const PositionRange& stop, const PositionRange& range,
-                       double period) noexcept {
+/// Cycles for which an axis can go on with this velocity, when a stop from `state` covers `stop`.
+double cycles_of_cruise(const State& state, const PositionRange& stop, const PositionRange& range,
+                        double period) noexcept {
   if (state.velocity == 0.0) return std::numeric_limits<double>::infinity();
   const double room = state.velocity > 0.0 ? range.max - stop.max : stop.min - range.min;
   return room / (std::abs(state.velocity) * period);
@@ -45,19 +45,19 @@ double beats_of_cruise(const State& state, const PositionRange& stop, const Posi
 
 }  // namespace
 
-std::optional<BeatNumber> beats_with_stop(const MotionOrder& order, const PositionRange& range,
-                                          double period, BeatNumber limit) noexcept {
+std::optional<CycleNumber> cycles_with_stop(const MotionOrder& order, const PositionRange& range,
+                                            double period, CycleNumber limit) noexcept {
   ProfilePlayer player{order.profile, order.from, order.ending};
-  std::optional<BeatNumber> last;
-  for (BeatNumber beat = 0; beat <= limit; ++beat) {
-    const State state = player.at(static_cast<double>(beat) * period);
+  std::optional<CycleNumber> last;
+  for (CycleNumber cycle = 0; cycle <= limit; ++cycle) {
+    const State state = player.at(static_cast<double>(cycle) * period);
     const Profile stop = stop_profile(state, order.stop);
     if (!stays_inside(range, stop, state)) break;
-    last = beat;
+    last = cycle;
     if (!player.is_over()) continue;
-    const double more = beats_of_cruise(state, positions_of(stop, state), range, period);
-    const double rest = static_cast<double>(limit - beat);
-    return more < rest ? beat + static_cast<BeatNumber>(std::max(more, 0.0)) : limit;
+    const double more = cycles_of_cruise(state, positions_of(stop, state), range, period);
+    const double rest = static_cast<double>(limit - cycle);
+    return more < rest ? cycle + static_cast<CycleNumber>(std::max(more, 0.0)) : limit;
   }
   return last;
 }

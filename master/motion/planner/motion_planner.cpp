@@ -10,15 +10,15 @@ namespace {
 
 std::uint32_t id_of(const TaggedOrder& sent) noexcept { return sent.order.id; }
 
-State state_of(const MotionOrder& order, BeatNumber beat, double period) {
+State state_of(const MotionOrder& order, CycleNumber cycle, double period) {
   ProfilePlayer player{order.profile, order.from, order.ending};
-  return player.at(static_cast<double>(beat - order.begin) * period);
+  return player.at(static_cast<double>(cycle - order.begin) * period);
 }
 
 }  // namespace
 
-const MotionOrder* MotionPlanner::Axis::waiting(BeatNumber beat) const noexcept {
-  return !sent.empty() && sent.back().order.begin > beat ? &sent.back().order : nullptr;
+const MotionOrder* MotionPlanner::Axis::waiting(CycleNumber cycle) const noexcept {
+  return !sent.empty() && sent.back().order.begin > cycle ? &sent.back().order : nullptr;
 }
 
 const TaggedOrder* MotionPlanner::Axis::find(std::uint32_t id) const noexcept {
@@ -27,8 +27,8 @@ const TaggedOrder* MotionPlanner::Axis::find(std::uint32_t id) const noexcept {
 }
 
 /// Orders that were sent before the one that runs can't be needed any more.
-void MotionPlanner::observe(BeatNumber beat, std::span<const AxisReport> reports) {
-  beat_ = beat;
+void MotionPlanner::observe(CycleNumber cycle, std::span<const AxisReport> reports) {
+  cycle_ = cycle;
   for (std::size_t i = 0; i < axes_.size() && i < reports.size(); ++i) {
     Axis& axis = axes_[i];
     axis.report = reports[i];
@@ -37,9 +37,9 @@ void MotionPlanner::observe(BeatNumber beat, std::span<const AxisReport> reports
   }
 }
 
-/// The state that the axis will have in a beat after the newest report, before the orders that
+/// The state that the axis will have in a cycle after the newest report, before the orders that
 /// begin in it.
-std::expected<State, PlanFault> MotionPlanner::state_at(const Axis& axis, BeatNumber beat) const {
+std::expected<State, PlanFault> MotionPlanner::state_at(const Axis& axis, CycleNumber cycle) const {
   switch (axis.report.state) {
     case AxisState::unpowered:
       return std::unexpected{PlanFault::not_enabled};
@@ -52,12 +52,12 @@ std::expected<State, PlanFault> MotionPlanner::state_at(const Axis& axis, BeatNu
   }
   const TaggedOrder* running = axis.find(axis.report.running);
   if (running == nullptr) return std::unexpected{PlanFault::foreign};
-  return state_of(running->order, beat, period_);
+  return state_of(running->order, cycle, period_);
 }
 
-std::expected<BeatNumber, PlanRefusal> MotionPlanner::begin_of(std::span<const AxisGoal> goals,
-                                                               BeatNumber begin) const {
-  std::optional<BeatNumber> first;
+std::expected<CycleNumber, PlanRefusal> MotionPlanner::begin_of(std::span<const AxisGoal> goals,
+                                                                CycleNumber begin) const {
+  std::optional<CycleNumber> first;
   for (std::size_t i = 0; i < goals.size(); ++i) {
     const std::uint8_t axis = goals[i].axis;
     const auto earlier = goals.first(i);
@@ -65,9 +65,9 @@ std::expected<BeatNumber, PlanRefusal> MotionPlanner::begin_of(std::span<const A
     if (axis >= axes_.size() || twice) {
       return std::unexpected{PlanRefusal{.fault = PlanFault::no_axis, .axis = axis}};
     }
-    const MotionOrder* waiting = axes_[axis].waiting(beat_);
+    const MotionOrder* waiting = axes_[axis].waiting(cycle_);
     if (waiting == nullptr) continue;
-    if (waiting->begin <= beat_ + 1) {
+    if (waiting->begin <= cycle_ + 1) {
       return std::unexpected{PlanRefusal{.fault = PlanFault::busy, .axis = axis}};
     }
     first = std::max(first.value_or(0), waiting->begin);
@@ -77,7 +77,7 @@ std::expected<BeatNumber, PlanRefusal> MotionPlanner::begin_of(std::span<const A
 
 std::expected<void, PlanRefusal> MotionPlanner::set_tasks(const GroupGoal& group,
                                                           std::span<const AxisGoal> goals,
-                                                          BeatNumber begin) {
+                                                          CycleNumber begin) {
   tasks_.clear();
   for (const AxisGoal& goal : goals) {
     const auto from = state_at(axes_[goal.axis], begin);
@@ -95,11 +95,11 @@ std::expected<void, PlanRefusal> MotionPlanner::set_tasks(const GroupGoal& group
       .fault = PlanFault::impossible, .axis = goals[refused.axis].axis, .defect = refused.defect}};
 }
 
-/// A motion to rest inside the range can be stopped inside it in each beat: no motion from the same
-/// state with the same limits brakes earlier than the stop.
+/// A motion to rest inside the range can be stopped inside it in each cycle: no motion from the
+/// same state with the same limits brakes earlier than the stop.
 std::expected<void, PlanRefusal> MotionPlanner::set_orders(const GroupGoal& group,
                                                            std::span<const AxisGoal> goals,
-                                                           BeatNumber begin) {
+                                                           CycleNumber begin) {
   const bool is_jog = group.goal == Goal::velocity;
   double jog_start = 0.0;
   orders_.clear();
@@ -125,7 +125,7 @@ std::expected<void, PlanRefusal> MotionPlanner::set_orders(const GroupGoal& grou
       if (jog_start > longest_jog_start) {
         return std::unexpected{PlanRefusal{.fault = PlanFault::too_long, .axis = goal.axis}};
       }
-      const auto latest = beats_with_stop(order, goal.range, period_, order.latest_stop);
+      const auto latest = cycles_with_stop(order, goal.range, period_, order.latest_stop);
       if (!latest) {
         return std::unexpected{PlanRefusal{
             .fault = PlanFault::impossible, .axis = goal.axis, .defect = Defect::position_range}};
@@ -138,8 +138,8 @@ std::expected<void, PlanRefusal> MotionPlanner::set_orders(const GroupGoal& grou
 }
 
 std::expected<std::span<const MotionOrder>, PlanRefusal> MotionPlanner::plan(
-    const GroupGoal& group, std::span<const AxisGoal> goals, BeatNumber begin) {
-  if (beat_ == 0) return std::unexpected{PlanRefusal{.fault = PlanFault::no_report}};
+    const GroupGoal& group, std::span<const AxisGoal> goals, CycleNumber begin) {
+  if (cycle_ == 0) return std::unexpected{PlanRefusal{.fault = PlanFault::no_report}};
   const auto first = begin_of(goals, begin);
   if (!first) return std::unexpected{first.error()};
   if (const auto set = set_tasks(group, goals, *first); !set) return std::unexpected{set.error()};

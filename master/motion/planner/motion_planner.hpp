@@ -34,7 +34,7 @@ struct GroupGoal {
   Goal goal = Goal::position;  ///< velocity: a jog
   Synchronisation synchronisation = Synchronisation::time;
   std::uint8_t sender = 0;
-  BeatNumber timeout = 0;  ///< periods for which the motion outlives the silence of its sender
+  CycleNumber timeout = 0;  ///< periods for which the motion outlives the silence of its sender
   MotionTag tag{};
 };
 
@@ -53,7 +53,7 @@ enum class PlanFault : std::uint8_t {
   stopping,     ///< the axis must come to rest first
   foreign,      ///< the axis runs a motion that this planner does not know
   impossible,   ///< see `defect`
-  too_long,     ///< the motion, or the start of a jog, takes too many beats
+  too_long,     ///< the motion, or the start of a jog, takes too many cycles
 };
 
 struct PlanRefusal {
@@ -62,56 +62,56 @@ struct PlanRefusal {
   Defect defect{};  ///< of PlanFault::impossible
 };
 
-/// Plans motions from the states that the axes will have in a future beat. It knows these states
+/// Plans motions from the states that the axes will have in a future cycle. It knows these states
 /// from the newest reports and from the orders that it has planned before. One thread.
 class MotionPlanner {
  public:
-  /// Most beats in which the axes of a jog reach their velocities, all axes added. It bounds the
+  /// Most cycles in which the axes of a jog reach their velocities, all axes added. It bounds the
   /// time that plan() takes.
   static constexpr double longest_jog_start = 20'000;
-  static constexpr double longest_motion = 1e9;  ///< in beats
+  static constexpr double longest_motion = 1e9;  ///< in cycles
 
-  /// `period` is that of the beat in s.
+  /// `period` is that of the cycle in s.
   MotionPlanner(std::size_t axes, double period) : period_{period}, axes_(axes) {}
 
-  /// Takes the reports of all axes in this beat.
-  void observe(BeatNumber beat, std::span<const AxisReport> reports);
-  BeatNumber beat() const noexcept { return beat_; }
+  /// Takes the reports of all axes in this cycle.
+  void observe(CycleNumber cycle, std::span<const AxisReport> reports);
+  CycleNumber cycle() const noexcept { return cycle_; }
   /// Returns the order of the axis with this id. Null if it is unknown, or older than the one that
   /// runs. Valid until the next call of observe() or plan().
   const TaggedOrder* order(std::size_t axis, std::uint32_t id) const noexcept {
     return axes_[axis].find(id);
   }
 
-  /// Plans a motion that begins in `begin`, which must be later than the next beat. If an order of
-  /// one of the axes waits, the motion begins in its beat instead and replaces it. The orders have
+  /// Plans a motion that begins in `begin`, which must be later than the next cycle. If an order of
+  /// one of the axes waits, the motion begins in its cycle instead and replaces it. The orders have
   /// the same new id. They are valid until the next call.
   std::expected<std::span<const MotionOrder>, PlanRefusal> plan(const GroupGoal& group,
                                                                 std::span<const AxisGoal> goals,
-                                                                BeatNumber begin);
+                                                                CycleNumber begin);
 
  private:
   struct Axis {
     static constexpr std::size_t most_sent = 6;
 
     /// The order that begins after the newest report; null if there is none.
-    const MotionOrder* waiting(BeatNumber beat) const noexcept;
+    const MotionOrder* waiting(CycleNumber cycle) const noexcept;
     const TaggedOrder* find(std::uint32_t id) const noexcept;
 
     AxisReport report;
     std::vector<TaggedOrder> sent;  ///< the newest orders, at most `most_sent`
   };
 
-  std::expected<State, PlanFault> state_at(const Axis& axis, BeatNumber beat) const;
-  std::expected<BeatNumber, PlanRefusal> begin_of(std::span<const AxisGoal> goals,
-                                                  BeatNumber begin) const;
+  std::expected<State, PlanFault> state_at(const Axis& axis, CycleNumber cycle) const;
+  std::expected<CycleNumber, PlanRefusal> begin_of(std::span<const AxisGoal> goals,
+                                                   CycleNumber begin) const;
   std::expected<void, PlanRefusal> set_tasks(const GroupGoal& group,
-                                             std::span<const AxisGoal> goals, BeatNumber begin);
+                                             std::span<const AxisGoal> goals, CycleNumber begin);
   std::expected<void, PlanRefusal> set_orders(const GroupGoal& group,
-                                              std::span<const AxisGoal> goals, BeatNumber begin);
+                                              std::span<const AxisGoal> goals, CycleNumber begin);
 
   double period_;
-  BeatNumber beat_ = 0;
+  CycleNumber cycle_ = 0;
   std::uint32_t id_ = 0;
   std::vector<Axis> axes_;
   std::vector<AxisTask> tasks_;

@@ -47,7 +47,7 @@ class MotionStage {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(active_, beats_, last_beat_, axes_, motions_);
+    state(active_, beats_, last_run_, axes_, motions_);
   }
 
  private:
@@ -56,19 +56,19 @@ class MotionStage {
 
   /// If SYNC is missing in more periods than this, the drives have stopped following, and a motion
   /// that went on would jump.
-  static constexpr motion::BeatNumber most_missed = 1;
+  static constexpr motion::CycleNumber most_missed = 1;
 
   bool is_late(OutputMoment moment) const noexcept {
-    return last_beat_ != 0 && moment.cycle - last_beat_ > most_missed + 1;
+    return last_run_ != 0 && moment.cycle - last_run_ > most_missed + 1;
   }
-  void take_messages(motion::BeatNumber cycle) noexcept {
+  void take_messages(motion::CycleNumber cycle) noexcept {
     motion::MotionMessage message;
     for (std::size_t i = 0; i < most_messages && front_.take_motion(message); ++i) {
       active_ = true;
       accept(message, cycle);
     }
   }
-  void accept(const motion::MotionMessage& message, motion::BeatNumber cycle) noexcept;
+  void accept(const motion::MotionMessage& message, motion::CycleNumber cycle) noexcept;
   void run_beat(OutputMoment moment, bool stopping) noexcept;
   void tell_ends() noexcept;
 
@@ -78,13 +78,13 @@ class MotionStage {
   motion::AxisMotions motions_;
   std::vector<motion::AxisInput> inputs_;
   std::uint64_t beats_ = 0;           ///< BusStatus::beats when a beat was run last
-  motion::BeatNumber last_beat_ = 0;  ///< the last one that was run
+  motion::CycleNumber last_run_ = 0;  ///< the cycle in which a beat was run last
   bool active_ = false;               ///< a message has come
 };
 
 template <FrontLink L, Services S>
 void MotionStage<L, S>::accept(const motion::MotionMessage& message,
-                               motion::BeatNumber cycle) noexcept {
+                               motion::CycleNumber cycle) noexcept {
   switch (message.kind) {
     case motion::MessageKind::heard:
       motions_.sender_heard(message.sender, std::min(message.cycle, cycle));
@@ -109,7 +109,7 @@ template <FrontLink L, Services S>
 void MotionStage<L, S>::run_beat(OutputMoment moment, bool stopping) noexcept {
   beats_ = bus_.status.beats;
   if (is_late(moment)) motions_.abandon_all(motion::StopCause::no_sync);
-  last_beat_ = moment.cycle;
+  last_run_ = moment.cycle;
   if (stopping) motions_.stop_all(motion::StopCause::ordered_stop);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const bool exchanging = bus_.exchanging[axes_[i].node_index()];

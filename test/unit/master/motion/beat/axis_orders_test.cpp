@@ -20,7 +20,7 @@ TEST(AxisOrders, AnOrderBeginsInItsBeatAndEndsAtItsTarget) {
   EXPECT_EQ(plant.last[0].state, AxisState::moving);
   EXPECT_EQ(plant.last[0].commanded.position, 0.0);
   EXPECT_EQ(plant.last[0].running, 1U);
-  const BeatNumber left = plant.last[0].beats_left;
+  const CycleNumber left = plant.last[0].cycles_left;
   plant.steps(static_cast<int>(left));
   EXPECT_EQ(plant.last[0].state, AxisState::standing);
   EXPECT_EQ(plant.ended[0].outcome, Outcome::done);
@@ -52,7 +52,7 @@ TEST(AxisOrders, RefusesWhatWouldJumpAndGoesOn) {
   plant.steps(100);
   plant.ids = 2;
   MotionOrder late = plant.order(0, {.position = 2.0});
-  late.begin = plant.beat;
+  late.begin = plant.cycle;
   ASSERT_TRUE(plant.take(late));
   plant.step();
   EXPECT_EQ(plant.ended[0].outcome, Outcome::too_late);
@@ -105,7 +105,7 @@ TEST(AxisOrders, ALaterOrderThatWaitsReplacesTheEarlierOne) {
   plant.step();
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 1.0})));
   plant.ids = 2;
-  EXPECT_EQ(plant.motions.take(plant.order(0, {.position = 2.0})), Outcome::second_in_beat);
+  EXPECT_EQ(plant.motions.take(plant.order(0, {.position = 2.0})), Outcome::second_in_cycle);
   plant.step();
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 2.0})));
   plant.step();
@@ -172,7 +172,7 @@ TEST(AxisOrders, TheOrdersOfAGroupBeginTogetherOrNotAtAll) {
   ASSERT_TRUE(plant.take(first));
   plant.step();
   EXPECT_EQ(plant.ended[0].outcome, Outcome::group_incomplete);
-  first.begin = plant.beat + 1;
+  first.begin = plant.cycle + 1;
   MotionOrder second = first;  // group 0
   second.axis = 1;
   second.from.position = 1.0;
@@ -194,10 +194,10 @@ TEST(AxisOrders, RandomOrdersAndStopsNeverJumpAndKeepTheLimits) {
   struct Planned {
     State from;
     Profile profile;
-    BeatNumber begin = 0;
+    CycleNumber begin = 0;
 
-    State at(BeatNumber beat) const {
-      return profile.at(from, static_cast<double>(beat - begin) * Plant::period);
+    State at(CycleNumber cycle) const {
+      return profile.at(from, static_cast<double>(cycle - begin) * Plant::period);
     }
   };
   std::array<Planned, 4> planned;

@@ -19,7 +19,7 @@ TEST(MotionStops, AnAxisIsKeptAliveWhileItMovesOrItsSenderIsAlive) {
   EXPECT_TRUE(plant.last[0].kept_alive);
   plant.step();
   EXPECT_FALSE(plant.last[0].kept_alive);
-  plant.motions.sender_heard(0, plant.beat);
+  plant.motions.sender_heard(0, plant.cycle);
   plant.step();
   EXPECT_TRUE(plant.last[0].kept_alive);
 }
@@ -29,7 +29,7 @@ TEST(MotionStops, AMotionOutlivesItsSenderByTheTimeout) {
   plant.step();
   ASSERT_TRUE(plant.take(plant.order(0, {.position = 5.0}, 1)));
   plant.steps(400);
-  plant.motions.sender_heard(0, plant.beat);
+  plant.motions.sender_heard(0, plant.cycle);
   plant.steps(500);
   EXPECT_EQ(plant.last[0].state, AxisState::moving);
   plant.step();
@@ -190,8 +190,8 @@ TEST(MotionStops, AxesWhoseMotionsEndAtOnceAreKeptAliveWhileTheirSenderIsAlive) 
   }
   EXPECT_EQ(plant.last[0].stop.cause, StopCause::none);
   EXPECT_EQ(plant.last[1].stop.cause, StopCause::no_sync);
-  EXPECT_TRUE(plant.motions.outlives_gap(0, plant.beat + 99));
-  EXPECT_FALSE(plant.motions.outlives_gap(0, plant.beat + 100)) << "its sender is silent";
+  EXPECT_TRUE(plant.motions.outlives_gap(0, plant.cycle + 99));
+  EXPECT_FALSE(plant.motions.outlives_gap(0, plant.cycle + 100)) << "its sender is silent";
 }
 
 TEST(MotionStops, TheReportKeepsTheFirstCauseOfAStop) {
@@ -213,7 +213,7 @@ TEST(MotionStops, AJogKeepsItsVelocityAndStopsInsideTheRange) {
   jog.profile = Plant::plan({}, {.velocity = 0.8}, Goal::velocity);
   jog.ending = Ending::cruise;
   jog.timeout = 100000;
-  const auto latest = beats_with_stop(jog, range, Plant::period, 100000);
+  const auto latest = cycles_with_stop(jog, range, Plant::period, 100000);
   ASSERT_TRUE(latest.has_value());
   jog.latest_stop = *latest;
   ASSERT_TRUE(plant.take(jog));
@@ -231,7 +231,7 @@ TEST(MotionStops, NoStopStaysInsideARangeThatTheAxisIsAboutToLeave) {
   order.from.velocity = 1.0;
   order.stop = Plant::limits;
   order.ending = Ending::cruise;
-  EXPECT_EQ(beats_with_stop(order, {.max = 0.01}, Plant::period, 10), std::nullopt);
+  EXPECT_EQ(cycles_with_stop(order, {.max = 0.01}, Plant::period, 10), std::nullopt);
 }
 
 }  // namespace

@@ -31,8 +31,8 @@ class Plant {
   }
 
   void step() {
-    ++beat;
-    const auto reports = motions.run(beat, inputs);
+    ++cycle;
+    const auto reports = motions.run(cycle, inputs);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       const bool powered =
           last[i].state != AxisState::unpowered && reports[i].state != AxisState::unpowered;
@@ -47,12 +47,12 @@ class Plant {
     for (int i = 0; i < count; ++i) step();
   }
 
-  MotionOrder order(std::uint8_t axis, const State& to, BeatNumber ahead = 10) const {
+  MotionOrder order(std::uint8_t axis, const State& to, CycleNumber ahead = 10) const {
     const State& from = last[axis].commanded;
     return {.id = ids,
             .axis = axis,
             .group = axis,
-            .begin = beat + ahead,
+            .begin = cycle + ahead,
             .from = from,
             .profile = plan(from, to),
             .stop = limits,
@@ -61,7 +61,7 @@ class Plant {
 
   /// Takes the order and a sign of life of its sender.
   bool take(const MotionOrder& order) {
-    motions.sender_heard(order.sender, beat);
+    motions.sender_heard(order.sender, cycle);
     return motions.take(order) == Outcome::none;
   }
 
@@ -83,7 +83,7 @@ class Plant {
   std::vector<AxisInput> inputs;
   std::vector<AxisReport> last;
   std::vector<EndedOrder> ended;  ///< of each axis, the order that ended last
-  BeatNumber beat = 0;
+  CycleNumber cycle = 0;
   std::uint32_t ids = 1;
   bool follows = true;
 

@@ -25,19 +25,19 @@ class Line {
   }
 
   void step() {
-    ++beat;
-    motions.run(beat, inputs);
+    ++cycle;
+    motions.run(cycle, inputs);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       for (const EndedOrder& end : motions.reports()[i].ended.orders()) ends.push_back(end);
       inputs[i].actual = motions.reports()[i].commanded;
     }
-    planner.observe(beat, motions.reports());
+    planner.observe(cycle, motions.reports());
   }
   void steps(int count) {
     for (int i = 0; i < count; ++i) step();
   }
   auto plan(const std::vector<AxisGoal>& goals, Goal goal = Goal::position) {
-    return planner.plan({.goal = goal, .timeout = 100'000}, goals, beat + 3);
+    return planner.plan({.goal = goal, .timeout = 100'000}, goals, cycle + 3);
   }
   /// Plans, and gives the orders to the bus thread.
   bool send(const std::vector<AxisGoal>& goals, Goal goal = Goal::position) {
@@ -54,7 +54,7 @@ class Line {
   AxisMotions motions;
   std::vector<AxisInput> inputs;
   std::vector<EndedOrder> ends;
-  BeatNumber beat = 0;
+  CycleNumber cycle = 0;
 };
 
 AxisGoal to(std::uint8_t axis, double position) {
@@ -90,7 +90,7 @@ TEST(MotionPlanner, AxesOfAGroupArriveTogether) {
   ASSERT_TRUE(line.send({to(0, 1.0), to(1, -0.1), to(2, 0.3)}));
   line.steps(3);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(line.axis(i).state, AxisState::moving);
-  const BeatNumber left = line.axis(0).beats_left;
+  const CycleNumber left = line.axis(0).cycles_left;
   line.steps(static_cast<int>(left) - 1);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(line.axis(i).state, AxisState::moving) << i;
   line.steps(2);
@@ -138,7 +138,7 @@ TEST(MotionPlanner, AWaitingOrderIsReplacedOrAwaited) {
   ASSERT_TRUE(line.send({to(0, 1.0)}));
   line.step();
   ASSERT_TRUE(line.send({to(0, -0.3)}));
-  EXPECT_EQ(line.plan({to(0, 0.5)})->front().begin, line.beat + 2) << "that of the waiting order";
+  EXPECT_EQ(line.plan({to(0, 0.5)})->front().begin, line.cycle + 2) << "that of the waiting order";
   line.step();
   EXPECT_EQ(line.plan({to(0, 1.0)}).error().fault, PlanFault::busy);
   line.steps(5000);
