@@ -11,11 +11,12 @@ CandumpLog::CandumpLog(const BusPlan& plan, const std::string& path)
   if (path.empty()) return;
   file_.open(path);
   if (!file_) throw std::runtime_error{"can't write " + path};
+  writes_ = true;
 }
 
 void CandumpLog::on_wire(const sim::WireFrame& wire) noexcept {
   statistics_.on_wire(wire);
-  if (!file_.is_open() || wire.result != sim::WireResult::sent) return;
+  if (!writes_ || wire.result != sim::WireResult::sent) return;
   std::array<char, 96> text{};
   const long long us = wire.end.count() / 1000;
   const Frame& frame = wire.frame;

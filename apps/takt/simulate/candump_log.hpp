@@ -20,6 +20,7 @@ class CandumpLog final : public sim::BusObserver {
   WireStatistics statistics_;
   std::string bus_;
   std::ofstream file_;
+  bool writes_ = false;  ///< `file_` is open
 };
 
 }  // namespace takt

@@ -20,6 +20,7 @@ void FaultSchedule::insert(const Edge& edge) {
   edges_.insert(std::upper_bound(from, edges_.end(), edge.at,
                                  [](Time at, const Edge& other) { return at < other.at; }),
                 edge);
+  find_next();
 }
 
 }  // namespace takt::sim

@@ -19,16 +19,22 @@ class FaultSchedule {
   explicit FaultSchedule(const Faults& faults);
   void add(const Fault& fault);
 
-  Time next() const noexcept { return next_ < edges_.size() ? edges_[next_].at : never; }
-  Edge take() noexcept { return edges_[next_++]; }
+  Time next() const noexcept { return next_at_; }
+  Edge take() noexcept {
+    const Edge edge = edges_[next_++];
+    find_next();
+    return edge;
+  }
   const Fault& fault(std::size_t index) const noexcept { return faults_[index]; }
 
  private:
   void insert(const Edge& edge);
+  void find_next() noexcept { next_at_ = next_ < edges_.size() ? edges_[next_].at : never; }
 
   Faults faults_;
   std::vector<Edge> edges_;  ///< by time, then by order of addition
   std::size_t next_ = 0;
+  Time next_at_ = never;  ///< time of edges_[next_], which each step of the world asks for
 };
 
 }  // namespace takt::sim

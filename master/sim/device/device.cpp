@@ -1,7 +1,6 @@
 #include "master/sim/device/device.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 #include "master/sim/dictionary/cob_rules.hpp"
 
@@ -12,6 +11,12 @@ constexpr std::uint16_t pdos_a_direction = 512;
 constexpr std::uint16_t sdo_servers = 128;
 constexpr Time fast_tick = std::chrono::milliseconds{1};   // for event-driven TPDOs
 constexpr Time slow_tick = std::chrono::milliseconds{10};  // between updates of a model
+
+/// True if the frame belongs to the exchange of process data, which changes no deadline of a
+/// service.
+bool is_exchange(const Route& route, const Frame& frame) noexcept {
+  return !frame.rtr && (route.kind == RouteKind::sync || route.kind == RouteKind::rpdo);
+}
 
 }  // namespace
 
@@ -136,20 +141,24 @@ void Device::send_bootup(Time now) noexcept {
 }
 
 bool Device::on_frame(const Frame& frame, Time now) noexcept {
-  auto route = std::ranges::lower_bound(routes_, frame.id, {}, &Route::id);
-  if (route == routes_.end() || route->id != frame.id) return false;
-  const auto next = route + 1;
-  const bool alone = next == routes_.end() || next->id != frame.id;
-  if (alone && keep_until_sync(*route, frame, now)) return false;
-  std::array<Route, 8> taken;  // a handler may rebuild the routes
-  std::size_t count = 0;
-  bool services = frame.rtr;
-  for (; route != routes_.end() && route->id == frame.id && count < taken.size(); ++route) {
-    taken[count++] = *route;
-    services = services || (route->kind != RouteKind::sync && route->kind != RouteKind::rpdo);
+  const std::span<const Route> found = routes_.of(frame.id);
+  if (found.empty()) return false;
+  if (found.size() == 1) {
+    if (keep_until_sync(found.front(), frame, now)) return false;
+    const Route route = found.front();
+    dispatch(route, frame, now);
+    is_exchange(route, frame) ? finish_exchange(now) : finish_call(now);
+    return true;
   }
-  for (std::size_t i = 0; i < count; ++i) dispatch(taken[i], frame, now);
-  services ? finish_call(now) : finish_exchange(now);
+  std::array<Route, 8> taken;  // a handler may rebuild the routes
+  const std::size_t count = std::min(found.size(), taken.size());
+  std::copy_n(found.begin(), count, taken.begin());
+  bool exchange = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    exchange = exchange && is_exchange(taken[i], frame);
+    dispatch(taken[i], frame, now);
+  }
+  exchange ? finish_exchange(now) : finish_call(now);
   return true;
 }
 
@@ -352,38 +361,39 @@ void Device::route_sdo_servers() noexcept {
       if (((request | answer) & cob_invalid) != 0 || request == 0 || answer == 0) continue;
       sdo_[n].set_channel(cob_id(request), cob_id(answer));
     }
-    routes_.push_back({sdo_[n].request_id(), RouteKind::sdo, n});
+    routes_.add({sdo_[n].request_id(), RouteKind::sdo, n});
   }
 }
 
 void Device::build_routes() noexcept {
-  routes_.clear();
-  routes_.push_back({CobId::base(0), RouteKind::nmt, 0});
-  if (lss_) routes_.push_back({LssSlave::id(), RouteKind::lss, 0});
+  list_routes();
+  routes_.sort();
   routes_changed_ = true;
+}
+
+void Device::list_routes() noexcept {
+  routes_.clear();
+  routes_.add({CobId::base(0), RouteKind::nmt, 0});
+  if (lss_) routes_.add({LssSlave::id(), RouteKind::lss, 0});
   if (speaks_only_lss()) return;
-  routes_.push_back({sync_.id(), RouteKind::sync, 0});
-  if (const auto time = time_.id()) routes_.push_back({*time, RouteKind::time, 0});
+  routes_.add({sync_.id(), RouteKind::sync, 0});
+  if (const auto time = time_.id()) routes_.add({*time, RouteKind::time, 0});
   route_sdo_servers();
-  routes_.push_back({guarding_.id(), RouteKind::guarding, 0});
+  routes_.add({guarding_.id(), RouteKind::guarding, 0});
   for (const auto& watch : watch_.watches()) {
     if (watch.node != 0) {
-      routes_.push_back({CobId::base(0x700u + watch.node), RouteKind::heartbeat, 0});
+      routes_.add({CobId::base(0x700u + watch.node), RouteKind::heartbeat, 0});
     }
   }
   for (std::size_t i = 0; i < rpdos_.size(); ++i) {
     if (!rpdos_[i].record().valid()) continue;
-    routes_.push_back({rpdos_[i].record().id(), RouteKind::rpdo, static_cast<std::uint16_t>(i)});
+    routes_.add({rpdos_[i].record().id(), RouteKind::rpdo, static_cast<std::uint16_t>(i)});
   }
   for (std::size_t i = 0; i < tpdos_.size(); ++i) {
     const PdoRecord& record = tpdos_[i].record();
     if (!record.valid() || !record.rtr_allowed()) continue;
-    routes_.push_back({record.id(), RouteKind::tpdo_request, static_cast<std::uint16_t>(i)});
+    routes_.add({record.id(), RouteKind::tpdo_request, static_cast<std::uint16_t>(i)});
   }
-  // All keys differ, so an in-place sort, which allocates nothing, gives a definite order.
-  std::ranges::sort(routes_, {}, [](const Route& route) {
-    return std::tuple{route.id, route.kind, route.index};
-  });
 }
 
 }  // namespace takt::sim

@@ -11,6 +11,7 @@
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/time.hpp"
 #include "master/sim/device/device_faults.hpp"
+#include "master/sim/device/routes.hpp"
 #include "master/sim/dictionary/dictionary.hpp"
 #include "master/sim/dictionary/object_store.hpp"
 #include "master/sim/dictionary/parameter_storage.hpp"
@@ -74,7 +75,7 @@ class Device final : private Dictionary {
   /// have changed since its last call.
   template <class Visit>
   void visit_ids(Visit visit) const {
-    for (const Route& route : routes_) visit(route.id);
+    for (const Route& route : routes_.all()) visit(route.id);
   }
   std::size_t most_ids() const noexcept { return routes_.capacity(); }
   bool take_routes_changed() noexcept { return std::exchange(routes_changed_, false); }
@@ -108,24 +109,6 @@ class Device final : private Dictionary {
   const TimeConsumer& time_of_day() const noexcept { return time_; }
 
  private:
-  /// If several routes have the same identifier, they receive a frame in this order.
-  enum class RouteKind : std::uint8_t {
-    nmt,
-    sync,
-    sdo,
-    heartbeat,
-    rpdo,
-    tpdo_request,
-    guarding,
-    lss,
-    time,
-  };
-  struct Route {
-    CobId id;
-    RouteKind kind = RouteKind::nmt;
-    std::uint16_t index = 0;
-  };
-
   // Dictionary
   Abort read(ObjectKey key, Time now, std::span<const std::byte>& data) noexcept override;
   Abort write(ObjectKey key, Time now, std::span<const std::byte> data) noexcept override;
@@ -160,6 +143,7 @@ class Device final : private Dictionary {
   void forget_configuration_date(const Object& changed) noexcept;
   void pdo_written(ObjectKey key, Time now) noexcept;
   void build_routes() noexcept;
+  void list_routes() noexcept;
   void route_sdo_servers() noexcept;
   void look_at_inputs(Time now) noexcept;
   void plan_tick() noexcept;
@@ -192,7 +176,7 @@ class Device final : private Dictionary {
   std::vector<Rpdo> rpdos_;
   MultiplexedPdos multiplexed_;
   std::unique_ptr<Model> model_;
-  std::vector<Route> routes_;  ///< sorted by ascending identifier
+  Routes routes_;
   bool routes_changed_ = true;
   bool answers_rpdos_ = false;  ///< DeviceTraits::answers_255
   DeviceState state_ = DeviceState::off;
