@@ -1,6 +1,7 @@
 #include "master/sim/bus/frame_bits.hpp"
 
 #include <array>
+#include <utility>
 
 namespace takt::sim {
 namespace {
@@ -28,7 +29,7 @@ constexpr auto crc_table = [] {
 
 /// A run of equal bits: last bit * 4 + (length of the run - 1), length 1..4.
 using Run = std::uint8_t;
-constexpr Run runs = 8;
+constexpr std::uint32_t runs = 8;
 
 struct RunStep {
   Run run = 0;
@@ -43,22 +44,24 @@ constexpr RunStep follow(Run run, bool bit) {
   return {static_cast<Run>(bit ? 0 : 4), 1};  // the stuff bit begins a new run
 }
 
-/// Stuff bits are counted in units of 256, so that sums of table entries need no division: the runs
-/// of all steps of a frame add up to less than one unit.
-constexpr std::uint32_t one_stuff_bit = 256;
+/// An entry of the table below: the stuff bits in its lowest byte, so that the sum of the entries
+/// of a frame counts its stuff bits, and the run in the bits above, where it is the next row.
+using Step = std::uint16_t;
+constexpr std::uint32_t one_row = 256;
+constexpr std::uint32_t row_mask = (runs - 1) * one_row;
 
-/// Stuff bits and next run, for each 1 to 8 bits (with a leading one bit as length mark) and for
-/// each run before them. The run is the last index, because the next step waits for it.
-constexpr auto run_table = [] {
-  std::array<std::array<std::uint16_t, runs>, 512> table{};
-  for (Run start = 0; start < runs; ++start) {
-    table[1][start] = start;
-    for (std::uint32_t marked = 2; marked < 512; ++marked) {
-      const std::uint16_t before = table[marked >> 1][start];
-      const RunStep step = follow(before % runs, (marked & 1) != 0);
-      const std::uint32_t stuffed = before / one_stuff_bit + step.stuffed;
-      table[marked][start] = static_cast<std::uint16_t>(stuffed * one_stuff_bit + step.run);
+/// Stuff bits and next run, for each run and each `count` bits that follow it.
+template <int count>
+constexpr auto steps = [] {
+  std::array<Step, std::size_t{runs} << count> table{};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    RunStep step{static_cast<Run>(i >> count), 0};
+    std::uint32_t stuffed = 0;
+    for (int bit = count - 1; bit >= 0; --bit) {
+      step = follow(step.run, (i >> bit & 1) != 0);
+      stuffed += step.stuffed;
     }
+    table[i] = static_cast<Step>(step.run * one_row + stuffed);
   }
   return table;
 }();
@@ -66,69 +69,78 @@ constexpr auto run_table = [] {
 /// Computes CRC and stuff bits of a row of bits that grows behind SOF (0).
 class BitRow {
  public:
-  /// `bytes` is the number of calls of head() and byte() that follow.
+  /// `bytes` is the number of calls of add() that follow.
   explicit BitRow(std::size_t bytes) noexcept : following_{bytes} {}
 
-  /// Appends the lowest `count` bits, 1..8, as the first ones: leading zeros do not change the CRC.
-  void head(std::uint32_t bits, int count) noexcept {
+  /// Appends `count` bits, 1..8. If there are fewer than 8, they must be the first ones: leading
+  /// zeros do not change the CRC.
+  template <int count = 8>
+  void add(std::uint32_t bits) noexcept {
     crc_ ^= crc_table[--following_][bits];
-    stuff(bits, count);
+    stuff<count>(bits);
   }
-  void byte(std::uint32_t value) noexcept { head(value & 0xFF, 8); }
   /// Appends `count` bits that the CRC does not cover.
-  void stuff(std::uint32_t bits, int count) noexcept {
-    const std::uint32_t step = run_table[1u << count | bits][run_];
-    run_ = step % runs;
-    steps_ += step;
+  template <int count = 8>
+  void stuff(std::uint32_t bits) noexcept {
+    step_ = steps<count>[(step_ & row_mask) >> (8 - count) | bits];
+    sum_ += step_;
   }
   std::uint32_t crc() const noexcept { return crc_; }
-  std::uint32_t stuffed() const noexcept { return steps_ / one_stuff_bit; }
+  std::uint32_t stuffed() const noexcept { return sum_ % one_row; }
 
  private:
   std::size_t following_;
   std::uint32_t crc_ = 0;
-  std::uint32_t steps_ = 0;  ///< sum of the table entries
-  std::uint32_t run_ = 0;
+  std::uint32_t sum_ = 0;  ///< sum of the table entries
+  std::uint32_t step_ = 0;
 };
 
 /// Appends 18 bits: identifier, RTR, IDE, r0, DLC.
-void base_header(BitRow& row, const Frame& frame) noexcept {
+[[gnu::always_inline]] inline void base_header(BitRow& row, const Frame& frame) noexcept {
   const std::uint32_t bits =
       frame.id.id() << 7 | static_cast<std::uint32_t>(frame.rtr) << 6 | frame.length;
-  row.head(bits >> 16, 2);
-  row.byte(bits >> 8);
-  row.byte(bits);
+  row.add<2>(bits >> 16);
+  row.add(bits >> 8 & 0xFF);
+  row.add(bits & 0xFF);
 }
 
 /// Appends 38 bits: identifier, SRR, IDE, identifier, RTR, r1, r0, DLC.
-void extended_header(BitRow& row, const Frame& frame) noexcept {
+[[gnu::always_inline]] inline void extended_header(BitRow& row, const Frame& frame) noexcept {
   const std::uint64_t id = frame.id.id();
   const std::uint64_t bits = (id >> 18) << 27 | std::uint64_t{3} << 25 | (id & 0x3'FFFF) << 7 |
                              static_cast<std::uint64_t>(frame.rtr) << 6 | frame.length;
-  row.head(static_cast<std::uint32_t>(bits >> 32), 6);
-  for (int shift = 24; shift >= 0; shift -= 8) row.byte(static_cast<std::uint32_t>(bits >> shift));
+  row.add<6>(static_cast<std::uint32_t>(bits >> 32));
+  for (int shift = 24; shift >= 0; shift -= 8) row.add(bits >> shift & 0xFF);
 }
 
-}  // namespace
-
-FrameBits frame_bits(const Frame& frame) noexcept {
-  const bool extended = frame.id.is_extended();
-  const std::uint32_t bytes = frame.rtr ? 0 : frame.length;
+/// Counts a frame of this kind. The number of its data bytes is a constant, so that the loop is
+/// unrolled and each step has its places in the tables.
+template <bool extended, std::uint32_t bytes>
+FrameBits count(const Frame& frame) noexcept {
   BitRow row{(extended ? 5u : 3u) + bytes};
-  if (extended) {
-    extended_header(row, frame);
-  } else {
-    base_header(row, frame);
-  }
+  extended ? extended_header(row, frame) : base_header(row, frame);
 #pragma GCC unroll 8
-  for (std::uint32_t i = 0; i < bytes; ++i) row.byte(frame.data[i]);
+  for (std::uint32_t i = 0; i < bytes; ++i) row.add(frame.data[i]);
   const std::uint32_t crc = row.crc();
-  row.stuff(crc >> 8, 7);
-  row.stuff(crc & 0xFF, 8);
+  row.stuff<7>(crc >> 8);
+  row.stuff(crc & 0xFF);
   const std::uint32_t plain = (extended ? 64u : 44u) + 8 * bytes;
   return {.crc = static_cast<std::uint16_t>(crc),
           .stuff = static_cast<std::uint16_t>(row.stuffed()),
           .total = static_cast<std::uint16_t>(plain + row.stuffed())};
+}
+
+/// count(), by the number of data bytes.
+template <bool extended>
+constexpr auto counts = []<std::size_t... bytes>(std::index_sequence<bytes...>) {
+  return std::array{&count<extended, bytes>...};
+}(std::make_index_sequence<9>{});
+
+}  // namespace
+
+FrameBits frame_bits(const Frame& frame) noexcept {
+  const std::size_t bytes = frame.rtr ? 0 : frame.length;
+  return frame.id.is_extended() ? counts<true>[bytes](frame) : counts<false>[bytes](frame);
 }
 
 }  // namespace takt::sim

@@ -23,22 +23,22 @@ struct QueuedFrame {
 /// allocates memory after construction.
 class FrameQueue {
  public:
-  explicit FrameQueue(std::size_t capacity) : frames_(capacity) {}
+  explicit FrameQueue(std::size_t capacity) : frames_(capacity), capacity_{capacity} {}
 
   bool empty() const noexcept { return first_ == end_; }
   std::size_t size() const noexcept { return end_ - first_; }
-  bool full() const noexcept { return size() == frames_.size(); }
+  bool full() const noexcept { return size() == capacity_; }
   const QueuedFrame& operator[](std::size_t position) const noexcept {
     return frames_[first_ + position];
   }
   auto begin() const noexcept { return frames_.begin() + static_cast<std::ptrdiff_t>(first_); }
   auto end() const noexcept { return frames_.begin() + static_cast<std::ptrdiff_t>(end_); }
 
-  /// Appends a frame and returns it, to be filled in its place. Requires that the queue is not
-  /// full.
+  /// Appends a frame and returns it, to be filled in its place, where it still holds an earlier
+  /// frame. Requires that the queue is not full.
   QueuedFrame& push_back() noexcept {
-    if (end_ == frames_.size()) close_gap();
-    return frames_[end_++] = {};
+    if (end_ == capacity_) close_gap();
+    return frames_[end_++];
   }
   /// Requires that the queue is not full.
   void push_front(const QueuedFrame& frame) noexcept {
@@ -80,6 +80,7 @@ class FrameQueue {
   }
 
   std::vector<QueuedFrame> frames_;
+  std::size_t capacity_;   ///< size of `frames_`
   std::size_t first_ = 0;  ///< the frames before it were taken
   std::size_t end_ = 0;
 };

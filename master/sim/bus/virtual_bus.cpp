@@ -48,7 +48,8 @@ bool VirtualBus::queue(BusNodeIndex from, const Frame& frame, Time ready, Time e
     return false;
   }
   first_expiry_ = std::min(first_expiry_, expires);
-  renew_offer(from);
+  // Behind another frame, a frame of a fifo queue changes nothing in what the node offers.
+  if (node.options.order != QueueOrder::fifo || node.queued() == 1) renew_offer(from);
   if (!busy_) next_ = std::min(next_, std::max({idle_from_, ready, node.suspended_until}));
   return true;
 }
@@ -101,9 +102,9 @@ bool VirtualBus::step(Time now) noexcept {
   return false;
 }
 
-/// Finds the time at which the next frame begins. No frame can begin before the bus is idle, so the
-/// search stops at the first node that offers a frame by that time.
-void VirtualBus::schedule() noexcept {
+/// Finds the time of the next event. No frame can begin before the bus is idle, so the search stops
+/// at the first node that offers a frame by that time.
+void VirtualBus::find_next_event() noexcept {
   next_ = never;
   if (recovering_ != 0) {
     for (const BusNode& node : nodes_) next_ = std::min(next_, node.recovers);
@@ -219,11 +220,15 @@ void VirtualBus::finish(Time now) noexcept {
   } else {
     finish_bad(now);
   }
-  for (const BusNodeIndex index : {sender_, rival_}) {
-    if (index == nobody || !nodes_[index].error_passive(counters_.frames)) continue;
-    nodes_[index].suspended_until = idle_from_ + bit_time(suspend_bits);
-    renew_offer(index);
-  }
+  suspend(sender_);
+  if (rival_ != nobody) suspend(rival_);
+}
+
+/// An error-passive node pauses after its own frame.
+void VirtualBus::suspend(BusNodeIndex index) noexcept {
+  if (!nodes_[index].error_passive(counters_.frames)) return;
+  nodes_[index].suspended_until = idle_from_ + bit_time(suspend_bits);
+  renew_offer(index);
 }
 
 void VirtualBus::finish_good() noexcept {

@@ -75,11 +75,19 @@ class VirtualBus {
     bool by_priority = false;  ///< several frames compete, so that the time decides which one
   };
 
-  void schedule() noexcept;
+  void schedule() noexcept {
+    if (busy_ && recovering_ == 0) [[likely]] {
+      next_ = wire_.end;
+    } else {
+      find_next_event();
+    }
+  }
+  void find_next_event() noexcept;
   void arbitrate(Time now) noexcept;
   void begin(Time now) noexcept;
   std::uint32_t bits_until_error(std::uint32_t frame_length) noexcept;
   void finish(Time now) noexcept;
+  void suspend(BusNodeIndex index) noexcept;
   void finish_good() noexcept;
   void finish_bad(Time now) noexcept;
   void punish(BusNodeIndex index, Time now) noexcept;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "master/sim/bus/frame_bits.hpp"
+
 namespace takt::sim {
 namespace {
 
@@ -42,6 +44,27 @@ TEST_F(Bus, SendsTheLowestIdentifierFirst) {
   EXPECT_EQ(sent[2].frame.id, CobId::base(0x205));
   EXPECT_EQ(sent[0].end, 48us);
   EXPECT_EQ(sent[1].start, 51us);  // three bits of interframe space
+}
+
+TEST_F(Bus, CountsTheBitsOfEachFrameThatDiffersFromTheOneBefore) {
+  Frame remote = make_frame(CobId::base(0x181), {0, 0});
+  remote.rtr = true;
+  const std::vector<Frame> frames = {make_frame(CobId::base(0x181), {0, 0}),
+                                     make_frame(CobId::base(0x181), {0, 0}),
+                                     make_frame(CobId::base(0x181), {0x55, 0xAA}),
+                                     make_frame(CobId::base(0x181), {0x55}),
+                                     make_frame(CobId::extended(0x181), {0, 0, 0}),
+                                     make_frame(CobId::base(0x181), {0, 0}),
+                                     remote};
+  for (const Frame& sent : frames) {
+    bus_.queue(0, sent, 0ns);
+
+    const auto wire = run(1s);
+
+    ASSERT_EQ(wire.size(), 1u);
+    EXPECT_EQ(wire[0].frame, sent);
+    EXPECT_EQ(wire[0].bits, frame_bits(sent).total);
+  }
 }
 
 TEST_F(Bus, DoesNotInterruptAFrame) {
