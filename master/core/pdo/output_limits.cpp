@@ -27,6 +27,7 @@ OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const
       places_(plan.layout.signals.size(), no_place),
       dependents_(plan.layout.signals.size()),
       judged_(plan.layout.signals.size()),
+      concerned_(plan.layout.signals.size()),
       slots_(limits_.size()),
       held_(plan.nodes.size(), 0),
       longest_gap_{fewest_cycles},
@@ -50,6 +51,7 @@ OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const
     }
     slots_[i] = fresh_slot(i);
   }
+  find_concerned();
 }
 
 void OutputLimits::open(std::size_t node_index) noexcept {
@@ -57,6 +59,31 @@ void OutputLimits::open(std::size_t node_index) noexcept {
     if (signal_of(i).node_index != node_index) continue;
     set_refused(i, false);
     slots_[i] = fresh_slot(i);
+  }
+  find_concerned();
+}
+
+/// Returns true if a command to this output can be refused: it has a limit, or it may be no number
+/// at all (a NaN of REAL32 or REAL64).
+bool OutputLimits::checked(std::size_t place) const noexcept {
+  const auto& offset = limits_[place].offset;
+  return slots_[place].bounded || is_real(signal_of(place).type) ||
+         (offset && is_real(plan_.layout.signals[*offset].type));
+}
+
+/// Finds out again which outputs concern a limit. The answer changes only when a node begins to
+/// exchange PDOs and when its limits are read.
+void OutputLimits::find_concerned() noexcept {
+  std::ranges::fill(concerned_, std::uint8_t{0});
+  concerns_any_ = false;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (!checked(i)) continue;
+    concerns_any_ = true;
+    const OutputLimit& limit = limits_[i];
+    concerned_[limit.signal] = 1;
+    for (const auto& signal : {limit.controlword, limit.offset, limit.mode, limit.target}) {
+      if (signal) concerned_[*signal] = 1;
+    }
   }
 }
 
@@ -80,6 +107,7 @@ bool OutputLimits::narrow(const DeviceLimit& what, std::uint32_t low, std::uint3
   if (is_range ? !plausible_range(first, last) : !plausible_size(high)) return false;
   Slot& slot = slots_[places_[what.signal]];
   slot.bounded = true;
+  find_concerned();
   const double size = high * what.factor;
   switch (what.bound) {
     case DeviceBound::range:
@@ -290,7 +318,7 @@ std::optional<LimitBreach> OutputLimits::judge(std::size_t place, const AxisComm
 
 void OutputLimits::remember() noexcept {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (!limits_[i].feedback) continue;
+    if (!limits_[i].feedback || !concerns(limits_[i].signal)) continue;
     Slot& slot = slots_[i];
     const auto where = actual(i);
     if (!where) {

@@ -79,6 +79,11 @@ class OutputLimits {
   /// value `high`. It is valid until open() is called again. Returns false, and ignores the limit,
   /// if it is implausible.
   bool narrow(const DeviceLimit& what, std::uint32_t low, std::uint32_t high) noexcept;
+  /// Returns false if no limit depends on commands to this output now, so that all of them are
+  /// permitted and need not be noted. Most drives report no limits.
+  bool concerns(SignalIndex signal) const noexcept { return concerned_[signal] != 0; }
+  /// Returns false if concerns() is false for every output. No command is refused then.
+  bool concerns_any() const noexcept { return concerns_any_; }
   /// Returns true if this output has a limit in the file or from the device.
   bool bounds(std::size_t place) const noexcept { return slots_[place].bounded; }
 
@@ -114,6 +119,7 @@ class OutputLimits {
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(slots_, held_, held_nodes_);
+    find_concerned();
   }
 
  private:
@@ -210,6 +216,8 @@ class OutputLimits {
                                      bool from_actual) const noexcept;
   std::optional<LimitBreach> too_far(std::size_t place, const Way& way) const noexcept;
   std::optional<LimitBreach> too_sharp(std::size_t place, const Way& way) const noexcept;
+  bool checked(std::size_t place) const noexcept;
+  void find_concerned() noexcept;
   Slot fresh_slot(std::size_t place) const noexcept;
   void end_old_refusals(std::uint64_t cycle) noexcept;
   void set_refused(std::size_t place, bool refused) noexcept;
@@ -222,7 +230,9 @@ class OutputLimits {
   std::vector<std::uint16_t> places_;                   ///< place of the limits, by signal
   std::vector<std::vector<std::uint16_t>> dependents_;  ///< by signal, see dependents()
   std::vector<std::uint8_t> judged_;                    ///< by signal, see judges()
-  std::vector<Slot> slots_;                             ///< parallel to limits_
+  std::vector<std::uint8_t> concerned_;                 ///< by signal, see concerns()
+  bool concerns_any_ = false;
+  std::vector<Slot> slots_;          ///< parallel to limits_
   std::vector<std::uint16_t> held_;  ///< by node: number of outputs whose commands are refused
   std::uint32_t held_nodes_ = 0;
   double longest_gap_;  ///< longest time between two commands that counts for a step, in cycles

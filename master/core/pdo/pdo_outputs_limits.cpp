@@ -178,14 +178,16 @@ bool PdoOutputs::has_news(std::span<const SetPoint> set_points) const noexcept {
 }
 
 void PdoOutputs::check_limits(std::span<const SetPoint> set_points, OutputMoment moment) noexcept {
+  if (!limits_.concerns_any()) return;
   limits_.expire(moment.cycle);
   limits_.remember();
   const bool news = has_news(set_points);
   for (std::size_t i = 0; i < limits_.size(); ++i) {
+    if (!limits_.bounds(i)) continue;
     const auto order = limits_.limit(i).controlword;
     // Without news, only a controlword from within the bus thread can need a judgement.
     if (!news && !(order && limits_.begins(i, image_.values[*order]))) continue;
-    if (limits_.bounds(i) && limited_row_open(i)) judge_news(i, set_points, moment);
+    if (limited_row_open(i)) judge_news(i, set_points, moment);
   }
   for (std::size_t i = 0; news && i < limits_.size(); ++i) admit_news(i, set_points, moment);
   if (!limits_.holds_any()) return;
@@ -244,6 +246,7 @@ bool PdoOutputs::suits_targets(SignalIndex signal, std::int64_t value,
 
 bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
                                OutputMoment moment) noexcept {
+  if (!limits_.concerns(signal) && !limits_.holds_any()) return true;
   limits_.expire(moment.cycle);
   if (!limits_.judges(signal) && !limits_.holds_any()) return true;
   const std::size_t node_index = plan_.layout.signals[signal].node_index;
@@ -297,7 +300,8 @@ std::uint32_t PdoOutputs::awaited_start(const PdoRow& pdo) const noexcept {
 void PdoOutputs::note_limited(std::size_t position, std::uint64_t cycle) noexcept {
   const PdoRow& pdo = plan_.pdos.rpdos[position];
   for (std::uint16_t i = 0; i < pdo.field_count; ++i) {
-    limits_.sent(fields_[pdo.first_field + i].signal, cycle);
+    const SignalIndex signal = fields_[pdo.first_field + i].signal;
+    if (limits_.concerns(signal)) limits_.sent(signal, cycle);
   }
 }
 
