@@ -79,40 +79,72 @@ void PdoOutputs::seed(Output& output, SignalIndex signal) noexcept {
   }
 }
 
+/// Takes a new command of the front thread that has waited, leads out of a fallback or is refused.
+/// Returns true if it was taken.
+bool PdoOutputs::hear(Row& row, Output& output, SignalIndex signal, const SetPoint& set_point,
+                      OutputMoment moment) noexcept {
+  const bool released = set_point.time_to_live == output_released;
+  if (released || refuses(output) || is_late(output, set_point, moment)) {
+    output.generation = set_point.generation;
+    if (released && !refuses(output)) let_go(output, signal);
+    return false;
+  }
+  if (output.fallen && !output.released && row.risen++ == 0) row.first_risen = signal;
+  take(output, signal, set_point, moment);
+  return true;
+}
+
 PdoOutputs::Built PdoOutputs::build(std::size_t position, std::span<const SetPoint> set_points,
                                     OutputMoment moment) noexcept {
   const PdoRow& pdo = plan_.pdos.rpdos[position];
   Row& row = rows_[position];
-  std::uint8_t& begun = begun_[pdo.node_index];
+  // The loop stores values, so the compiler would load the members again for each field.
+  const std::size_t inputs = inputs_count_;
+  const FieldProgram* const fields = fields_.data() + pdo.first_field;
+  std::int64_t* const values = image_.values.data();
+  Output* const outputs = outputs_.data();
+  const Time prompt = prompt_after(moment);
+  const bool stopping = stopping_;
+  bool begun = begun_[pdo.node_index] != 0;
+  std::uint32_t fresh = 0;
   Built built{.word = pdo.header};
   row.fallen = 0;
   row.risen = 0;
-  for (std::uint16_t i = 0; i < pdo.field_count; ++i) {
-    const FieldProgram& field = fields_[pdo.first_field + i];
-    Output& output = outputs_[output_of(field.signal)];
-    const SetPoint& set_point = set_points[output_of(field.signal)];
-    const bool news = set_point.generation != output.generation;
-    const bool released = set_point.time_to_live == output_released;
-    if (news && (released || refuses(output) || is_late(output, set_point, moment))) [[unlikely]] {
-      output.generation = set_point.generation;
-      if (released && !refuses(output)) let_go(output, field.signal);
-    } else if (news) {
-      if (output.fallen && !output.released && row.risen++ == 0) row.first_risen = field.signal;
-      take(output, field.signal, set_point, moment);
-      ++fresh_commands_;
-      built.commanded = true;
+  for (std::size_t i = 0; i < pdo.field_count; ++i) {
+    const FieldProgram& field = fields[i];
+    Output& output = outputs[field.signal - inputs];
+    const SetPoint& set_point = set_points[field.signal - inputs];
+    if (set_point.generation != output.generation) {
+      // Nearly every command comes in time, to an output that follows commands. Its fallback is not
+      // effective, and it does not expire in this cycle, so nothing else is left to be done.
+      const bool follows = !output.fallen && !stopping && !output.forced && !output.led;
+      if (follows && set_point.when > prompt && set_point.time_to_live != output_released)
+          [[likely]] {
+        output.generation = set_point.generation;
+        const std::uint32_t limit = limit_of(output, set_point.time_to_live);
+        output.expires = limit == 0 ? no_end : moment.cycle + limit;
+        output.known = output.commanded = begun = true;
+        values[field.signal] = set_point.value;
+        built.word |= put_field(set_point.value, field);
+        ++fresh;
+        continue;
+      }
+      fresh += hear(row, output, field.signal, set_point, moment);
     }
     if (moment.cycle >= output.expires && !output.fallen && !output.forced) [[unlikely]] {
       fall(output, field.signal);
       if (row.fallen++ == 0) row.first_fallen = field.signal;
     }
-    if (!output.commanded && !(begun != 0 && output.known)) [[unlikely]] {
+    if (!output.commanded && !(begun && output.known)) [[unlikely]] {
       seed(output, field.signal);
     }
-    begun |= static_cast<std::uint8_t>(output.commanded);
+    begun |= output.commanded;
     built.lacking |= !output.known;
-    built.word |= put_field(image_.values[field.signal], field);
+    built.word |= put_field(values[field.signal], field);
   }
+  begun_[pdo.node_index] = begun;
+  fresh_commands_ += fresh;
+  built.commanded = fresh != 0;
   return built;
 }
 
@@ -228,7 +260,7 @@ void PdoOutputs::sent(std::size_t count, OutputMoment moment) noexcept {
     row.ever_sent = true;
     row.pending = row.due = false;
     ++row.sent;
-    if (!limits_.empty()) [[unlikely]] {
+    if (limits_.concerns_any()) [[unlikely]] {
       note_limited(packed_[i], moment.cycle);
     }
   }
@@ -237,18 +269,24 @@ void PdoOutputs::sent(std::size_t count, OutputMoment moment) noexcept {
 
 void PdoOutputs::command(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live,
                          OutputMoment moment) noexcept {
-  if (signal < inputs_count_ || output_of(signal) >= outputs_.size()) return;
+  if (signal < inputs_count_ || signal >= image_.values.size()) return;
   Output& output = outputs_[output_of(signal)];
   if (refuses(output)) return;
-  if (!limits_.empty() && !within_limits(signal, value, moment)) [[unlikely]] {
-    return;
+  if (limits_.concerns(signal) || limits_.holds_any()) {
+    return command_limited(signal, value, time_to_live, moment);
   }
-  take(output, signal,
-       {.value = value,
-        .generation = output.generation,
-        .time_to_live = time_to_live,
-        .when = moment.now},
-       moment);
+  accept(output, limit_of(output, time_to_live), 0, moment);
+  image_.values[signal] = value;
+}
+
+/// command() for an output that has a limit. It is a function of its own so that the others need
+/// not save the registers of the check.
+void PdoOutputs::command_limited(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live,
+                                 OutputMoment moment) noexcept {
+  if (!within_limits(signal, value, moment)) return;
+  Output& output = outputs_[output_of(signal)];
+  accept(output, limit_of(output, time_to_live), 0, moment);
+  image_.values[signal] = value;
 }
 
 bool PdoOutputs::lead(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept {

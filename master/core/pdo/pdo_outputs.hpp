@@ -175,23 +175,29 @@ class PdoOutputs {
   };
 
   Built build(std::size_t row, std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
+  [[gnu::cold, gnu::noinline]] bool hear(Row& row, Output& output, SignalIndex signal,
+                                         const SetPoint& set_point, OutputMoment moment) noexcept;
   void take(Output& output, SignalIndex signal, const SetPoint& set_point,
             OutputMoment moment) noexcept {
-    const std::uint32_t limit = limit_of(output, set_point);
     output.generation = set_point.generation;
-    output.expires =
-        limit == 0 ? no_end : moment.cycle + limit - std::min(limit, age(set_point, moment));
+    accept(output, limit_of(output, set_point.time_to_live), age(set_point, moment), moment);
+    image_.values[signal] = set_point.value;
+  }
+  /// Notes that a command is accepted. It expires after `limit` cycles, of which `waited` are over;
+  /// a limit of 0 means that it does not expire.
+  static void accept(Output& output, std::uint32_t limit, std::uint32_t waited,
+                     OutputMoment moment) noexcept {
+    output.expires = limit == 0 ? no_end : moment.cycle + limit - std::min(limit, waited);
     output.known = true;
     output.commanded = true;
     output.fallen = false;
     output.released = false;
-    image_.values[signal] = set_point.value;
   }
   /// Returns the shorter one of the time to live of the output and that of the command. 0 means
   /// that neither is set.
-  static std::uint32_t limit_of(const Output& output, const SetPoint& set_point) noexcept {
-    const bool configured = output.limit != 0 && output.limit < set_point.time_to_live;
-    return set_point.time_to_live == 0 || configured ? output.limit : set_point.time_to_live;
+  static std::uint32_t limit_of(const Output& output, std::uint32_t time_to_live) noexcept {
+    const bool configured = output.limit != 0 && output.limit < time_to_live;
+    return time_to_live == 0 || configured ? output.limit : time_to_live;
   }
   /// Returns true if the command has expired before the bus thread has seen it. A command without
   /// limit may wait for one second.
@@ -201,7 +207,7 @@ class PdoOutputs {
     if (waited == 0) [[likely]] {
       return false;
     }
-    const std::uint32_t limit = limit_of(output, set_point);
+    const std::uint32_t limit = limit_of(output, set_point.time_to_live);
     if (limit != 0) return waited >= limit;
     return waited >= std::chrono::seconds{1} / plan_.cycle.period;
   }
@@ -219,9 +225,17 @@ class PdoOutputs {
     constexpr std::int64_t most = 0xFFFF'FFFF;
     return static_cast<std::uint32_t>(std::min(passed / period, most));
   }
+  /// The age() of a command is 0 if the front thread has determined it after this time.
+  Time prompt_after(OutputMoment moment) const noexcept {
+    const Time period = plan_.cycle.period;
+    return moment.now - period / 4 - period;
+  }
   bool refuses(const Output& output) const noexcept {
     return stopping_ || output.forced || output.led;
   }
+
+  void command_limited(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live,
+                       OutputMoment moment) noexcept;
 
   // These functions are in pdo_outputs_limits.cpp.
   /// Drops those new commands of this pack that are outside their limits.
