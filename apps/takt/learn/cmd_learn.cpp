@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <fstream>
 #include <iostream>
 
@@ -31,18 +30,6 @@ struct LearnArguments {
   bool quiet = false;
 };
 
-/// Adds a device file that is given as `FILE`, or as `5=FILE` for one node-ID.
-bool add_file(const std::string& argument, DeviceFiles& files, Findings& findings) {
-  unsigned id = 0;
-  const char* const end = argument.data() + argument.size();
-  const auto [equals, error] = std::from_chars(argument.data(), end, id);
-  const auto node = NodeId::from(id);
-  if (error == std::errc{} && equals != end && *equals == '=' && node) {
-    return files.assign(node->value(), std::string{equals + 1, end}, findings);
-  }
-  return files.add_file(argument, findings);
-}
-
 std::optional<LearnedBus> listen(const LearnArguments& options) {
   if (options.log == "-") return read_recording(std::cin, "stdin", options.interface);
   std::ifstream file{options.log, std::ios::binary};
@@ -66,7 +53,7 @@ int run(const LearnArguments& options) {
   Findings findings;
   bool good = true;
   for (const std::string& folder : options.folders) files.add_folder(folder, findings);
-  for (const std::string& file : options.files) good = add_file(file, files, findings) && good;
+  for (const std::string& file : options.files) good = files.add_argument(file, findings) && good;
   const Severity least = options.quiet ? Severity::warning : Severity::note;
   if (print_findings(findings, least) || !good) return 2;
   const auto bus = listen(options);

@@ -1,6 +1,7 @@
 #include "apps/takt/learn/device_files.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <ranges>
 #include <system_error>
 
@@ -94,6 +95,17 @@ DeviceFiles::Match DeviceFiles::match(const fs::path& path, std::uint8_t node) {
   EdsFile eds = read_eds_file(path, NodeId::from(node));
   return {.path = path,
           .dictionary = std::make_shared<const ObjectDictionary>(std::move(eds.dictionary))};
+}
+
+bool DeviceFiles::add_argument(const std::string& argument, Findings& findings) {
+  unsigned id = 0;
+  const char* const end = argument.data() + argument.size();
+  const auto [equals, error] = std::from_chars(argument.data(), end, id);
+  const auto node = NodeId::from(id);
+  if (error == std::errc{} && equals != end && *equals == '=' && node) {
+    return assign(node->value(), std::string{equals + 1, end}, findings);
+  }
+  return add_file(argument, findings);
 }
 
 std::vector<std::uint8_t> DeviceFiles::assigned() const {

@@ -34,6 +34,9 @@ class DeviceFiles {
   /// Assigns a file to a node, whatever the identity of the node is. Returns false, and adds a
   /// finding, if the file can't be read.
   bool assign(std::uint8_t node, const std::filesystem::path& file, Findings& findings);
+  /// Adds a file that is given on a command line as `FILE`, or assigns it as `5=FILE` to one
+  /// node-ID. Returns false, and adds a finding, if the file can't be read.
+  bool add_argument(const std::string& argument, Findings& findings);
 
   /// Returns the nodes that assign() has given a file.
   std::vector<std::uint8_t> assigned() const;
