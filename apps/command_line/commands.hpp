@@ -47,6 +47,7 @@ void add_reference(CLI::App& app, int& exit_code);
 void add_replay(CLI::App& app, int& exit_code);
 void add_scan(CLI::App& app, int& exit_code);
 void add_sdo(CLI::App& app, int& exit_code);
+void add_smooth(CLI::App& app, int& exit_code);
 void add_soak(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);
 void add_timing(CLI::App& app, int& exit_code);

@@ -19,10 +19,10 @@ using namespace takt;
 
 /// The commands in the order of the help text.
 constexpr AddCommand commands[]{
-    add_audit,  add_dump,      add_eds,    add_plan,   add_sim,       add_simulate, add_keys,
-    add_record, add_reference, add_replay, add_soak,   add_status,    add_top,      add_timing,
-    add_emcy,   add_budget,    add_export, add_import, add_learn,     add_scan,     add_doctor,
-    add_sdo,    add_nmt,       add_lss,    add_param,  add_trajectory};
+    add_audit,  add_dump,      add_eds,    add_plan,   add_sim,        add_simulate, add_keys,
+    add_record, add_reference, add_replay, add_soak,   add_status,     add_top,      add_timing,
+    add_emcy,   add_budget,    add_export, add_import, add_learn,      add_scan,     add_doctor,
+    add_sdo,    add_nmt,       add_lss,    add_param,  add_trajectory, add_smooth};
 
 /// Returns the reason why stdout could not be written completely, or an empty string. If a write
 /// failed earlier, its errno is lost, so one more write finds the reason.

@@ -155,6 +155,10 @@ ROOMS = {
     "apps/takt/learn": ("makes network files from recordings",
                         "apps/command_line master/wire master/trace eds_parser/specification "
                         "eds_parser/network_file eds_parser/write " + EDS),
+    "apps/takt/smooth/judge": ("finds what makes axes rough in the signals of a recording", "master/wire"),
+    "apps/takt/smooth": ("gets these signals from recordings and from a running bus, and reports the result",
+                         "apps/command_line apps/takt/live apps/takt/learn apps/takt/smooth/judge master/wire master/trace "
+                         "master/black_box master/lcm master/linux master/linux/bus eds_parser/network_file " + EDS),
     "apps/takt/simulate/program": ("runs the daemon and applications in virtual time",
                                    "apps/axis master master/gateway master/lcm master/rt " + SIM),
     "apps/takt/simulate": ("runs a whole network in virtual time, and reports the outcome",

@@ -57,6 +57,9 @@ def wrong_use(tools):
     tools.says("so has one of a PDO", ["takt", "budget", DEMO, "--what-if", "io.tpdo1.inhibt=1ms"], 2, "did you mean 'inhibit'?")
     tools.says("a far one has none", ["takt", "plan", "--zzzzzz", DEMO], 2, "no option '--zzzzzz'; takt plan --help lists the options")
     tools.says("behind -- are no options", ["takt", "plan", "--", "--jsn"], 2, "--jsn")
+    tools.says("a recording without set-points has an advice", ["takt", "smooth", DEMO], 2, "holds no frame")
+    tools.says("so has a PDO that takt can't read", ["takt", "smooth", DEMO, "--pdo", "205"], 2, "holds no frame")
+    tools.says("a recording that is missing is named", ["takt", "smooth", "none.log"], 2, "none.log: can't be read")
     tools.says("takt without a command is wrong use", ["takt"], 2, "--help")
     for command in ([], ["dump"], ["eds"], ["import"], ["learn"], ["plan"], ["budget"], ["sim"], ["simulate"], ["status"],
                     ["top"], ["sdo"], ["nmt"], ["trajectory"]):

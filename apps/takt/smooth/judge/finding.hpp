@@ -1,0 +1,59 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "eds_parser/table/time.hpp"
+
+namespace takt::smooth {
+
+/// What can make an axis rough, the most fundamental cause first. Findings of one severity are
+/// listed in this order.
+enum class Cause : std::uint8_t {
+  no_sync,               ///< there is no SYNC on the bus
+  two_sync_producers,    ///< SYNC comes twice in a period
+  sync_missing,          ///< periods without SYNC
+  sync_jitter,           ///< SYNC itself is not punctual
+  left_operation,        ///< the drive leaves Operation enabled in motion
+  mode_changed,          ///< the drive changes its mode in motion
+  two_senders,           ///< two programs write one set-point
+  not_synchronous,       ///< the RPDO takes effect when it arrives
+  interpolation_period,  ///< 60C2 is not the period of the set-points
+  clock_beat,            ///< set-points arrive with a clock of their own
+  bus_load,              ///< other frames delay the set-point behind SYNC
+  late,                  ///< set-points arrive behind the SYNC for which they were meant
+  early,                 ///< set-points arrive before the SYNC in front of that one
+  skipped,               ///< no set-point between two SYNCs
+  overwritten,           ///< two set-points between two SYNCs
+  slow_values,           ///< the value changes only every n-th cycle
+  value_beat,            ///< values are computed with a clock of their own
+  duplicated,            ///< a value is sent twice
+  value_skipped,         ///< a value is left out
+  velocity_jump,         ///< the velocity jumps from one cycle to the next
+  set_point_ripple,      ///< the set-points are not on a smooth curve
+  coarse,                ///< one increment is a large part of the velocity
+  lag_in_group,          ///< an axis gets its set-points later than another one
+  interpolation_unset,   ///< 60C2 is not written
+  feed_forward,          ///< following error in proportion to the velocity
+  actual_ripple,         ///< the drive itself is rough
+};
+
+/// Returns the name of a cause in JSON, which never changes.
+const char* name_of(Cause cause) noexcept;
+
+enum class Gravity : std::uint8_t { error, warning };
+
+/// One cause of roughness with the sentences for people.
+struct Finding {
+  Cause cause{};
+  Gravity gravity = Gravity::error;
+  std::string text{};       ///< what was seen, with its figures
+  std::string remedy{};     ///< what to do
+  std::uint64_t count = 0;  ///< how often it was seen; 0 = all the time
+  Time first{};             ///< when it was seen first
+};
+
+/// Puts errors before warnings and, within them, fundamental causes first.
+void sort_findings(std::vector<Finding>& findings);
+
+}  // namespace takt::smooth
