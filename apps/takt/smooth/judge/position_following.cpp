@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "apps/takt/smooth/judge/numbers.hpp"
 
@@ -10,25 +11,25 @@ namespace {
 
 constexpr std::size_t longest_delay = 60;  // cycles
 
-/// A cycle in motion: the position that the device sent in it.
+/// A cycle in motion: the value that the device sent in it.
 struct Pair {
   std::size_t cycle = 0;
-  std::int64_t position = 0;
+  std::int64_t value = 0;
 };
 
-/// Finds the first position of each cycle. Positions that come without relation to SYNC give no
-/// velocities, so cycles with none or two positions are left out.
-std::vector<Pair> pairs_of(const AxisRecord& axis, const AxisCycles& cycles) {
+/// Finds the value of each cycle. Values that come without relation to SYNC can't be compared with
+/// each other, so cycles with none or two of them are left out.
+std::vector<Pair> pairs_of(const std::vector<Sample>& samples, const AxisCycles& cycles) {
   std::vector<Pair> pairs;
   std::size_t next = 0;
   for (std::size_t i = 0; i + 1 < cycles.cycles.size(); ++i) {
     const Time begin = cycles.cycles[i].end;  // set-point i is in effect from here on
     const Time end = cycles.cycles[i + 1].end;
-    while (next < axis.positions.size() && axis.positions[next].when < begin) ++next;
+    while (next < samples.size() && samples[next].when < begin) ++next;
     std::size_t count = 0;
     const std::size_t first = next;
-    while (next < axis.positions.size() && axis.positions[next].when < end) ++next, ++count;
-    if (count == 1 && cycles.cycles[i].active) pairs.push_back({i, axis.positions[first].value});
+    while (next < samples.size() && samples[next].when < end) ++next, ++count;
+    if (count == 1 && cycles.cycles[i].active) pairs.push_back({i, samples[first].value});
   }
   return pairs;
 }
@@ -45,7 +46,7 @@ void fit_delay(const AxisCycles& cycles, const std::vector<Pair>& pairs, Followi
     const auto& now = cycles.cycles[pair.cycle];
     const double v =
         static_cast<double>(difference(now.value, cycles.cycles[pair.cycle - 3].value)) / 3;
-    const auto e = static_cast<double>(difference(now.value, pair.position));
+    const auto e = static_cast<double>(difference(now.value, pair.value));
     n += 1;
     sv += v;
     se += e;
@@ -65,17 +66,51 @@ void fit_delay(const AxisCycles& cycles, const std::vector<Pair>& pairs, Followi
   out.error_at_peak = slope * cycles.peak;
 }
 
-/// Differences between the steps of the positions and those of the set-points `lag` cycles before.
-std::vector<double> residuals(const AxisCycles& cycles, const std::vector<Pair>& pairs,
-                              std::size_t lag) {
-  std::vector<double> list;
-  for (std::size_t i = 1; i < pairs.size(); ++i) {
-    const std::size_t at = pairs[i].cycle;
-    if (pairs[i - 1].cycle + 1 != at || at <= lag + 1 || !cycles.clean(at - lag, at)) continue;
-    const auto actual = static_cast<double>(difference(pairs[i].position, pairs[i - 1].position));
-    list.push_back(actual - static_cast<double>(cycles.step(at - lag)));
+/// A velocity of the drive in a cycle: a step of its positions, or its 606C.
+struct Velocity {
+  std::size_t cycle = 0;
+  double value = 0;
+};
+
+std::vector<Velocity> steps_of(const std::vector<Pair>& positions) {
+  std::vector<Velocity> list;
+  for (std::size_t i = 1; i < positions.size(); ++i) {
+    if (positions[i - 1].cycle + 1 != positions[i].cycle) continue;
+    const std::int64_t step = difference(positions[i].value, positions[i - 1].value);
+    list.push_back({positions[i].cycle, static_cast<double>(step)});
   }
   return list;
+}
+
+std::vector<Velocity> velocities_of(const std::vector<Pair>& velocities) {
+  std::vector<Velocity> list;
+  for (const Pair& pair : velocities) list.push_back({pair.cycle, static_cast<double>(pair.value)});
+  return list;
+}
+
+/// Differences between the velocities and those of the set-points `lag` cycles before.
+struct Residuals {
+  std::vector<double> values;
+  double factor = 1;  // between the units of both
+};
+
+Residuals residuals(const AxisCycles& cycles, const std::vector<Velocity>& velocities,
+                    std::size_t lag, bool own_unit) {
+  Residuals out;
+  std::vector<std::pair<double, double>> both;
+  double sum = 0;
+  double square = 0;
+  for (const Velocity& velocity : velocities) {
+    const std::size_t at = velocity.cycle;
+    if (at <= lag + 1 || !cycles.clean(at - lag, at)) continue;
+    const auto wanted = static_cast<double>(cycles.step(at - lag));
+    both.emplace_back(velocity.value, wanted);
+    sum += velocity.value * wanted;
+    square += wanted * wanted;
+  }
+  if (own_unit && square > 0) out.factor = sum / square;
+  for (const auto& [actual, wanted] : both) out.values.push_back(actual - out.factor * wanted);
+  return out;
 }
 
 double mean_square(const std::vector<double>& values) {
@@ -105,32 +140,39 @@ double repetition(const std::vector<double>& values) {
   return 0;
 }
 
-void fit_ripple(const AxisCycles& cycles, const std::vector<Pair>& pairs, Following& out) {
-  std::vector<double> best;
+void fit_ripple(const AxisCycles& cycles, const std::vector<Velocity>& velocities, bool own_unit,
+                Following& out) {
+  Residuals best;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t lag = 0; lag <= longest_delay; ++lag) {
-    auto list = residuals(cycles, pairs, lag);
-    if (list.size() < 50) break;
-    if (const double square = mean_square(list); square < least) {
+    auto found = residuals(cycles, velocities, lag, own_unit);
+    if (found.values.size() < 50) break;
+    if (const double square = mean_square(found.values); square < least) {
       least = square;
-      best = std::move(list);
+      best = std::move(found);
     }
   }
-  if (best.empty() || cycles.peak == 0) return;
-  // The positions are whole increments, so their steps have errors of rounding.
+  const double peak = std::abs(best.factor) * cycles.peak;
+  if (best.values.empty() || peak == 0) return;
+  // The values are whole numbers, so they have errors of rounding; steps of positions have two.
   const double rounding = 0.5;
-  out.ripple_increments = std::sqrt(std::max(0.0, least - rounding * rounding));
-  out.ripple = out.ripple_increments / cycles.peak;
-  out.frequency = repetition(best) / seconds(cycles.period);
+  out.ripple_units = std::sqrt(std::max(0.0, least - rounding * rounding));
+  out.ripple = out.ripple_units / peak;
+  out.frequency = repetition(best.values) / seconds(cycles.period);
 }
 
 }  // namespace
 
 Following following_of(const AxisRecord& axis, const AxisCycles& cycles) {
   Following out;
-  const auto pairs = pairs_of(axis, cycles);
-  fit_delay(cycles, pairs, out);
-  fit_ripple(cycles, pairs, out);
+  const auto positions = pairs_of(axis.positions, cycles);
+  fit_delay(cycles, positions, out);
+  if (!positions.empty()) {
+    fit_ripple(cycles, steps_of(positions), false, out);
+  } else {
+    fit_ripple(cycles, velocities_of(pairs_of(axis.velocities, cycles)), true, out);
+    out.by_velocity = true;
+  }
   return out;
 }
 

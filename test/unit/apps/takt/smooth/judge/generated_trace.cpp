@@ -145,21 +145,23 @@ class FrameMaker {
     const double part = 1 - std::exp(-1 / std::max(0.01, plan_.recipe.delay_cycles));
     double target = axis.sent.empty() ? 0 : axis.sent.front().value;
     double actual = target;
+    double last_shown = target;
     std::size_t next = 0;
     for (std::size_t k = 0; k < axis.status.size(); ++k) {
       const Time sync = plan_.planned(k);
       const Time answer = sync + microseconds{120} + microseconds{110} * number;
-      const double before = actual;
+      const double before = last_shown;
       actual += part * (target - actual);
       while (next < axis.sent.size() && axis.sent[next].when < sync)
         target = axis.sent[next++].value;
       const double shown = actual + (axis.shake ? axis.shake(sync) : 0.0);
+      last_shown = shown;
       Frame first{.id = CobId::base(0x180 + node)};
       put(first, 0, axis.status[k], 2);
       put(first, 2, raw(shown), 4);
       add(answer, first);
       Frame second{.id = CobId::base(0x280 + node)};
-      put(second, 0, raw((actual - before) / seconds(plan_.recipe.period)), 4);
+      put(second, 0, raw((shown - before) / seconds(plan_.recipe.period)), 4);
       put(second, 4, static_cast<std::uint8_t>(axis.mode[k]), 1);
       add(answer + microseconds{55}, second);
     }
@@ -234,7 +236,8 @@ Verdict verdict_of(const Recipe& recipe, const Defect& defect) {
   for (unsigned node = 1; node <= recipe.axes; ++node) {
     if (recipe.boot) break;
     for (const std::string& pdo :
-         {fmt::format("{:X}=6040,607A", 0x200 + node), fmt::format("{:X}=6041,6064", 0x180 + node),
+         {fmt::format("{:X}=6040,607A", 0x200 + node),
+          fmt::format("{:X}=6041{}", 0x180 + node, recipe.position_shown ? ",6064" : ""),
           fmt::format("{:X}=606C,6061", 0x280 + node)}) {
       if (const auto added = add_pdo(map, pdo); !added) throw std::runtime_error{added.error()};
     }

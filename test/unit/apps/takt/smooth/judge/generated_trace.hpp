@@ -23,6 +23,7 @@ struct Recipe {
   std::uint8_t transmission = 1;  ///< of the RPDO
   double interpolation = 1;       ///< 60C2 in periods; 0 = it is not written
   double size = 1;                ///< of the motions
+  bool position_shown = true;     ///< 6064 is mapped; otherwise only 606C is
   std::uint32_t bitrate = 0;      ///< bit/s, if it is known
 };
 

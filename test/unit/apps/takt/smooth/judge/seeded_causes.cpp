@@ -307,6 +307,21 @@ const std::vector<Seeded>& seeded_causes() {
            return 0.4 * step * std::sin(turn * static_cast<double>(t.count()));
          };
        }},
+      {"a drive whose 606C oscillates", Cause::actual_ripple,
+       [](Recipe& recipe) {
+         recipe.position_shown = false;
+         recipe.boot = false;
+       },
+       [](Generated& plan) {
+         const std::size_t at = fast_cycle(plan, 0);
+         const double step =
+             std::abs(plan.axes[0].sent[at].value - plan.axes[0].sent[at - 1].value);
+         const double turn =
+             2 * std::numbers::pi / (12.0 * static_cast<double>(plan.recipe.period.count()));
+         plan.axes[0].shake = [=](Time t) {
+           return 0.4 * step * std::sin(turn * static_cast<double>(t.count()));
+         };
+       }},
       {"other frames before the set-point", Cause::bus_load,
        [](Recipe& recipe) {
          recipe.phase = 0.75;
