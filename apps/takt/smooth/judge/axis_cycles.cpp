@@ -130,7 +130,16 @@ class CycleBuilder {
       mark(one_motion ? *before : i - std::min(i, reach), i + reach);
       before = i;
     }
+    count_clean_runs();
     out_.moving = static_cast<std::size_t>(std::ranges::count(out_.cycles, true, &Cycle::moving));
+  }
+
+  void count_clean_runs() {
+    std::uint32_t run = 0;
+    for (const Cycle& cycle : out_.cycles) {
+      run = cycle.moving && cycle.whole && cycle.count == 1 ? run + 1 : 0;
+      out_.clean_run.push_back(run);
+    }
   }
 
   void mark(std::size_t first, std::size_t last) {
@@ -183,11 +192,7 @@ std::int64_t AxisCycles::step(std::size_t at) const noexcept {
 }
 
 bool AxisCycles::clean(std::size_t first, std::size_t last) const noexcept {
-  if (first == 0 || last >= cycles.size()) return false;
-  for (std::size_t i = first; i <= last; ++i) {
-    if (!cycles[i].moving || !cycles[i].whole || cycles[i].count != 1) return false;
-  }
-  return true;
+  return first != 0 && last < cycles.size() && clean_run[last] > last - first;
 }
 
 double AxisCycles::velocity(double step) const noexcept { return step / seconds(period); }

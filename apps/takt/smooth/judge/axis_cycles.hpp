@@ -27,6 +27,8 @@ struct AxisCycles {
   unsigned stride = 1;   ///< a set-point comes with every n-th SYNC
   bool by_sync = false;  ///< false: there is no SYNC
   std::vector<Cycle> cycles;
+  /// For each cycle, how many in a row up to this one are in motion with exactly one set-point.
+  std::vector<std::uint32_t> clean_run;
   std::size_t moving = 0;    ///< number of cycles in motion
   std::int64_t quantum = 1;  ///< greatest common divisor of all steps
   double peak = 0;           ///< nine of ten steps in motion are smaller; increments a cycle

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <fmt/format.h>
+#include <initializer_list>
 #include <numbers>
 
 #include "apps/takt/smooth/judge/judges.hpp"
@@ -123,6 +124,14 @@ std::string first_text(const Tally& tally) {
   return fmt::format("the first at {:.3f} s", seconds(tally.first));
 }
 
+Time earliest(std::initializer_list<Tally> tallies) {
+  Time first = Time::max();
+  for (const Tally& tally : tallies) {
+    if (tally.count != 0) first = std::min(first, tally.first);
+  }
+  return first;
+}
+
 Finding beat_finding(const AxisView& view, const Arrivals& seen, const Rhythm& rhythm) {
   const double apart = std::abs(1 / ms(rhythm.period) - 1 / ms(view.cycles.period));
   return {.cause = Cause::clock_beat,
@@ -137,7 +146,7 @@ Finding beat_finding(const AxisView& view, const Arrivals& seen, const Rhythm& r
               "Let the sender compute and send one set-point for each SYNC that it receives, "
               "instead of using a timer of its own.",
           .count = seen.skipped.count + seen.overwritten.count + seen.late.count + seen.early.count,
-          .first = seen.late.count != 0 ? seen.late.first : seen.skipped.first};
+          .first = earliest({seen.late, seen.early, seen.skipped, seen.overwritten})};
 }
 
 /// Returns the share of the late set-points before which the bus was busy from their usual time on.

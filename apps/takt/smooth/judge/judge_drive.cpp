@@ -91,7 +91,7 @@ void judge_mode(const AxisView& view, Findings& findings) {
 void judge_delay(const AxisView& view, const Following& following, Findings& findings) {
   if (following.cycles < 50) return;
   const Time usual = 3 * view.cycles.period + std::chrono::milliseconds{4};
-  if (!view.axis.settings.feed_forward && following.fit > 0.95 && following.delay > usual) {
+  if (!view.axis.settings.feed_forward && following.fit > 0.9 && following.delay > usual) {
     findings.push_back(
         {.cause = Cause::feed_forward,
          .gravity = Gravity::warning,

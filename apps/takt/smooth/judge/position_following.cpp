@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "apps/takt/smooth/judge/numbers.hpp"
@@ -10,6 +11,7 @@ namespace takt::smooth {
 namespace {
 
 constexpr std::size_t longest_delay = 60;  // cycles
+constexpr std::size_t newest_kept = 4000;  // residuals that show a frequency
 
 /// A cycle in motion: the value that the device sent in it.
 struct Pair {
@@ -113,15 +115,17 @@ Residuals residuals(const AxisCycles& cycles, const std::vector<Velocity>& veloc
   return out;
 }
 
-double mean_square(const std::vector<double>& values) {
+double mean_square(std::span<const double> values) {
   double sum = 0;
   for (const double value : values) sum += value * value;
   return values.empty() ? std::numeric_limits<double>::infinity()
                         : sum / static_cast<double>(values.size());
 }
 
-/// Returns the frequency at which the residuals repeat themselves, cycles^-1, or 0.
-double repetition(const std::vector<double>& values) {
+/// Returns the frequency at which the residuals repeat themselves, cycles^-1, or 0. The newest few
+/// thousand of them show it.
+double repetition(std::span<const double> values) {
+  values = values.last(std::min(values.size(), newest_kept));
   const double whole = mean_square(values) * static_cast<double>(values.size());
   bool fell = false;
   double before = 1;
