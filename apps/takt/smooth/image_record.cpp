@@ -8,6 +8,9 @@
 namespace takt::smooth {
 namespace {
 
+/// An image that is further away is not of this run.
+constexpr std::int64_t most_cycles = 1'000'000'000;
+
 /// Returns the layout in the form of a map: the outputs of a node as one RPDO, the inputs as a
 /// TPDO.
 PdoMap map_of(const std::vector<signal_t>& signals) {
@@ -51,7 +54,7 @@ ImageRecord::ImageRecord(std::string source, const std::vector<signal_t>& signal
 
 void ImageRecord::take(const image_t& image) {
   if (newest_cycle_ < 0) first_cycle_ = image.cycle;
-  if (image.cycle < newest_cycle_) return;
+  if (image.cycle < newest_cycle_ || image.cycle - first_cycle_ > most_cycles) return;
   // The period is exact here, so that only the values are judged.
   const Time sync = period_ * (image.cycle - first_cycle_);
   if (image.cycle > newest_cycle_) out_.syncs.push_back(sync);

@@ -119,6 +119,7 @@ class RecordMaker {
 
  private:
   void add_routes(const MapPdo& pdo, const MapField& field) {
+    if (field.bits == 0 || field.bits > 64) return;
     for (std::size_t i = 0; i < out_.axes.size(); ++i) {
       if (out_.axes[i].node != pdo.node) continue;
       if (samples_of(out_.axes[i], field.object, pdo.is_rpdo) == nullptr) continue;

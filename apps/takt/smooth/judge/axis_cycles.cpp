@@ -12,6 +12,7 @@ namespace takt::smooth {
 namespace {
 
 constexpr std::size_t fewest_set_points = 16;
+constexpr double longest_stride = 1000;    // SYNCs from one set-point to the next
 constexpr std::size_t reach = 4;           // cycles before and behind a motion that belong to it
 constexpr std::size_t longest_stair = 50;  // cycles with one value within a motion
 
@@ -48,7 +49,8 @@ class CycleBuilder {
   void find_stride(Time usual) {
     const double syncs = ratio(usual, sync_.period);
     const double whole = std::round(syncs);
-    const bool even = whole >= 2 && std::abs(syncs - whole) < 0.03 * whole;
+    const bool even =
+        whole >= 2 && whole <= longest_stride && std::abs(syncs - whole) < 0.03 * whole;
     out_.stride = even ? static_cast<unsigned>(whole) : 1;
     out_.period = sync_.period * out_.stride;
   }

@@ -96,7 +96,7 @@ class GridBuilder {
       if (grid_.surplus++ == 0) grid_.first_surplus = when;
       return;
     }
-    const double gone = ratio(when - place_, grid_.period);
+    const double gone = std::min(1e9, ratio(when - place_, grid_.period));
     const auto periods = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(std::lround(gone)));
     if (periods > 1 && periods <= longest_gap) {
       if (grid_.missing == 0) grid_.first_missing = place_ + grid_.period;
@@ -128,7 +128,9 @@ class GridBuilder {
 
 SyncGrid sync_grid(std::span<const Time> syncs, std::optional<Time> planned) {
   if (syncs.size() < fewest_syncs) return {};
-  GridBuilder builder{usual_period(syncs, planned)};
+  const Time usual = usual_period(syncs, planned);
+  if (usual <= Time{}) return {};
+  GridBuilder builder{usual};
   builder.build(syncs);
   return builder.finish();
 }

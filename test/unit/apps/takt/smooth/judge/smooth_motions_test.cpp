@@ -1,4 +1,5 @@
 // Motions that are as they should be, although they look unusual: they have no finding.
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
