@@ -197,6 +197,18 @@ bool AxisCycles::clean(std::size_t first, std::size_t last) const noexcept {
   return first != 0 && last < cycles.size() && clean_run[last] > last - first;
 }
 
+std::size_t AxisCycles::stall(std::size_t at) const noexcept {
+  if (at < 3 || step(at) != 0) return 0;
+  const auto before = static_cast<double>(step(at - 1));
+  if (std::abs(before) <= 6.0 * static_cast<double>(quantum)) return 0;
+  std::size_t end = at;
+  while (end < cycles.size() && end - at <= longest_stair && step(end) == 0) ++end;
+  if (end >= cycles.size() || !clean(at - 1, end)) return 0;
+  const auto missing = static_cast<double>(end - at + 1);
+  const double caught_up = static_cast<double>(step(end)) / before;
+  return caught_up > 1.5 && caught_up > 0.5 * missing ? end - at : 0;
+}
+
 double AxisCycles::velocity(double step) const noexcept { return step / seconds(period); }
 
 AxisCycles axis_cycles(const AxisRecord& axis, const SyncGrid& sync) {

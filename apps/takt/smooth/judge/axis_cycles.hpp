@@ -38,6 +38,9 @@ struct AxisCycles {
   /// Returns true if the cycles [first, last] are in motion without a gap, and each has exactly one
   /// set-point.
   bool clean(std::size_t first, std::size_t last) const noexcept;
+  /// Returns for how many cycles from `at` on the value stays away although the axis was moving, if
+  /// one step then makes up for all of them. Returns 0 otherwise.
+  std::size_t stall(std::size_t at) const noexcept;
   /// Velocity in increments per second of a step.
   double velocity(double step) const noexcept;
 };

@@ -22,6 +22,7 @@ bool is_jump(const AxisCycles& cycles, std::size_t at) {
     const Cycle& cycle = cycles.cycles[i];
     if (!cycle.active || !cycle.whole || cycle.count != 1) return false;
   }
+  if (cycles.stall(at) != 0) return false;
   const double jump = std::abs(acceleration(cycles, at));
   if (jump < 0.25 * cycles.peak || jump < 8.0 * static_cast<double>(cycles.quantum)) return false;
   for (const std::size_t i : {at - 2, at - 1, at + 1, at + 2}) {

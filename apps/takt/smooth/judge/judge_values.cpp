@@ -14,7 +14,7 @@ constexpr std::uint64_t fewest_of_beat = 6;
 /// Cycles in motion whose values are not one step ahead.
 struct Strange {
   std::vector<std::size_t> repeats;  // the value again, and then the usual step
-  std::vector<std::size_t> doubles;  // the value again, and then a double step
+  std::vector<std::size_t> doubles;  // the value again, and then a step that makes up for it
   std::vector<std::size_t> skips;    // a double step
 };
 
@@ -37,6 +37,7 @@ bool is_large(const AxisCycles& cycles, double step) {
 Strange find_strange(const AxisCycles& cycles) {
   Strange out;
   for (std::size_t i = around + 1; i + around < cycles.cycles.size(); ++i) {
+    if (cycles.stall(i) > around) out.doubles.push_back(i);
     const auto usual = usual_step(cycles, i);
     if (!usual || !is_large(cycles, *usual)) continue;
     const double relative = static_cast<double>(cycles.step(i)) / *usual;
@@ -147,9 +148,9 @@ void add_duplicated(const AxisCycles& cycles, const Strange& strange, Findings& 
   findings.push_back(
       {.cause = Cause::duplicated,
        .gravity = times > 2 ? Gravity::error : Gravity::warning,
-       .text = fmt::format("In motion, a value is sent again {}, first at {:.3f} s. A double step "
-                           "follows {}. The velocity "
-                           "drops to zero and jumps to twice its value.",
+       .text = fmt::format("In motion, a value is sent again {}, first at {:.3f} s. A longer step "
+                           "makes up for it {}: the velocity drops to zero and jumps above its "
+                           "value.",
                            times_text(times), seconds(cycles.cycles[first].end),
                            times_text(strange.doubles.size())),
        .remedy = "The application did not deliver its set-point in time, so the sender repeated "

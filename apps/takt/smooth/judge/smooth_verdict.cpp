@@ -23,7 +23,7 @@ struct Consequence {
 };
 
 void leave_out_consequences(const Findings& of_bus, Findings& findings) {
-  static const std::array<Consequence, 12> rules{{
+  static const std::array<Consequence, 13> rules{{
       {two_sync_producers, {late, early, skipped, overwritten, clock_beat, actual_ripple}},
       {sync_missing, {skipped, overwritten, actual_ripple}},
       {sync_jitter, {late, early, clock_beat, actual_ripple}},
@@ -36,6 +36,7 @@ void leave_out_consequences(const Findings& of_bus, Findings& findings) {
       {slow_values,
        {duplicated, value_skipped, value_beat, velocity_jump, set_point_ripple, coarse,
         actual_ripple}},
+      {duplicated, {value_skipped, velocity_jump}},
       {value_beat, {set_point_ripple, velocity_jump, actual_ripple}},
       {coarse, {duplicated, value_skipped, value_beat, set_point_ripple, actual_ripple}},
       {set_point_ripple, {duplicated, value_skipped, value_beat, actual_ripple}},

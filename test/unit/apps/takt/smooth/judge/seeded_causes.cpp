@@ -216,6 +216,17 @@ const std::vector<Seeded>& seeded_causes() {
            before = value;
          });
        }},
+      {"an application that stalls",
+       Cause::duplicated,
+       {},
+       [](Generated& plan) {
+         for (std::size_t motion = 0; motion < 4; ++motion) {
+           const std::size_t from = fast_cycle(plan, motion);
+           for (std::size_t k = from; k < from + 7; ++k) {
+             plan.axes[0].sent[k].value = plan.axes[0].sent[from - 1].value;
+           }
+         }
+       }},
       {"values left out",
        Cause::value_skipped,
        {},

@@ -65,7 +65,7 @@ TEST_P(SeededCause, IsTheFirstFinding) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Smooth, SeededCause, testing::Range<std::size_t>(0, 36));
+INSTANTIATE_TEST_SUITE_P(Smooth, SeededCause, testing::Range<std::size_t>(0, 37));
 
 TEST(SmoothMotion, HasNoFinding) {
   for (Recipe recipe : recipes()) {
