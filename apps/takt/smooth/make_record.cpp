@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <tuple>
 
 #include "apps/takt/smooth/judge/numbers.hpp"
 #include "apps/takt/smooth/judge/signals.hpp"

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "apps/takt/smooth/judge/numbers.hpp"
 #include "apps/takt/smooth/judge/signals.hpp"

@@ -1,5 +1,6 @@
 #include <cstdlib>
 #include <fmt/format.h>
+#include <utility>
 
 #include "apps/takt/smooth/judge/judges.hpp"
 #include "apps/takt/smooth/judge/numbers.hpp"

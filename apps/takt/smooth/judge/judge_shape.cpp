@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
+#include <utility>
 
 #include "apps/takt/smooth/judge/judges.hpp"
 #include "apps/takt/smooth/judge/numbers.hpp"

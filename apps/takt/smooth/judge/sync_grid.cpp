@@ -1,6 +1,7 @@
 #include "apps/takt/smooth/judge/sync_grid.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "apps/takt/smooth/judge/numbers.hpp"
 

@@ -1,6 +1,7 @@
 #include "apps/takt/smooth/judge/wire_load.hpp"
 
 #include <array>
+#include <cstddef>
 
 #include "apps/takt/smooth/judge/numbers.hpp"
 

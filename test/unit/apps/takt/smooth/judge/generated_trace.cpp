@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
+#include <stdexcept>
 
 #include "apps/takt/smooth/make_record.hpp"
 #include "apps/takt/smooth/pdo_map.hpp"
