@@ -44,7 +44,8 @@ ParsedMove parse_move(int argc, char** argv) {
       "Example:  takt-move lift --to 1.57,0.5 --sine --for 20s\n"
       "Lengths are in the unit of each axis (rad, m; counts if no unit is configured).\n"
       "Exit codes: 0 the axes followed, 1 the axes did not follow or did not reach the end,\n"
-      "or another program holds them, 2 wrong use or no axis to move, 3 no daemon sends messages.");
+      "or another program holds them, 2 wrong use or no axis to move, 3 no message of a daemon "
+      "came.");
   app.set_version_flag("--version", "takt-move " TAKT_VERSION);
   app.add_option("bus", options.bus, "name of the bus (default: the first bus whose daemon sends)");
   app.add_option("--lcm-url", options.lcm_url, "LCM URL of the daemon; default: LCM_DEFAULT_URL");

@@ -25,7 +25,7 @@ ends. It first waits up to 2 s, because the daemon holds the axes of a program t
 time to live of its last command has run out.
 
 Exit codes: 0 the axes moved, 1 an axis did not follow, another program holds it, or the motion did not
-come to its end, 2 wrong use, no axis to move or another schema, 3 no daemon sends messages.
+come to its end, 2 wrong use, no axis to move or another schema, 3 no message of a daemon came.
 
 If the bus has keys (share/doc/security.md): TAKT_KEYS=FILE, and TAKT_CHECK_IMAGES=true to accept
 only images that the daemon has signed.

@@ -16,7 +16,7 @@ dies, the axis stops along its limits after the timeout. Ctrl-C stops the axis. 
 has the rules.
 
 Exit codes: 0 the motion is done, 1 it was refused or has stopped, or the drive can't be enabled,
-2 wrong use, 3 no daemon sends messages.
+2 wrong use, 3 no message of a daemon came.
 """
 import argparse
 import os

@@ -26,7 +26,7 @@ constexpr AddCommand commands[]{
 
 /// Returns the reason why stdout could not be written completely, or an empty string. If a write
 /// failed earlier, its errno is lost, so one more write finds the reason.
-std::string output_trouble() {
+std::string output_error() {
   const bool before = std::cout.good() && std::ferror(stdout) == 0;
   errno = 0;
   std::cout.flush();
@@ -63,12 +63,12 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   int exit_code = 2;
-  std::string trouble;
+  std::string failure;
   try {
     exit_code = run(argc, argv);
   } catch (const std::exception& error) {
-    trouble = error.what();
+    failure = error.what();
   }
-  if (const std::string lost = output_trouble(); !lost.empty()) return complain(lost, 1);
-  return trouble.empty() ? exit_code : complain(trouble, exit_code);
+  if (const std::string lost = output_error(); !lost.empty()) return complain(lost, 1);
+  return failure.empty() ? exit_code : complain(failure, exit_code);
 }

@@ -130,7 +130,7 @@ struct NodePlan {
   std::string on_sync_loss{};  ///< reaction of such a device to SYNC loss; empty = not known
   std::vector<AxisPlan> axes{};
 
-  /// Returns how long the master waits for an answer about this object to a request.
+  /// Returns how long the master waits for the answer to a request for this object.
   Time sdo_timeout_of(ObjectKey object) const noexcept {
     return sdo.timeout_of(object, sdo_timeout > Time{} ? sdo_timeout : std::chrono::seconds{1});
   }

@@ -83,7 +83,7 @@ std::string duplicate_node_text(const Event& event) {
               : "twice as many heartbeats came as one device sends: two devices have this node id");
 }
 
-std::string lss_trouble_text(const BusPlan& plan, const Event& event) {
+std::string lss_failure_text(const BusPlan& plan, const Event& event) {
   const LssResult result{.op = static_cast<LssOp>(event.bytes[0]),
                          .outcome = static_cast<LssOutcome>(event.bytes[1]),
                          .error = event.bytes[2],
@@ -162,7 +162,7 @@ std::string node_line(const BusPlan& plan, const Event& event) {
       return fmt::format("a device without node id, serial number {}, has got this id by LSS",
                          event.value);
     case EventKind::lss_not_assigned:
-      return lss_trouble_text(plan, event);
+      return lss_failure_text(plan, event);
     case EventKind::node_replaced:
       return fmt::format(
           "the device was replaced: its serial number is {}, it was {}; with `serial_number` in "

@@ -107,7 +107,7 @@ int lss_set_bitrate(const LssOptions& options) {
                     2);
   }
   if (activates) {
-    const std::string trouble = interface_bitrate_trouble(options.access.bus);
+    const std::string trouble = interface_bitrate_error(options.access.bus);
     if (!trouble.empty()) return complain(trouble, 3);
   }
   LssAccess access{options.access};

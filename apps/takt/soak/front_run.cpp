@@ -197,8 +197,8 @@ class FrontWalk {
     const Time regular = early ? unforeseen : usual;
     const Time expected = sync_.shifted || was_shifted ? std::max(regular, unforeseen) : regular;
     const Time in_time = expected + plan_.cycle.receive_window + 300us + rare;
-    excused_until_ = std::max(excused_until_, in_time);
-    if (daemon_.stalled_until() > image.publish_time || now <= excused_until_) return;
+    extended_until_ = std::max(extended_until_, in_time);
+    if (daemon_.stalled_until() > image.publish_time || now <= extended_until_) return;
     verdict_.report_violation("each wait of the front thread ends in time",
                               "image " + std::to_string(image.cycle) + " waited for " +
                                   std::to_string((now - image.publish_time) / 1us) + " us");
@@ -293,7 +293,7 @@ class FrontWalk {
     bool shifted = false;  ///< the newest SYNC is shifted against the one before
   } sync_;
   Time last_published_{};
-  Time excused_until_{};
+  Time extended_until_{};
 };
 
 }  // namespace

@@ -21,7 +21,8 @@ class RandomUser {
   void on_image(const ImageView& image, Time now);
   /// Sends a random request, or none. To be called before each cycle.
   void ask(Time now);
-  /// Takes the replies. Blames a second reply to a request, and a request that waits too long.
+  /// Takes the replies. Reports a second reply to a request, and a request that waits too long, as
+  /// violations.
   void take_replies(Time now);
   /// Requests a reset of all nodes.
   void reset_all(Time now);

@@ -69,7 +69,7 @@ struct LssResult {
 };
 static_assert(std::is_trivially_copyable_v<LssResult>);
 
-/// Returns the time-out of an answer if the caller gives none.
+/// Returns the time for which the master waits for an answer unless the caller gives a time.
 Time default_timeout(LssOp op) noexcept;
 
 // Sizes of the packed forms that requests and replies carry, little endian. A command consists of

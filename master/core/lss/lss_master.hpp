@@ -56,7 +56,7 @@ class LssMaster {
   };
   enum class Wait : std::uint8_t { none, first_answer, all_answers };
   /// The time for which a scan waits for answers: only as long as the devices need (`quick`), or
-  /// for the full time-out (`patient`).
+  /// for the full time-out (`full_timeout`).
   enum class Pace : std::uint8_t { quick, full_timeout };
 
   void ask() noexcept;

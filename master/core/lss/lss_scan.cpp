@@ -65,7 +65,7 @@ void LssFastScan::on_part(bool answered) noexcept {
     if (part >= confirmed_) doubtful_ = false;
     confirmed_ = std::max(confirmed_, static_cast<std::uint8_t>(part + 1));
     if (part + 1 < parts) return begin_part(static_cast<std::uint8_t>(part + 1));
-    state_ = unheard_ && address_ > *unheard_ ? LssScanState::lost : LssScanState::found;
+    state_ = unanswered_ && address_ > *unanswered_ ? LssScanState::lost : LssScanState::found;
   } else if (!doubtful_ || part < confirmed_) {
     confirmed_ = std::min(confirmed_, part);
     if (part + 1 == parts) keep_unanswered();
@@ -78,7 +78,7 @@ void LssFastScan::on_part(bool answered) noexcept {
 void LssFastScan::keep_unanswered() noexcept {
   LssAddress asked = address_;
   asked[parts - 1] = question_.number;
-  if (!unheard_ || asked < *unheard_) unheard_ = asked;
+  if (!unanswered_ || asked < *unanswered_) unanswered_ = asked;
 }
 
 void LssFastScan::ask_anybody() noexcept {

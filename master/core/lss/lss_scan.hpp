@@ -70,7 +70,7 @@ class LssFastScan {
   bool doubtful_ = false;
   std::uint8_t confirmed_ = 0;  // number of confirmed parts of address_
   std::uint8_t restarts_ = 0;
-  std::optional<LssAddress> unheard_;  // the lowest address that no device has confirmed
+  std::optional<LssAddress> unanswered_;  // the lowest address that no device has confirmed
   bool may_have_switched_ = false;
 };
 

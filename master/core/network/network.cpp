@@ -124,8 +124,8 @@ NodeSession* Network::emcy_sender(CobId id) noexcept {
 void Network::on_unlisted_node(const Frame& frame, Time now) noexcept {
   const std::uint32_t node = frame.id.id() & 0x7F;
   const bool sign_of_life = (frame.id.id() & 0x780U) == 0x700 && frame.length != 0 && node != 0;
-  if (!sign_of_life || node == plan_.master_id.value() || strangers_[node]) return;
-  strangers_.set(node);
+  if (!sign_of_life || node == plan_.master_id.value() || unlisted_nodes_[node]) return;
+  unlisted_nodes_.set(node);
   events_.push({.when = now, .kind = EventKind::unlisted_node, .value = node});
 }
 

@@ -166,7 +166,7 @@ class Network {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(requests_, lss_, nmt_gate_, start_, sessions_, deadlines_, strangers_, own_state_,
+    state(requests_, lss_, nmt_gate_, start_, sessions_, deadlines_, unlisted_nodes_, own_state_,
           sync_restarts_, heartbeat_at_);
     state.position(turn_, std::max<std::size_t>(sessions_.size(), 1));
     for (std::size_t i = 0; i < sessions_.size(); ++i) statuses_[i] = sessions_[i].status();
@@ -225,7 +225,7 @@ class Network {
   std::array<std::uint8_t, 128> index_;  // node-ID -> session
   // COB-IDs of EMCYs other than 0x080 + node-ID, and their sessions.
   std::vector<std::pair<CobId, std::uint8_t>> emcy_ids_;
-  std::bitset<128> strangers_;              // unlisted node-IDs that were reported
+  std::bitset<128> unlisted_nodes_;         // unlisted node-IDs that were reported
   std::array<std::uint8_t, 2048> answers_;  // COB-ID of an SDO answer -> session
   OwnDictionary dictionary_;
   SdoServer server_;

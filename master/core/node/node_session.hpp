@@ -53,7 +53,8 @@ enum class Managed : std::uint8_t {
 /// | idle                | start()                           | booting   | boot                 |
 /// | booting             | all steps have succeeded          | ready     | NMT start, if needed |
 /// | booting             | a step has failed                 | failed    |                      |
-/// | ready               | silent, not OPERATIONAL, restless | lost      |                      |
+/// | ready               | silence, not OPERATIONAL          | lost      |                      |
+/// | ready               | boots up again and again          | lost      |                      |
 /// | ready               | boot-up message, not application  | booting   | boot                 |
 /// | ready               | boot-up message, application      | lost      |                      |
 /// | failed, lost        | end of the pause, sign of life    | booting   | boot                 |

@@ -25,7 +25,7 @@ class SdoBlockDownload {
  public:
   /// Begins a download. `value` must live until its end.
   void begin(SdoChannel channel, ObjectKey object, std::span<const std::byte> value) noexcept;
-  /// Returns the value of begin().
+  /// Returns the bytes that begin() was given.
   std::span<const std::byte> value() const noexcept { return value_; }
 
   /// Returns the frame to send now, or std::nullopt if the client waits for the server.

@@ -38,7 +38,7 @@ class SdoBlockUpload {
   };
   /// Begins an upload. `buffer` must live until its end.
   void begin(const Begin& begin, std::span<std::byte> buffer) noexcept;
-  /// Returns the buffer of begin().
+  /// Returns the buffer that begin() was given.
   std::span<std::byte> buffer() const noexcept { return buffer_; }
 
   /// Returns the frame to send now, or std::nullopt if the client waits for the server.

@@ -203,8 +203,8 @@ bool SdoClient::is_abort_of_previous(const Frame& frame) noexcept {
   return of_end;
 }
 
-/// Returns the server refuses block transfer before any data were transferred, so the client
-/// transfers the value by segments.
+/// Transfers the value by segments, if the server has refused block transfer before any data were
+/// transferred. Returns false if this is not the case.
 bool SdoClient::fall_back(std::uint32_t code) noexcept {
   if (!unanswered_block() || !refuses_block(code)) return false;
   if (code == abort_code::command_unknown) learn_no_block(code);

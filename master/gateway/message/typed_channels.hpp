@@ -32,7 +32,7 @@ class TypedChannels {
   /// Returns the index of the node of a command channel; std::nullopt for other channels.
   std::optional<std::size_t> node_of(std::string_view channel) const;
 
-  /// Returns the command channels.
+  /// Returns the channels on which commands come.
   static std::vector<std::string> heard(const BusPlan& plan);
 
  private:

@@ -33,7 +33,7 @@ std::optional<CanLink> link_of(const std::string& bus) {
 
 }  // namespace
 
-std::string interface_bitrate_trouble(const CanLink& link) {
+std::string interface_bitrate_error(const CanLink& link) {
   if (link.kind != "can") return {};
   const std::string length = std::to_string(link.tx_queue_length);  // the current length
   if (run({"ip", "link", "set", link.name, "txqueuelen", length})) return {};
@@ -41,9 +41,9 @@ std::string interface_bitrate_trouble(const CanLink& link) {
          " can't be changed (ip link needs root, or CAP_NET_ADMIN); no device was changed";
 }
 
-std::string interface_bitrate_trouble(const std::string& bus) {
+std::string interface_bitrate_error(const std::string& bus) {
   const auto link = link_of(bus);
-  return link ? interface_bitrate_trouble(*link) : std::string{};
+  return link ? interface_bitrate_error(*link) : std::string{};
 }
 
 std::string set_interface_bitrate(const std::string& bus, int bitrate) {

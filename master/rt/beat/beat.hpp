@@ -102,7 +102,7 @@ class Beat {
   void await_deadline(P& port) noexcept;
   template <Port P, class Drain>
   void await_sync(P& port, std::span<const NodeStatus> nodes, Drain drain) noexcept;
-  void check_bus_state(const PortNews& news) noexcept;
+  void open_or_hold_wire(const PortNews& news) noexcept;
   void begin(Time now) noexcept;
   std::uint64_t begin_by_sync(bool was_locked) noexcept;
   std::uint64_t begin_without_sync(Time now, std::span<const NodeStatus> nodes,
@@ -132,7 +132,7 @@ void Beat::await(P& port, const S& services, Drain drain) noexcept {
     await_deadline(port);
   }
   if (gate_.doubtful(port.news())) drain();  // the echo of SYNC may be among the frames
-  check_bus_state(port.news());
+  open_or_hold_wire(port.news());
 }
 
 inline void Beat::begin(Time now) noexcept {
@@ -205,7 +205,7 @@ inline bool Beat::begins_cycle(const StampedFrame& stamped) noexcept {
 }
 
 /// If earlier frames could not leave yet, no others may follow.
-inline void Beat::check_bus_state(const PortNews& news) noexcept {
+inline void Beat::open_or_hold_wire(const PortNews& news) noexcept {
   wire_ = gate_.open(news, sync_at_) ? Wire::open : Wire::held;
   if (wire_ == Wire::open) {
     missed_.release(sync_at_);

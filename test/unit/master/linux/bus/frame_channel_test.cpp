@@ -28,13 +28,12 @@ TEST(FrameChannel, SeesWhatWasSentOnTheBusAndNothingElse) {
 }
 
 TEST(InterfaceBitrate, IsNoTroubleWhereThereIsNone) {
-  EXPECT_EQ(interface_bitrate_trouble(std::string{"unix:/tmp/x"}), "");
-  EXPECT_EQ(interface_bitrate_trouble(CanLink{.name = "vcan7", .kind = "vcan"}), "");
+  EXPECT_EQ(interface_bitrate_error(std::string{"unix:/tmp/x"}), "");
+  EXPECT_EQ(interface_bitrate_error(CanLink{.name = "vcan7", .kind = "vcan"}), "");
 }
 
 TEST(InterfaceBitrate, IsFoundOutBeforeAnythingChanges) {
-  const std::string declared =
-      interface_bitrate_trouble(CanLink{.name = "takt-none", .kind = "can"});
+  const std::string declared = interface_bitrate_error(CanLink{.name = "takt-none", .kind = "can"});
   EXPECT_NE(declared.find("the bit rate of takt-none can't be changed"), std::string::npos)
       << declared;
   EXPECT_NE(declared.find("no device was changed"), std::string::npos);

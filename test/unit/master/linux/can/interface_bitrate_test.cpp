@@ -42,13 +42,13 @@ class InterfaceRights : public testing::Test {
 
 TEST_F(InterfaceRights, AreTriedByACommandThatChangesNothing) {
   ip_ends_with(0);
-  EXPECT_EQ(interface_bitrate_trouble(link), "");
+  EXPECT_EQ(interface_bitrate_error(link), "");
   EXPECT_EQ(asked(), "link set can7 txqueuelen 10\n");
 }
 
 TEST_F(InterfaceRights, ThatAreMissingAreExplainedBeforeAnyDeviceChanges) {
   ip_ends_with(2);  // RTNETLINK answers: Operation not permitted
-  const std::string declared = interface_bitrate_trouble(link);
+  const std::string declared = interface_bitrate_error(link);
   EXPECT_THAT(declared, HasSubstr("the bit rate of can7 can't be changed"));
   EXPECT_THAT(declared, HasSubstr("needs root, or CAP_NET_ADMIN"));
   EXPECT_THAT(declared, HasSubstr("no device was changed"));
