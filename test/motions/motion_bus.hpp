@@ -126,6 +126,17 @@ class MotionBus final : public AxesInVirtualTime {
     message.num_values = 1;
     lcm.send(bridge.channels().command, message);
   }
+  /// The application gives up its nodes.
+  void release() {
+    command_t message{};
+    message.schema = message_schema;
+    message.session = session;
+    message.instance = 5;
+    message.sender = "test";
+    message.cycle = static_cast<std::int64_t>(bridge.status().bus.cycle);
+    message.release = 1;
+    lcm.send(bridge.channels().command, message);
+  }
   /// What the newest motion_t says of an axis.
   axis_motion_t axis(std::size_t i) const {
     return i < lcm.motion.axes.size() ? lcm.motion.axes[i] : axis_motion_t{};

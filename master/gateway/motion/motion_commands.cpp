@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "master/gateway/motion/motion_text.hpp"
@@ -66,7 +67,8 @@ MotionCommands::MotionCommands(const BusPlan& plan, Commands& commands, SubmitMo
       planner_{axes_.size(), std::chrono::duration<double>{plan.cycle.period}.count()},
       shown_(axes_.size()),
       owners_(axes_.size()),
-      stops_(axes_.size()) {}
+      stops_(axes_.size()),
+      sequences_(axes_.size()) {}
 
 std::string MotionCommands::name_of(std::size_t axis) const {
   const std::string& node = plan_.nodes[axes_[axis].node_index].name;
@@ -167,6 +169,7 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
                                       command.timeout_ms)},
                   context);
   }
+  if (!is_newest(command, *axes, context)) return;
   const auto lease = static_cast<std::uint32_t>(cycles_in(timeout_of(command), plan_.cycle.period));
   const std::vector<std::size_t> nodes = nodes_of(command, *axes, context);
   if (nodes.empty() || !commands_.lease(header, nodes, lease, context)) return;
@@ -177,7 +180,10 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
              .cycle = static_cast<motion::CycleNumber>(command.cycle)});
   }
   if (command.kind == "stop") {
-    for (const std::size_t axis : *axes) stop(axis);
+    for (const std::size_t axis : *axes) {
+      sequences_[axis].stopped(command);
+      stop(axis);
+    }
     return;
   }
   if (!sender) {
@@ -186,6 +192,22 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
   }
   active_ = true;
   if (command.kind != "alive") begin(command, *axes, *sender, context);
+}
+
+/// A move or jog that a later message has overtaken is refused, and so is a copy from before a
+/// stop.
+bool MotionCommands::is_newest(const motion_command_t& command, std::span<const std::size_t> axes,
+                               const CommandContext& context) {
+  if (command.kind != "move" && command.kind != "jog") return true;
+  for (const std::size_t axis : axes) {
+    const std::string_view why =
+        sequences_[axis].objection(command, static_cast<std::int64_t>(context.cycle));
+    if (why.empty()) continue;
+    refuse({.id = command.id, .sender = command.sender}, {.why = std::string{why}, .axis = axis},
+           context);
+    return false;
+  }
+  return true;
 }
 
 /// A stop is never lost: if the bus thread can't take it now, serve() tries again.
@@ -238,6 +260,7 @@ void MotionCommands::begin(const motion_command_t& command, std::span<const std:
                                     ? goal.max_following_error
                                     : std::numeric_limits<double>::infinity()});
   }
+  for (const std::size_t axis : axes) sequences_[axis].moved(command);
   drop_replaced(job);
   if (!plan(job, context)) jobs_.push_back(std::move(job));
 }

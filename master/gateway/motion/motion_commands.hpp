@@ -13,6 +13,7 @@
 #include "master/gateway/motion/axis_motion_limits.hpp"
 #include "master/gateway/motion/motion_messages.hpp"
 #include "master/gateway/motion/motion_senders.hpp"
+#include "master/gateway/motion/motion_sequence.hpp"
 #include "master/gateway/notice/notice.hpp"
 #include "master/lcm/rate_limit.hpp"
 #include "master/motion/beat/motion_message.hpp"
@@ -76,6 +77,8 @@ class MotionCommands {
   std::vector<std::size_t> nodes_of(const motion_command_t& command,
                                     std::span<const std::size_t> axes,
                                     const CommandContext& context) const;
+  bool is_newest(const motion_command_t& command, std::span<const std::size_t> axes,
+                 const CommandContext& context);
   void begin(const motion_command_t& command, std::span<const std::size_t> axes,
              std::uint8_t sender, const CommandContext& context);
   bool plan(Job& job, const CommandContext& context);
@@ -102,8 +105,9 @@ class MotionCommands {
   MotionSnapshot snapshot_;
   std::vector<Job> jobs_;  ///< at most one for each axis
   std::vector<ShownMotion> shown_;
-  std::vector<Owner> owners_;  ///< by axis: the sender of the motion that began last
-  std::vector<bool> stops_;    ///< by axis: a stop has to be handed over
+  std::vector<Owner> owners_;              ///< by axis: the sender of the motion that began last
+  std::vector<bool> stops_;                ///< by axis: a stop has to be handed over
+  std::vector<MotionSequence> sequences_;  ///< by axis
   bool active_ = false;
 };
 

@@ -1,0 +1,55 @@
+// Messages of motions that come twice, late, in another order, or for a node that is not ready.
+#include <gtest/gtest.h>
+
+#include "test/motions/motion_bus.hpp"
+
+namespace takt {
+namespace {
+
+using test::MotionBus;
+
+constexpr std::int8_t axis_moves = 2;
+
+motion_command_t move_of(MotionBus& bus, std::int32_t id, double shoulder, std::int64_t utime) {
+  motion_command_t message = bus.command("move", id);
+  message.utime = utime;
+  message.goals = {MotionBus::goal("shoulder", shoulder)};
+  return message;
+}
+
+motion_command_t stop_of(MotionBus& bus, std::initializer_list<const char*> nodes) {
+  motion_command_t message = bus.command("stop", 0);
+  for (const char* node : nodes) message.goals.push_back(MotionBus::goal(node, 0.0));
+  return message;
+}
+
+TEST(MotionMessages, ACopyOfAMoveDoesNotStartTheAxisAgainAfterItsStop) {
+  MotionBus bus;
+  bus.enable();
+  const motion_command_t move = move_of(bus, 1, 20.0, 1000);
+  const motion_command_t stop = stop_of(bus, {"shoulder"});
+  bus.send(move);
+  bus.send(stop);
+  bus.send(move);
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  bus.run(50);
+  EXPECT_NE(bus.axis(0).state, axis_moves);
+  EXPECT_TRUE(bus.said("motion_refused", "not newer than the stop"));
+  bus.send(move_of(bus, 2, 20.0, 3000));
+  EXPECT_TRUE(bus.run_until([&] { return bus.axis(0).state == axis_moves; }, 20));
+}
+
+TEST(MotionMessages, ACopyOfTheOlderOfTwoMovesOfOneImageDoesNotLeadTheAxisBack) {
+  MotionBus bus;
+  bus.enable();
+  const motion_command_t older = move_of(bus, 1, 20.0, 1000);
+  bus.send(older);
+  bus.send(move_of(bus, 2, -20.0, 2000));
+  bus.send(older);
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == axis_moves; }, 20));
+  EXPECT_EQ(bus.axis(0).id, 2);
+}
+
+}  // namespace
+}  // namespace takt
