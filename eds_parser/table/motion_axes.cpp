@@ -8,6 +8,12 @@ namespace {
 constexpr std::uint8_t axes_of_device = 8;
 constexpr std::size_t most_motion_axes = 127;
 
+/// A motion reads its position from one signal and writes it to the other.
+bool have_same_unit(const Signal& position, const Signal& target) {
+  return position.scale == target.scale && position.offset == target.offset &&
+         position.unit == target.unit;
+}
+
 std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, std::uint8_t number) {
   const auto find = [&](std::uint16_t index, bool output) {
     return plan.layout.find(node, axis_object(number, index), output);
@@ -16,7 +22,10 @@ std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, st
   const auto position = find(0x6064, false);
   const auto target = find(0x607A, true);
   if (!statusword || !position || !target || find(0x60B0, true)) return std::nullopt;
-  const auto signal = [&](SignalIndex index) { return plan.layout.signals[index]; };
+  const auto signal = [&](SignalIndex index) -> const Signal& {
+    return plan.layout.signals[index];
+  };
+  if (!have_same_unit(signal(*position), signal(*target))) return std::nullopt;
   const auto offset = find(0x60B1, true);
   const bool same_unit = offset && !signal(*offset).unit.empty() &&
                          signal(*offset).unit == signal(*target).unit + "/s";

@@ -22,8 +22,8 @@ struct MotionAxis {
 };
 
 /// Returns the CiA 402 axes that have a statusword (6041) and an actual position (6064) in TPDOs
-/// and a target position (607A) without an offset (60B0) in RPDOs, in the order of the nodes. At
-/// most 127 are returned. Both sides of the master number the axes in this order.
+/// and a target position (607A) in the same unit without an offset (60B0) in RPDOs, in the order of
+/// the nodes. At most 127 are returned. Both sides of the master number the axes in this order.
 std::vector<MotionAxis> motion_axes(const BusPlan& plan);
 
 }  // namespace takt

@@ -12,8 +12,13 @@ using motion::AxisCondition;
 using motion::AxisReport;
 using motion::AxisState;
 
+struct BenchOptions {
+  bool commands_controlword = true;  ///< otherwise RPDO1 has an object without a value
+  bool mode = false;                 ///< RPDO2 has the mode of operation (6060)
+};
+
 /// One axis with a velocity offset (60B1) in RPDO2. A count is 0.01 rad, and 0.1 rad/s.
-BusPlan one_axis() {
+BusPlan one_axis(bool mode = false) {
   BusPlan plan = test::axes({.nodes = 1, .fallback_cycles = 0});
   for (Signal& signal : plan.layout.signals) {
     if (signal.object.index != 0x6064 && signal.object.index != 0x607A) continue;
@@ -30,14 +35,28 @@ BusPlan one_axis() {
   plan.layout.signals.push_back(offset);
   test::add_pdo(plan, false, {.cob_id = CobId::base(0x301), .node = 1_node, .transmission = 1},
                 {{.signal = 4, .bit_offset = 0, .bits = 32, .sign_extend = true}});
+  if (!mode) return plan;
+  Signal modes = test::make_signal(1_node, 0, {0x6060, 0});
+  modes.type = DataType::integer8;
+  modes.bits = 8;
+  modes.output = true;
+  modes.row = 2;
+  plan.layout.signals.push_back(modes);
+  test::add_pdo(plan, false, {.cob_id = CobId::base(0x401), .node = 1_node, .transmission = 1},
+                {{.signal = 5, .bit_offset = 0, .bits = 8, .sign_extend = true}});
   return plan;
 }
 
 class Bench {
  public:
-  Bench() : plan{one_axis()}, pdos{plan, events}, axis{motion_axes(plan).at(0), plan} {
+  explicit Bench(BenchOptions options = {})
+      : plan{one_axis(options.mode)}, pdos{plan, events}, axis{motion_axes(plan).at(0), plan} {
     pdos.inputs().set_reception(0, Reception::full);
     pdos.outputs().open(0, points);
+    if (options.commands_controlword) command(0, 0x000F);
+    if (options.mode) command(3, 8);
+    hear(0x0023, 0);
+    pack();
   }
   void hear(std::uint16_t statusword, std::int32_t position) {
     ++cycle;
@@ -53,6 +72,18 @@ class Bench {
     }
     ASSERT_TRUE(pdos.inputs().receive(stamped));
     pdos.inputs().close(stamped.when);
+  }
+  /// Sends the outputs of the cycle, or only packs them. Without a controlword, RPDO1 has a value
+  /// that is not known.
+  void pack(bool sends = true) {
+    const OutputMoment moment{.cycle = cycle, .now = Time{cycle * 2'000'000}};
+    const std::size_t count = pdos.outputs().pack(points, moment).size();
+    pdos.outputs().sent(sends ? count : 0, moment);
+  }
+  void command(std::size_t output, std::int64_t value) {
+    SetPoint& point = points[output];
+    point = {
+        .value = value, .generation = point.generation + 1, .when = Time{(cycle + 1) * 2'000'000}};
   }
   void hear_nothing() {
     ++cycle;
@@ -75,7 +106,7 @@ class Bench {
   PdoExchange pdos;
   DrivenAxis axis;
   AxisReport last;
-  std::vector<SetPoint> points = std::vector<SetPoint>(3);
+  std::vector<SetPoint> points = std::vector<SetPoint>(4);
   std::uint64_t cycle = 0;
 };
 
@@ -114,8 +145,8 @@ TEST(DrivenAxis, OneMissingFrameIsNoSilenceButThreeAre) {
 
 TEST(DrivenAxis, AHaltIsNoLossOfOperationEnabled) {
   Bench bench;
-  bench.points[0] = {.value = 0x010F, .generation = 1, .when = Time{2'000'000}};
-  bench.pdos.outputs().pack(bench.points, {.cycle = 1, .now = Time{2'000'000}});
+  bench.command(0, 0x010F);
+  bench.pack();
   bench.hear(0x0027, 0);
   EXPECT_EQ(bench.condition(), AxisCondition::halted);
   bench.hear(0x0008, 0);
@@ -186,9 +217,9 @@ TEST(DrivenAxis, AfterARefusedSetPointTheVelocityIsZeroAndTheTargetFollowsADrive
 TEST(DrivenAxis, AMotionWhoseFirstSetPointIsRefusedLeavesTheOutputsToOthers) {
   Bench bench;
   bench.hear(0x0023, 40);
-  bench.points[1] = {.value = 55, .generation = 1, .when = Time{2'000'000}};
-  bench.points[2] = {.value = 3, .generation = 1, .when = Time{2'000'000}};
-  bench.pdos.outputs().pack(bench.points, {.cycle = 1, .now = Time{2'000'000}});
+  bench.command(1, 55);
+  bench.command(2, 3);
+  bench.pack();
   bench.condition();
   EXPECT_FALSE(bench.write(AxisState::moving, {.position = 3e7, .velocity = 0.7}));
   ASSERT_TRUE(bench.write(AxisState::unpowered, {.position = 0.4}));
@@ -209,14 +240,27 @@ TEST(DrivenAxis, TheTargetFollowsTheActualPositionWhileTheDriveIsNotEnabled) {
 TEST(DrivenAxis, ASetPointOfAnApplicationIsReadAndNotOverwritten) {
   Bench bench;
   bench.hear(0x0027, 0);
-  bench.points[1] = {.value = 55, .generation = 1, .when = Time{2'000'000}};
-  bench.pdos.outputs().pack(bench.points, {.cycle = 1, .now = Time{2'000'000}});
+  bench.command(1, 55);
+  bench.pack();
   const auto input = bench.axis.read(bench.pdos, true, bench.last);
   ASSERT_TRUE(input.set_point.has_value());
   EXPECT_DOUBLE_EQ(*input.set_point, 0.55);
   ASSERT_TRUE(bench.write(AxisState::standing, {.position = 0.55}));
   ASSERT_TRUE(bench.write(AxisState::unpowered, {.position = 0.0}));
   EXPECT_EQ(bench.target(), 55);
+}
+
+/// A position in one unit must not be written in another one.
+TEST(DrivenAxis, AnAxisWhoseTargetHasAnotherUnitThanItsPositionHasNoMotions) {
+  const auto axes_after = [](auto change) {
+    BusPlan plan = one_axis();
+    change(plan.layout.signals[3]);
+    return motion_axes(plan).size();
+  };
+  EXPECT_EQ(axes_after([](Signal&) {}), 1U);
+  EXPECT_EQ(axes_after([](Signal& target) { target.scale = 0.02; }), 0U);
+  EXPECT_EQ(axes_after([](Signal& target) { target.offset = 1.0; }), 0U);
+  EXPECT_EQ(axes_after([](Signal& target) { target.unit = "m"; }), 0U);
 }
 
 }  // namespace
