@@ -4,6 +4,8 @@
 #include <limits>
 #include <optional>
 
+#include "eds_parser/table/axis_modes.hpp"
+
 namespace takt {
 namespace {
 
@@ -19,13 +21,8 @@ AxisCondition condition_of(std::int64_t statusword) noexcept {
   return state == 0x0F || state == 0x08 ? AxisCondition::fault : AxisCondition::disabled;
 }
 
-/// Returns true if the drive follows the target position of each cycle: cyclic synchronous
-/// position, or a mode of the manufacturer. CiA 402-2, 0x6061.
-bool follows_each_target(std::int64_t mode) noexcept {
-  constexpr std::int8_t cyclic_synchronous_position = 8;
-  const auto number = static_cast<std::int8_t>(mode);
-  return number == cyclic_synchronous_position || number < 0;
-}
+/// CiA 402-2, 0x6061.
+constexpr std::int64_t cyclic_synchronous_position = 8;
 
 bool moves(const motion::AxisReport& report) noexcept {
   return report.state == AxisState::moving || report.state == AxisState::stopping;
@@ -64,8 +61,9 @@ AxisCondition DrivenAxis::condition(const WorkingImage& image, bool exchanging) 
   }
   silent_beats_ = 0;
   const AxisCondition found = condition_of(image.values[axis_.statusword]);
-  const bool in_mode = !axis_.mode || follows_each_target(image.values[*axis_.mode]);
-  ignores_target_ = found != AxisCondition::enabled || !in_mode;
+  const std::int64_t mode = axis_.mode ? image.values[*axis_.mode] : cyclic_synchronous_position;
+  const bool in_mode = mode == cyclic_synchronous_position;
+  ignores_target_ = found != AxisCondition::enabled || !follows(AxisQuantity::position, mode);
   if (found != AxisCondition::enabled) return found;
   if (!in_mode) return AxisCondition::disabled;
   const bool halted = axis_.controlword && (image.values[*axis_.controlword] & halt) != 0;

@@ -263,5 +263,25 @@ TEST(DrivenAxis, AnAxisWhoseTargetHasAnotherUnitThanItsPositionHasNoMotions) {
   EXPECT_EQ(axes_after([](Signal& target) { target.unit = "m"; }), 0U);
 }
 
+/// Modes 7, interpolated position, and 3, profile velocity.
+TEST(DrivenAxis, TheTargetDoesNotFollowTheActualPositionInAModeInWhichTheDriveMayFollowIt) {
+  Bench bench{{.commands_controlword = true, .mode = true}};
+  bench.hear(0x0027, 100);
+  ASSERT_EQ(bench.condition(), AxisCondition::enabled);
+  ASSERT_TRUE(bench.write(AxisState::moving, {.position = 1.2}));
+  const auto after_mode = [&](std::int64_t mode) {
+    bench.command(3, mode);
+    bench.pack();
+    bench.hear(0x0027, 100);
+    EXPECT_EQ(bench.condition(), AxisCondition::disabled) << mode;
+    bench.last.actual.position = 1.0;
+    EXPECT_TRUE(bench.write(AxisState::unpowered, {.position = 1.0}));
+    return bench.target();
+  };
+  EXPECT_EQ(after_mode(7), 120);
+  EXPECT_EQ(after_mode(-1), 120) << "a mode of the manufacturer";
+  EXPECT_EQ(after_mode(3), 100);
+}
+
 }  // namespace
 }  // namespace takt
