@@ -15,6 +15,7 @@ void Bridge::on_motion(Bytes data) {
 
 /// Plans what waits for the newest reports, and publishes them.
 void Bridge::serve_motions() {
+  if (options_.motions) motions_.watch();
   if (!motions_.active()) return;
   const Time now = clocks_.now();
   for (motion::MotionEnd end; master_.take(end);) motions_.take(end, context_at(now));

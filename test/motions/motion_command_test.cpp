@@ -18,6 +18,16 @@ constexpr std::int8_t done = 1;
 constexpr std::int8_t stopped = 2;
 constexpr std::int8_t refused = 4;
 
+/// So that a target position that nobody has commanded follows the actual position.
+TEST(MotionCommand, TheBusThreadReadsTheAxesBeforeTheFirstCommand) {
+  MotionBus bus;
+  bus.run(10);
+  MotionSnapshot now;
+  bus.master.motions(now);
+  EXPECT_NE(now.cycle, 0U);
+  EXPECT_TRUE(bus.lcm.motion.axes.empty());
+}
+
 TEST(MotionCommand, MovesTwoAxesThatArriveTogether) {
   MotionBus bus;
   bus.enable();

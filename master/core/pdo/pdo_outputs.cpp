@@ -300,11 +300,12 @@ bool PdoOutputs::lead(SignalIndex signal, std::int64_t value, OutputMoment momen
   return true;
 }
 
-void PdoOutputs::trail(SignalIndex signal, std::int64_t value) noexcept {
+bool PdoOutputs::trail(SignalIndex signal, std::int64_t value) noexcept {
   const Output& output = outputs_[output_of(signal)];
   const bool fallen = output.fallen && plan_.layout.signals[signal].fallback == Fallback::value;
-  if (!output.known || stopping_ || output.forced || fallen) return;
+  if (!output.known || stopping_ || output.forced || fallen) return false;
   image_.values[signal] = value;
+  return true;
 }
 
 void PdoOutputs::fall_back() noexcept {

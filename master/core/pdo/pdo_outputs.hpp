@@ -76,6 +76,12 @@ class PdoOutputs {
   void hear_again() noexcept { stopping_ = false; }
   /// Returns true if the output has a value that can be sent.
   bool known(SignalIndex signal) const noexcept { return outputs_[output_of(signal)].known; }
+  /// Returns true if nobody has commanded the output so far, and its value is that of its feedback.
+  bool is_seeded(SignalIndex signal) const noexcept {
+    const Output& output = outputs_[output_of(signal)];
+    const Signal& what = plan_.layout.signals[signal];
+    return output.known && !output.commanded && what.seeded_from && !what.safe_value;
+  }
   /// Returns true if the output was commanded and its fallback is effective.
   bool fallen(SignalIndex signal) const noexcept { return outputs_[output_of(signal)].fallen; }
   /// Forces this value from now on and refuses commands to the output, for an ordered stop or the
@@ -97,8 +103,8 @@ class PdoOutputs {
   void release_lead(SignalIndex signal) noexcept { outputs_[output_of(signal)].led = false; }
   /// Sets the value of an output of a motion without judging it: a target position that has no
   /// effect because its axis is not enabled, or the velocity offset 0 of an axis whose target
-  /// position stands still. This is no command. Does nothing if another value is in force.
-  void trail(SignalIndex signal, std::int64_t value) noexcept;
+  /// position stands still. This is no command. Returns false if another value is in force.
+  bool trail(SignalIndex signal, std::int64_t value) noexcept;
   /// The command of the output stays valid in this cycle, if it was valid before.
   void keep_alive(SignalIndex signal, OutputMoment moment) noexcept {
     Output& output = outputs_[output_of(signal)];

@@ -32,6 +32,9 @@ class MotionCommands {
  public:
   MotionCommands(const BusPlan& plan, Commands& commands, SubmitMotion submit, NoticeSink announce);
 
+  /// Lets the bus thread read the axes from now on: the target position of an axis that nobody has
+  /// moved follows its actual position while its drive is not enabled.
+  void watch() { watched_ = watched_ || submit_({.kind = motion::MessageKind::watch}); }
   void take(const motion_command_t& command, const CommandContext& context);
   /// Takes the newest reports, and plans what waits for them.
   void observe(const MotionSnapshot& snapshot, const CommandContext& context);
@@ -108,6 +111,7 @@ class MotionCommands {
   std::vector<Owner> owners_;              ///< by axis: the sender of the motion that began last
   std::vector<bool> stops_;                ///< by axis: a stop has to be handed over
   std::vector<MotionSequence> sequences_;  ///< by axis
+  bool watched_ = false;
   bool active_ = false;
 };
 

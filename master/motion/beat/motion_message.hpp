@@ -12,6 +12,7 @@ enum class MessageKind : std::uint8_t {
   order,  ///< `order` waits for its first cycle
   stop,   ///< the axis and its group stop along their limits
   left,   ///< this sender may not command the axis any longer
+  watch,  ///< the axes are read from now on, although nobody moves them
 };
 
 /// A message of the front thread about motions. Plain data.

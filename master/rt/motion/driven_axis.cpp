@@ -100,10 +100,10 @@ bool DrivenAxis::write(PdoOutputs& outputs, const motion::AxisReport& report,
   stop_leading(outputs);
   if (report.state == AxisState::standing) return true;
   const auto raw = target_.raw(report.actual.position);
-  if (writer_ == Writer::others || !ignores_target_ || !raw) return true;
-  outputs.trail(axis_.target, *raw);
+  const bool by_others = writer_ == Writer::others && !outputs.is_seeded(axis_.target);
+  if (by_others || !ignores_target_ || !raw || !outputs.trail(axis_.target, *raw)) return true;
   written_ = *raw;
-  clear_velocity(outputs);
+  if (writer_ != Writer::others) clear_velocity(outputs);
   return true;
 }
 

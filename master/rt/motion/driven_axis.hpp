@@ -22,8 +22,8 @@ class DrivenAxis {
                          const motion::AxisReport& last) noexcept;
   /// Commands the target position, and the velocity as its offset, while the axis moves. While the
   /// drive says that it does not follow its target position, this one follows the actual position
-  /// if a motion has commanded it last, so that the drive does not jump when it is enabled. Returns
-  /// false if a set-point was not taken, see PdoOutputs::lead().
+  /// if a motion has commanded it last, or if nobody has, so that the drive does not jump when it
+  /// is enabled. Returns false if a set-point was not taken, see PdoOutputs::lead().
   bool write(PdoOutputs& outputs, const motion::AxisReport& report, OutputMoment moment) noexcept;
   /// Keeps the commands of all outputs of the node valid in this cycle.
   void keep_alive(PdoOutputs& outputs, OutputMoment moment) const noexcept {

@@ -95,6 +95,8 @@ void MotionStage<L, S>::accept(const motion::MotionMessage& message,
     case motion::MessageKind::left:
       motions_.sender_left(message.axis, message.sender);
       break;
+    case motion::MessageKind::watch:
+      break;
     case motion::MessageKind::order: {
       const motion::Outcome refusal = motions_.take(message.order);
       if (refusal == motion::Outcome::none) break;

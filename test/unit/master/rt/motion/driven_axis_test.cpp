@@ -283,5 +283,19 @@ TEST(DrivenAxis, TheTargetDoesNotFollowTheActualPositionInAModeInWhichTheDriveMa
   EXPECT_EQ(after_mode(3), 100);
 }
 
+/// The application enables the drive by its controlword only, and the axis was pushed.
+TEST(DrivenAxis, ATargetThatNobodyHasCommandedFollowsTheActualPositionWhileTheDriveIsNotEnabled) {
+  Bench bench;
+  bench.hear(0x0023, 1000);
+  bench.last.actual = bench.axis.read(bench.pdos, true, bench.last).actual;
+  ASSERT_TRUE(bench.write(AxisState::unpowered, {.position = 10.0}));
+  EXPECT_EQ(bench.target(), 1000);
+  bench.pack();
+  bench.hear(0x0027, 1100);
+  bench.condition();
+  ASSERT_TRUE(bench.write(AxisState::standing, {.position = 10.0}));
+  EXPECT_EQ(bench.target(), 1000) << "it is enabled";
+}
+
 }  // namespace
 }  // namespace takt
