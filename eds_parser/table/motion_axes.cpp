@@ -26,6 +26,7 @@ std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, st
     return plan.layout.signals[index];
   };
   if (!have_same_unit(signal(*position), signal(*target))) return std::nullopt;
+  if (signal(*target).row >= plan.pdos.rpdos.size()) return std::nullopt;  // sent by no RPDO
   const auto offset = find(0x60B1, true);
   const bool same_unit = offset && !signal(*offset).unit.empty() &&
                          signal(*offset).unit == signal(*target).unit + "/s";

@@ -36,8 +36,8 @@ std::string_view text(const motion::PlanRefusal& refusal) noexcept {
       return "another motion of the axis is about to begin";
     case not_enabled:
       return "the drive does not follow set-points: it must be in Operation enabled, without a "
-             "Halt "
-             "and in cyclic synchronous position mode";
+             "Halt and in cyclic synchronous position mode, and the RPDO of its target position "
+             "must have a value for each of its objects and be sent";
     case stopping:
       return "the axis is stopping, and must come to rest first";
     case foreign:
@@ -95,6 +95,8 @@ std::string_view text(motion::StopCause cause) noexcept {
       return "a set-point was outside the limits of the network file";
     case no_sync:
       return "SYNC was missing in several periods";
+    case not_sent:
+      return "its set-points were not sent in several cycles";
     case ordered_stop:
       return "taktd stops";
     case application:

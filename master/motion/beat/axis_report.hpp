@@ -17,6 +17,7 @@ enum class AxisCondition : std::uint8_t {
   lost,    ///< its node is not heard
   halted,  ///< it is enabled, but has a Halt: some drives follow set-points nevertheless
   silent,  ///< its statusword is missing, so it may follow set-points
+  unsent,  ///< it is enabled, but its set-points of several cycles were not sent
 };
 
 struct AxisInput {
@@ -42,6 +43,7 @@ enum class StopCause : std::uint8_t {
   end_of_range,     ///< a later stop would leave the range of positions
   limit,            ///< a set-point of an axis was outside the limits of the network file
   no_sync,          ///< SYNC was missing in several periods
+  not_sent,         ///< the set-points of an axis were not sent in several cycles
   ordered_stop,     ///< of the master
   application,      ///< it asked for the stop
 };

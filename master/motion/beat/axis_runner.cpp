@@ -23,6 +23,8 @@ StopCause cause_of(AxisCondition condition) noexcept {
       return StopCause::halted;
     case AxisCondition::silent:
       return StopCause::no_statusword;
+    case AxisCondition::unsent:
+      return StopCause::not_sent;
   }
   return StopCause::none;
 }
@@ -30,7 +32,7 @@ StopCause cause_of(AxisCondition condition) noexcept {
 /// Returns true if the drive follows set-points, or nobody knows that it does not.
 bool may_follow(AxisCondition condition) noexcept {
   return condition == AxisCondition::enabled || condition == AxisCondition::halted ||
-         condition == AxisCondition::silent;
+         condition == AxisCondition::silent || condition == AxisCondition::unsent;
 }
 
 bool is_close(double a, double b, double size) noexcept {
@@ -124,6 +126,9 @@ StopCause AxisRunner::observe(CycleNumber cycle, const AxisInput& input,
       newest_ != 0 && (report_.state != AxisState::standing || silence <= timeout_);
   if (report_.state == AxisState::standing && input.set_point) {
     report_.commanded = {.position = *input.set_point};
+  }
+  if (input.condition == AxisCondition::unsent && report_.state != AxisState::standing) {
+    abandon({.cause = StopCause::not_sent, .axis = axis_});
   }
   if (followed && !follows_) return cause_of(input.condition);
   if (report_.state != AxisState::moving) return StopCause::none;

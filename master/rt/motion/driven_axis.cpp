@@ -1,5 +1,6 @@
 #include "master/rt/motion/driven_axis.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -31,7 +32,11 @@ bool moves(const motion::AxisReport& report) noexcept {
 }  // namespace
 
 DrivenAxis::DrivenAxis(const MotionAxis& axis, const BusPlan& plan)
-    : axis_{axis}, position_{scale_of(plan, axis.position)}, target_{scale_of(plan, axis.target)} {
+    : axis_{axis},
+      position_{scale_of(plan, axis.position)},
+      target_{scale_of(plan, axis.target)},
+      row_{plan.layout.signals[axis.target].row},
+      longest_wait_{longest_wait_of(plan, axis.target)} {
   if (axis.velocity) velocity_ = scale_of(plan, *axis.velocity);
   if (axis.velocity_offset) velocity_offset_ = scale_of(plan, *axis.velocity_offset);
   for (std::size_t i = plan.layout.inputs; i < plan.layout.signals.size(); ++i) {
@@ -52,29 +57,55 @@ std::optional<std::int64_t> DrivenAxis::Scale::raw(double number) const noexcept
   return static_cast<std::int64_t>(counts);
 }
 
-AxisCondition DrivenAxis::condition(const WorkingImage& image, bool exchanging) noexcept {
+/// A frame that is sent in each n-th cycle, or after an inhibit time, waits until then. One frame
+/// may be missing, as one SYNC may.
+std::uint32_t DrivenAxis::longest_wait_of(const BusPlan& plan, SignalIndex signal) noexcept {
+  const PdoRow& pdo = plan.pdos.rpdos[plan.layout.signals[signal].row];
+  if (pdo.cyclic()) return pdo.transmission;
+  if (pdo.synchronous() || plan.cycle.period <= Time{0}) return 1;
+  return 1U + static_cast<std::uint32_t>((pdo.inhibit + plan.cycle.period - Time{1}) /
+                                         plan.cycle.period);
+}
+
+AxisCondition DrivenAxis::condition(PdoExchange& pdos, bool exchanging) noexcept {
+  const WorkingImage& image = pdos.image();
+  const RpdoStatus rpdo = pdos.outputs().status(row_);
+  count_unsent(rpdo);
   ignores_target_ = false;
   if (!exchanging) return AxisCondition::lost;
-  if (image.is_stale(axis_.statusword)) {
-    if (silent_beats_ < most_silent_beats) ++silent_beats_;
-    return silent_beats_ == most_silent_beats ? AxisCondition::silent : condition_;
-  }
+  if (image.is_stale(axis_.statusword)) return without_statusword();
   silent_beats_ = 0;
   const AxisCondition found = condition_of(image.values[axis_.statusword]);
   const std::int64_t mode = axis_.mode ? image.values[*axis_.mode] : cyclic_synchronous_position;
   const bool in_mode = mode == cyclic_synchronous_position;
-  ignores_target_ = found != AxisCondition::enabled || !follows(AxisQuantity::position, mode);
+  ignores_target_ =
+      found != AxisCondition::enabled || !rpdo.ready || !follows(AxisQuantity::position, mode);
   if (found != AxisCondition::enabled) return found;
-  if (!in_mode) return AxisCondition::disabled;
+  if (!in_mode || !rpdo.ready) return AxisCondition::disabled;
+  if (unsent_beats_ > longest_wait_) return AxisCondition::unsent;
   const bool halted = axis_.controlword && (image.values[*axis_.controlword] & halt) != 0;
   return halted ? AxisCondition::halted : found;
+}
+
+void DrivenAxis::count_unsent(const RpdoStatus& rpdo) noexcept {
+  if (rpdo.sent != frames_) unsent_ = false;
+  frames_ = rpdo.sent;
+  unsent_beats_ = unsent_ ? std::min(unsent_beats_, longest_wait_) + 1 : 0;
+}
+
+AxisCondition DrivenAxis::without_statusword() noexcept {
+  if (silent_beats_ < most_silent_beats) ++silent_beats_;
+  const AxisCondition last =
+      silent_beats_ == most_silent_beats ? AxisCondition::silent : condition_;
+  const bool may_follow = last == AxisCondition::enabled || last == AxisCondition::silent;
+  return may_follow && unsent_beats_ > longest_wait_ ? AxisCondition::unsent : last;
 }
 
 /// While the actual position is missing, the following error counts as unchanged.
 motion::AxisInput DrivenAxis::read(PdoExchange& pdos, bool exchanging,
                                    const motion::AxisReport& last) noexcept {
   const WorkingImage& image = pdos.image();
-  condition_ = condition(image, exchanging);
+  condition_ = condition(pdos, exchanging);
   motion::AxisInput input{.condition = condition_, .actual = last.actual, .set_point = {}};
   input.actual.position = image.is_stale(axis_.position)
                               ? last.commanded.position - last.following_error
@@ -113,6 +144,7 @@ bool DrivenAxis::lead(PdoOutputs& outputs, const motion::State& state,
   const auto raw = target_.raw(state.position);
   const auto speed = velocity_offset_.raw(state.velocity);
   const bool target_taken = raw && speed && outputs.lead(axis_.target, *raw, moment);
+  if (target_taken && *raw != written_) unsent_ = true;
   if (target_taken) written_ = *raw;
   const bool taken = target_taken && (!axis_.velocity_offset ||
                                       outputs.lead(*axis_.velocity_offset, *speed, moment));

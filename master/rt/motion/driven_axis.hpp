@@ -32,7 +32,8 @@ class DrivenAxis {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(condition_, silent_beats_, ignores_target_, written_, writer_);
+    state(condition_, silent_beats_, unsent_beats_, frames_, unsent_, ignores_target_, written_,
+          writer_);
   }
 
  private:
@@ -57,7 +58,10 @@ class DrivenAxis {
   /// A drive whose statusword is missing in so many beats in a row is silent.
   static constexpr std::uint8_t most_silent_beats = 3;
 
-  motion::AxisCondition condition(const WorkingImage& image, bool exchanging) noexcept;
+  static std::uint32_t longest_wait_of(const BusPlan& plan, SignalIndex signal) noexcept;
+  motion::AxisCondition condition(PdoExchange& pdos, bool exchanging) noexcept;
+  void count_unsent(const RpdoStatus& rpdo) noexcept;
+  motion::AxisCondition without_statusword() noexcept;
   bool lead(PdoOutputs& outputs, const motion::State& state, OutputMoment moment) noexcept;
   bool end_motion(PdoOutputs& outputs, const motion::State& state, OutputMoment moment) noexcept;
   void stop_leading(PdoOutputs& outputs) noexcept;
@@ -70,6 +74,11 @@ class DrivenAxis {
   Scale velocity_offset_;
   std::vector<SignalIndex> node_outputs_;
   motion::AxisCondition condition_ = motion::AxisCondition::disabled;
+  std::size_t row_;                 ///< of the RPDO of the target position
+  std::uint32_t longest_wait_;      ///< beats in which a set-point may wait for its frame
+  std::uint32_t unsent_beats_ = 0;  ///< in a row
+  std::uint32_t frames_ = 0;        ///< frames of the RPDO until the last beat
+  bool unsent_ = false;             ///< the target position has changed since then
   std::uint8_t silent_beats_ = 0;
   bool ignores_target_ = false;  ///< the statusword of this beat says so
   std::int64_t written_ = 0;     ///< target position that a motion has written last

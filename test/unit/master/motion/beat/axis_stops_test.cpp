@@ -56,6 +56,27 @@ TEST(MotionStops, AMotionStopsWhenItsSenderMayNotCommandTheAxisAnyLonger) {
   EXPECT_EQ(plant.last[0].stop.cause, StopCause::sender_silent);
 }
 
+/// A motion that went on would reach the drive as one step.
+TEST(MotionStops, AnAxisWhoseSetPointsAreNotSentStandsAtOnceAndItsGroupStops) {
+  Plant plant{3};
+  plant.start_groups();
+  const double before = plant.last[1].commanded.position;
+  plant.inputs[1].condition = AxisCondition::unsent;
+  plant.inputs[1].set_point = before;  // so that the plant does not judge the step of the velocity
+  plant.step();
+  EXPECT_EQ(plant.last[1].state, AxisState::standing);
+  EXPECT_EQ(plant.last[1].commanded.position, before);
+  EXPECT_EQ(plant.last[0].state, AxisState::stopping);
+  EXPECT_EQ(plant.last[0].stop.cause, StopCause::not_sent);
+  EXPECT_EQ(plant.last[0].stop.axis, 1);
+  EXPECT_EQ(plant.last[2].state, AxisState::moving);
+  EXPECT_TRUE(plant.last[1].kept_alive);
+  ASSERT_TRUE(plant.take(plant.order(1, {.position = 9.0}, 1)));
+  plant.step();
+  EXPECT_EQ(plant.ended[1].outcome, Outcome::not_powered);
+  EXPECT_EQ(plant.last[1].state, AxisState::standing);
+}
+
 TEST(MotionStops, AGroupStopsInTheBeatInWhichOneOfItsAxesFails) {
   struct Case {
     AxisCondition condition;

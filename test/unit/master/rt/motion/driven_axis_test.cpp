@@ -297,5 +297,34 @@ TEST(DrivenAxis, ATargetThatNobodyHasCommandedFollowsTheActualPositionWhileTheDr
   EXPECT_EQ(bench.target(), 1000) << "it is enabled";
 }
 
+/// The set-points of a motion would be held back, and then be sent as one step.
+TEST(DrivenAxis, AnAxisWhoseRpdoIsNotReadyIsNotEnabled) {
+  Bench bench{{.commands_controlword = false, .mode = false}};
+  bench.hear(0x0027, 100);
+  EXPECT_EQ(bench.condition(), AxisCondition::disabled);
+  bench.command(0, 0x000F);
+  bench.pack();
+  bench.hear(0x0027, 100);
+  EXPECT_EQ(bench.condition(), AxisCondition::enabled);
+}
+
+TEST(DrivenAxis, OneSetPointMayWaitForItsFrameButNotTwo) {
+  Bench bench;
+  const auto beat = [&](double position, bool sends) {
+    bench.hear(0x0027, 0);
+    const AxisCondition found = bench.condition();
+    EXPECT_TRUE(bench.write(AxisState::moving, {.position = position}));
+    bench.pack(sends);
+    return found;
+  };
+  EXPECT_EQ(beat(0.1, true), AxisCondition::enabled);
+  EXPECT_EQ(beat(0.2, false), AxisCondition::enabled);
+  EXPECT_EQ(beat(0.3, true), AxisCondition::enabled) << "one frame was not sent";
+  EXPECT_EQ(beat(0.4, false), AxisCondition::enabled);
+  EXPECT_EQ(beat(0.5, false), AxisCondition::enabled);
+  EXPECT_EQ(beat(0.6, true), AxisCondition::unsent) << "two frames were not sent";
+  EXPECT_EQ(beat(0.7, true), AxisCondition::enabled);
+}
+
 }  // namespace
 }  // namespace takt
