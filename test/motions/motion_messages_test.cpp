@@ -6,6 +6,7 @@
 namespace takt {
 namespace {
 
+using namespace std::chrono_literals;
 using test::MotionBus;
 
 constexpr std::int8_t axis_moves = 2;
@@ -49,6 +50,22 @@ TEST(MotionMessages, ACopyOfTheOlderOfTwoMovesOfOneImageDoesNotLeadTheAxisBack) 
   bus.each_cycle = [&] { bus.keep_alive(); };
   ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == axis_moves; }, 20));
   EXPECT_EQ(bus.axis(0).id, 2);
+}
+
+/// The elbow has no power. Both axes are free.
+TEST(MotionMessages, ARefusedCommandTakesNoNode) {
+  MotionBus bus{{{.kind = sim::FaultKind::power_off, .node = 2_node, .at = 3500ms, .until = 20s}},
+                MotionBus::velocity_offset};
+  bus.enable();
+  bus.run_until([&] { return bus.world.now() > 6s; });
+  motion_command_t both = bus.command("move", 1, 98);
+  both.goals = {MotionBus::goal("shoulder", 1.0), MotionBus::goal("elbow", 1.0)};
+  bus.send(both);
+  bus.run(2);
+  ASSERT_TRUE(bus.said("command_refused", "elbow"));
+  bus.move_one(2, 1.0, 99);
+  bus.run(2);
+  EXPECT_FALSE(bus.said("command_refused", "belong to"));
 }
 
 }  // namespace

@@ -36,6 +36,16 @@ std::string after_release(const command_t& command) {
          std::to_string(command.cycle);
 }
 
+Sender sender_of(const command_t& command) {
+  return {.instance = command.instance, .name = command.sender};
+}
+
+LeaseTerm term_of(const command_t& command, const CommandContext& context) {
+  return {.now = context.cycle,
+          .cycles = 0,
+          .computed_from = static_cast<std::uint64_t>(command.cycle)};
+}
+
 bool is_control(char c) noexcept { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 
 /// Makes the sender's name printable: it comes from outside and goes to terminals and logs.
@@ -169,31 +179,54 @@ std::uint32_t Commands::lease_cycles(std::size_t node_index) const noexcept {
   return longest;
 }
 
-/// Gives the node to the sender for `cycles`; 0 means no limit.
-bool Commands::check_node(std::size_t node_index, std::uint32_t cycles, const Received& from) {
-  const std::uint8_t node = plan_.nodes[node_index].id.value();
+std::optional<Commands::Objection> Commands::objection_to(std::size_t node_index,
+                                                          const Received& from) const {
   const NodeStatus& status = from.context.nodes[node_index];
   if (plan_.nodes[node_index].boot && status.boot != BootState::ready) {
-    return refuse(from, {CommandRefusal::not_ready, node}, "the node has not booted yet");
+    return Objection{CommandRefusal::not_ready, "the node has not booted yet"};
   }
   if (status.nmt != NmtState::operational) {
-    return refuse(from, {CommandRefusal::not_ready, node}, "the node is not operational");
+    return Objection{CommandRefusal::not_ready, "the node is not operational"};
   }
-  const Sender sender{.instance = from.command.instance, .name = from.command.sender};
-  const LeaseTerm term{.now = from.context.cycle,
-                       .cycles = cycles,
-                       .computed_from = static_cast<std::uint64_t>(from.command.cycle)};
-  switch (leases_.take(node_index, sender, term)) {
+  switch (
+      leases_.verdict(node_index, sender_of(from.command), term_of(from.command, from.context))) {
     case LeaseVerdict::taken:
-      return true;
+      break;
     case LeaseVerdict::held:
-      return refuse(from, {CommandRefusal::held, node}, owned_text(node_index, from));
+      return Objection{CommandRefusal::held, owned_text(node_index, from)};
     case LeaseVerdict::overtaken:
-      return refuse(from, {CommandRefusal::overtaken, node}, overtaken(from.command));
+      return Objection{CommandRefusal::overtaken, overtaken(from.command)};
     case LeaseVerdict::released:
-      return refuse(from, {CommandRefusal::overtaken, node}, after_release(from.command));
+      return Objection{CommandRefusal::overtaken, after_release(from.command)};
   }
-  return false;
+  return std::nullopt;
+}
+
+/// The same for the age of a message that is no command of outputs.
+std::optional<Commands::Objection> Commands::objection_of_age(std::size_t node_index,
+                                                              const Received& from) const {
+  if (freshness_of(from.command, from.context.cycle, shortest_limit(node_index)).fresh) return {};
+  return Objection{CommandRefusal::too_old, too_old(from.command, from.context)};
+}
+
+bool Commands::refuse_node(std::size_t node_index, const Objection& objection,
+                           const Received& from) {
+  return refuse(from, {objection.reason, plan_.nodes[node_index].id.value()}, objection.why);
+}
+
+/// Gives the node to the sender for `cycles`; 0 means no limit.
+void Commands::take_node(std::size_t node_index, std::uint32_t cycles, const Received& from) {
+  LeaseTerm term = term_of(from.command, from.context);
+  term.cycles = cycles;
+  leases_.take(node_index, sender_of(from.command), term);
+}
+
+bool Commands::check_node(std::size_t node_index, std::uint32_t cycles, const Received& from) {
+  if (const auto found = objection_to(node_index, from)) {
+    return refuse_node(node_index, *found, from);
+  }
+  take_node(node_index, cycles, from);
+  return true;
 }
 
 std::string Commands::owned_text(std::size_t node_index, const Received& from) const {
@@ -266,12 +299,10 @@ bool Commands::lease(const command_t& header, std::span<const std::size_t> nodes
                      std::uint32_t cycles, const CommandContext& context) {
   const Received from{header, context};
   for (const std::size_t node : nodes) {
-    if (!freshness_of(header, context.cycle, shortest_limit(node)).fresh) {
-      return refuse(from, {CommandRefusal::too_old, plan_.nodes[node].id.value()},
-                    too_old(header, context));
-    }
-    if (!check_node(node, cycles, from)) return false;
+    if (const auto found = objection_of_age(node, from)) return refuse_node(node, *found, from);
+    if (const auto found = objection_to(node, from)) return refuse_node(node, *found, from);
   }
+  for (const std::size_t node : nodes) take_node(node, cycles, from);
   return true;
 }
 

@@ -71,7 +71,7 @@ class Commands {
   /// as a motion. A refusal is reported.
   bool admits(const command_t& header, const CommandContext& context);
   /// Gives these nodes to the sender of such a message for `cycles`, if it is not too old and
-  /// nobody else holds one of them. A refusal is reported.
+  /// nobody else holds one of them; otherwise, it gets none of them. A refusal is reported.
   bool lease(const command_t& header, std::span<const std::size_t> nodes, std::uint32_t cycles,
              const CommandContext& context);
   /// Returns true if the sender with this instance holds the node.
@@ -113,6 +113,15 @@ class Commands {
 
   bool check_message(const Received& from);
   bool read_items(const Received& from);
+  /// Why a sender does not get a node.
+  struct Objection {
+    CommandRefusal reason;
+    std::string why;
+  };
+  std::optional<Objection> objection_to(std::size_t node_index, const Received& from) const;
+  std::optional<Objection> objection_of_age(std::size_t node_index, const Received& from) const;
+  void take_node(std::size_t node_index, std::uint32_t cycles, const Received& from);
+  bool refuse_node(std::size_t node_index, const Objection& objection, const Received& from);
   bool check_node(std::size_t node_index, std::uint32_t cycles, const Received& from);
   bool check_cycle(const Received& from);
   std::string owned_text(std::size_t node_index, const Received& from) const;

@@ -31,13 +31,18 @@ LeaseVerdict LeaseTable::judge(const Lease& lease, std::int64_t instance,
   return released ? LeaseVerdict::released : LeaseVerdict::taken;
 }
 
-LeaseVerdict LeaseTable::take(std::size_t node, const Sender& sender, const LeaseTerm& term) {
+LeaseVerdict LeaseTable::verdict(std::size_t node, const Sender& sender,
+                                 const LeaseTerm& term) const noexcept {
   if (node >= leases_.size()) return LeaseVerdict::held;
-  Lease& lease = leases_[node];
+  const Lease& lease = leases_[node];
   const bool others = term.now < lease.end && lease.instance != sender.instance;
-  if (others) return LeaseVerdict::held;
-  const LeaseVerdict verdict = judge(lease, sender.instance, term);
-  if (verdict != LeaseVerdict::taken) return verdict;
+  return others ? LeaseVerdict::held : judge(lease, sender.instance, term);
+}
+
+LeaseVerdict LeaseTable::take(std::size_t node, const Sender& sender, const LeaseTerm& term) {
+  const LeaseVerdict found = verdict(node, sender, term);
+  if (found != LeaseVerdict::taken) return found;
+  Lease& lease = leases_[node];
   const bool goes_on = lease.instance == sender.instance && lease.newest <= term.now + 1;
   const std::uint64_t end = term.now + (term.cycles == 0 ? unlimited_ : term.cycles);
   lease.end = goes_on ? std::max(lease.end, end) : end;

@@ -61,6 +61,9 @@ class LeaseTable {
   /// `unlimited` is the number of cycles for which a command without time to live holds its node.
   LeaseTable(std::size_t nodes, std::uint32_t unlimited);
 
+  /// Returns what take() would return.
+  LeaseVerdict verdict(std::size_t node, const Sender& sender,
+                       const LeaseTerm& term) const noexcept;
   /// If the verdict is `taken`, `sender` holds the node now.
   LeaseVerdict take(std::size_t node, const Sender& sender, const LeaseTerm& term);
   /// Returns true if the sender with this instance holds the node.
