@@ -10,6 +10,7 @@ using namespace std::chrono_literals;
 using test::MotionBus;
 
 constexpr std::int8_t axis_moves = 2;
+constexpr std::int8_t axis_brakes = 3;
 
 motion_command_t move_of(MotionBus& bus, std::int32_t id, double shoulder, std::int64_t utime) {
   motion_command_t message = bus.command("move", id);
@@ -66,6 +67,37 @@ TEST(MotionMessages, ARefusedCommandTakesNoNode) {
   bus.move_one(2, 1.0, 99);
   bus.run(2);
   EXPECT_FALSE(bus.said("command_refused", "belong to"));
+}
+
+/// The elbow has no power; both axes are named, and so is one that does not exist.
+TEST(MotionMessages, AStopIsNotLostIfAnotherNodeIsNotReady) {
+  MotionBus bus{{{.kind = sim::FaultKind::power_off, .node = 2_node, .at = 3500ms, .until = 20s}},
+                MotionBus::velocity_offset};
+  bus.enable();
+  bus.run_until([&] { return bus.world.now() > 2900ms; });
+  bus.enable();
+  bus.move_one(1, 50.0);
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  bus.run_until([&] { return bus.world.now() > 4600ms; });
+  ASSERT_EQ(bus.axis(0).state, axis_moves);
+  bus.each_cycle = {};
+  motion_command_t stop = stop_of(bus, {"elbow", "knee", "shoulder"});
+  stop.timeout_ms = 99'999;
+  bus.send(stop);
+  EXPECT_TRUE(bus.run_until([&] { return bus.axis(0).state == axis_brakes; }, 10));
+}
+
+TEST(MotionMessages, AStopThatALaterMessageHasOvertakenIsNotLost) {
+  MotionBus bus;
+  bus.enable();
+  bus.move_one(1, 50.0);
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == axis_moves; }, 20));
+  const motion_command_t stop = stop_of(bus, {"shoulder"});
+  bus.run(3);
+  bus.keep_alive();
+  bus.run(1);
+  bus.send(stop);
+  EXPECT_TRUE(bus.run_until([&] { return bus.axis(0).state == axis_brakes; }, 10));
 }
 
 }  // namespace

@@ -306,6 +306,24 @@ bool Commands::lease(const command_t& header, std::span<const std::size_t> nodes
   return true;
 }
 
+void Commands::renew(const command_t& header, std::span<const std::size_t> nodes,
+                     std::uint32_t cycles, const CommandContext& context) {
+  const Received from{header, context};
+  for (const std::size_t node : nodes) {
+    const bool refused = objection_of_age(node, from) || objection_to(node, from);
+    if (!refused) take_node(node, cycles, from);
+  }
+}
+
+bool Commands::admits_stop(const command_t& header, std::size_t node,
+                           const CommandContext& context) {
+  const Received from{header, context};
+  if (const auto found = objection_of_age(node, from)) return refuse_node(node, *found, from);
+  const bool free = leases_.holder(node, context.cycle).empty();
+  if (free || leases_.holds(node, header.instance, context.cycle)) return true;
+  return refuse_node(node, {CommandRefusal::held, owned_text(node, from)}, from);
+}
+
 bool Commands::take(const command_t& command, const CommandContext& context) {
   const Received from{command, context};
   if (!check_message(from)) return false;

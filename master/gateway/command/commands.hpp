@@ -74,6 +74,13 @@ class Commands {
   /// nobody else holds one of them; otherwise, it gets none of them. A refusal is reported.
   bool lease(const command_t& header, std::span<const std::size_t> nodes, std::uint32_t cycles,
              const CommandContext& context);
+  /// Does the same for each of these nodes that it can give, and reports nothing.
+  void renew(const command_t& header, std::span<const std::size_t> nodes, std::uint32_t cycles,
+             const CommandContext& context);
+  /// Returns true if such a message may stop the axes of the node: it is not too old, and no other
+  /// sender holds the node. It does not matter whether the node is ready, or whether a later
+  /// message has overtaken this one. A refusal is reported.
+  bool admits_stop(const command_t& header, std::size_t node, const CommandContext& context);
   /// Returns true if the sender with this instance holds the node.
   bool holds(std::size_t node, std::int64_t instance, std::uint64_t cycle) const noexcept {
     return leases_.holds(node, instance, cycle);

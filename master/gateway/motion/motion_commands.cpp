@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time default_timeout = std::chrono::milliseconds{500};
+constexpr Time default_motion_timeout = std::chrono::milliseconds{500};
 /// The bus thread takes an order in the next cycle, so two cycles more are enough if this thread is
 /// in time.
 constexpr motion::CycleNumber lead_cycles = 3;
@@ -43,8 +43,14 @@ std::uint64_t cycles_in(Time span, Time period) {
   return period <= Time{0} ? 1 : static_cast<std::uint64_t>((span + period - Time{1}) / period);
 }
 
+bool is_timeout(std::int32_t milliseconds) {
+  return milliseconds >= 0 && milliseconds <= MotionSenders::longest_timeout / 1ms;
+}
+
+/// A stop with a timeout that is refused elsewhere counts as one without.
 Time timeout_of(const motion_command_t& command) {
-  return command.timeout_ms == 0 ? default_timeout : std::chrono::milliseconds{command.timeout_ms};
+  const bool given = command.timeout_ms != 0 && is_timeout(command.timeout_ms);
+  return given ? std::chrono::milliseconds{command.timeout_ms} : default_motion_timeout;
 }
 
 /// The order was planned too late or from another state: a new plan can succeed.
@@ -102,9 +108,11 @@ void MotionCommands::note_end(std::size_t axis, std::int32_t id, ShownMotion::En
   shown_[axis].ended = ended;
 }
 
-/// Returns the positions of the goals' axes. Empty if one of them is unknown.
+/// Returns the positions of the goals' axes. Empty if one of them is unknown; a stop is for the
+/// others then.
 std::optional<std::vector<std::size_t>> MotionCommands::axes_of(const motion_command_t& command,
                                                                 const CommandContext& context) {
+  const bool is_stop = command.kind == "stop";
   std::vector<std::size_t> found;
   for (const motion_goal_t& goal : command.goals) {
     const int number = std::max<int>(goal.axis, 1) - 1;
@@ -118,10 +126,12 @@ std::optional<std::vector<std::size_t>> MotionCommands::axes_of(const motion_com
                                  "`profile: cia402`",
                                  goal.node, number + 1)},
              context);
+      if (is_stop) continue;
       return std::nullopt;
     }
     const auto place = static_cast<std::size_t>(axis - axes_.begin());
     if (std::ranges::find(found, place) != found.end()) {
+      if (is_stop) continue;
       refuse({.id = command.id, .sender = command.sender},
              {.why = "an axis is named twice", .axis = place}, context);
       return std::nullopt;
@@ -164,7 +174,8 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
                                 : "its kind is none of \"move\", \"jog\", \"stop\", \"alive\""},
                   context);
   }
-  if (command.timeout_ms < 0 || command.timeout_ms > MotionSenders::longest_timeout / 1ms) {
+  if (command.kind == "stop") return take_stop(command, *axes, context);
+  if (!is_timeout(command.timeout_ms)) {
     return refuse({.id = command.id, .sender = command.sender},
                   {.why = fmt::format("its timeout of {} ms is not one of 0 to 10,000 ms",
                                       command.timeout_ms)},
@@ -180,19 +191,33 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
              .sender = *sender,
              .cycle = static_cast<motion::CycleNumber>(command.cycle)});
   }
-  if (command.kind == "stop") {
-    for (const std::size_t axis : *axes) {
-      sequences_[axis].stopped(command);
-      stop(axis);
-    }
-    return;
-  }
   if (!sender) {
     return refuse({.id = command.id, .sender = command.sender},
                   {.why = "too many programs command motions"}, context);
   }
   active_ = true;
   if (command.kind != "alive") begin(command, *axes, *sender, context);
+}
+
+/// Each axis stops whose node its sender holds, whatever the other nodes are.
+void MotionCommands::take_stop(const motion_command_t& command, std::span<const std::size_t> axes,
+                               const CommandContext& context) {
+  const command_t header = header_of(command);
+  bool any = false;
+  for (const std::size_t axis : axes) {
+    if (!commands_.admits_stop(header, axes_[axis].node_index, context)) continue;
+    sequences_[axis].stopped(command);
+    stop(axis);
+    any = true;
+  }
+  const auto sender = any ? senders_.number_of(command.instance, context.now) : std::nullopt;
+  if (!sender) return;
+  commands_.renew(header, nodes_of(command, axes, context),
+                  static_cast<std::uint32_t>(cycles_in(timeout_of(command), plan_.cycle.period)),
+                  context);
+  submit_({.kind = motion::MessageKind::heard,
+           .sender = *sender,
+           .cycle = static_cast<motion::CycleNumber>(command.cycle)});
 }
 
 /// A move or jog that a later message has overtaken is refused, and so is a copy from before a

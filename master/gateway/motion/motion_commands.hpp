@@ -80,6 +80,8 @@ class MotionCommands {
   std::vector<std::size_t> nodes_of(const motion_command_t& command,
                                     std::span<const std::size_t> axes,
                                     const CommandContext& context) const;
+  void take_stop(const motion_command_t& command, std::span<const std::size_t> axes,
+                 const CommandContext& context);
   bool is_newest(const motion_command_t& command, std::span<const std::size_t> axes,
                  const CommandContext& context);
   void begin(const motion_command_t& command, std::span<const std::size_t> axes,
