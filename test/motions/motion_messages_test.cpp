@@ -100,5 +100,22 @@ TEST(MotionMessages, AStopThatALaterMessageHasOvertakenIsNotLost) {
   EXPECT_TRUE(bus.run_until([&] { return bus.axis(0).state == axis_brakes; }, 10));
 }
 
+TEST(MotionMessages, AnOrderOnItsWayDoesNotBeginAfterTheRelease) {
+  MotionBus bus;
+  bus.enable();
+  bus.move_one(1, 0.5);
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).ended_id == 1; }));
+  bus.run(2);
+  bus.each_cycle = {};
+  bus.move_one(2, 50.0);
+  bus.run(1);
+  bus.release();
+  bool moved = false;
+  bus.each_cycle = [&] { moved |= bus.axis(0).state == axis_moves; };
+  bus.run(20);
+  EXPECT_FALSE(moved);
+}
+
 }  // namespace
 }  // namespace takt

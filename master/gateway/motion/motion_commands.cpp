@@ -364,6 +364,18 @@ bool MotionCommands::has_begin_ahead(const Job& job, const CommandContext& conte
   return job.order != 0 && context.cycle <= job.begin + lead_cycles;
 }
 
+/// Orders on their way whose sender has lost a node meanwhile must not begin.
+void MotionCommands::stop_lost(const CommandContext& context) {
+  const auto is_lost = [&](const Job& job) { return job.order != 0 && !holds(job, context); };
+  for (auto lost = std::ranges::find_if(jobs_, is_lost); lost != jobs_.end();
+       lost = std::ranges::find_if(jobs_, is_lost)) {
+    const Job job = std::move(*lost);
+    jobs_.erase(lost);
+    refuse(job, {.why = "its sender does not hold the nodes any longer"}, context);
+    for (const motion::AxisGoal& goal : job.goals) stop(goal.axis);
+  }
+}
+
 void MotionCommands::serve(const CommandContext& context) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (stops_[i]) stop(i);
@@ -375,6 +387,7 @@ void MotionCommands::serve(const CommandContext& context) {
       owners_[i] = {};
     }
   }
+  stop_lost(context);
   std::erase_if(jobs_, [&](const Job& job) {
     if (context.now <= job.until || has_begin_ahead(job, context)) return false;
     refuse(job, {.why = "it did not begin in time"}, context);

@@ -90,6 +90,7 @@ class MotionCommands {
   void stop(std::size_t axis);
   bool holds(const Job& job, const CommandContext& context) const;
   static bool has_begin_ahead(const Job& job, const CommandContext& context);
+  void stop_lost(const CommandContext& context);
   void drop_replaced(const Job& job);
   void on_refused(const motion::MotionEnd& end, const CommandContext& context);
   void refuse(const Job& job, const Refusal& refusal, const CommandContext& context);
