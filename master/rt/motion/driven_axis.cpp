@@ -70,7 +70,7 @@ std::uint32_t DrivenAxis::longest_wait_of(const BusPlan& plan, SignalIndex signa
 AxisCondition DrivenAxis::condition(PdoExchange& pdos, bool exchanging) noexcept {
   const WorkingImage& image = pdos.image();
   const RpdoStatus rpdo = pdos.outputs().status(row_);
-  count_unsent(rpdo);
+  count_unsent(rpdo, image.values[axis_.target]);
   ignores_target_ = false;
   if (!exchanging) return AxisCondition::lost;
   if (image.is_stale(axis_.statusword)) return without_statusword();
@@ -87,10 +87,11 @@ AxisCondition DrivenAxis::condition(PdoExchange& pdos, bool exchanging) noexcept
   return halted ? AxisCondition::halted : found;
 }
 
-void DrivenAxis::count_unsent(const RpdoStatus& rpdo) noexcept {
-  if (rpdo.sent != frames_) unsent_ = false;
+/// A target position that does not change needs no frame.
+void DrivenAxis::count_unsent(const RpdoStatus& rpdo, std::int64_t target) noexcept {
+  if (rpdo.sent != frames_) sent_target_ = target;
   frames_ = rpdo.sent;
-  unsent_beats_ = unsent_ ? std::min(unsent_beats_, longest_wait_) + 1 : 0;
+  unsent_beats_ = target != sent_target_ ? std::min(unsent_beats_, longest_wait_) + 1 : 0;
 }
 
 AxisCondition DrivenAxis::without_statusword() noexcept {
@@ -144,7 +145,6 @@ bool DrivenAxis::lead(PdoOutputs& outputs, const motion::State& state,
   const auto raw = target_.raw(state.position);
   const auto speed = velocity_offset_.raw(state.velocity);
   const bool target_taken = raw && speed && outputs.lead(axis_.target, *raw, moment);
-  if (target_taken && *raw != written_) unsent_ = true;
   if (target_taken) written_ = *raw;
   const bool taken = target_taken && (!axis_.velocity_offset ||
                                       outputs.lead(*axis_.velocity_offset, *speed, moment));

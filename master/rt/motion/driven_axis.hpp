@@ -32,8 +32,8 @@ class DrivenAxis {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(condition_, silent_beats_, unsent_beats_, frames_, unsent_, ignores_target_, written_,
-          writer_);
+    state(condition_, silent_beats_, unsent_beats_, frames_, sent_target_, ignores_target_,
+          written_, writer_);
   }
 
  private:
@@ -60,7 +60,7 @@ class DrivenAxis {
 
   static std::uint32_t longest_wait_of(const BusPlan& plan, SignalIndex signal) noexcept;
   motion::AxisCondition condition(PdoExchange& pdos, bool exchanging) noexcept;
-  void count_unsent(const RpdoStatus& rpdo) noexcept;
+  void count_unsent(const RpdoStatus& rpdo, std::int64_t target) noexcept;
   motion::AxisCondition without_statusword() noexcept;
   bool lead(PdoOutputs& outputs, const motion::State& state, OutputMoment moment) noexcept;
   bool end_motion(PdoOutputs& outputs, const motion::State& state, OutputMoment moment) noexcept;
@@ -78,7 +78,7 @@ class DrivenAxis {
   std::uint32_t longest_wait_;      ///< beats in which a set-point may wait for its frame
   std::uint32_t unsent_beats_ = 0;  ///< in a row
   std::uint32_t frames_ = 0;        ///< frames of the RPDO until the last beat
-  bool unsent_ = false;             ///< the target position has changed since then
+  std::int64_t sent_target_ = 0;    ///< target position of the last of them
   std::uint8_t silent_beats_ = 0;
   bool ignores_target_ = false;  ///< the statusword of this beat says so
   std::int64_t written_ = 0;     ///< target position that a motion has written last

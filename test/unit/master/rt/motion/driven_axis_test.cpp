@@ -308,6 +308,25 @@ TEST(DrivenAxis, AnAxisWhoseRpdoIsNotReadyIsNotEnabled) {
   EXPECT_EQ(bench.condition(), AxisCondition::enabled);
 }
 
+/// An event-driven RPDO whose set-points do not change sends nothing.
+TEST(DrivenAxis, ATargetThatDoesNotChangeNeedsNoFrame) {
+  Bench bench;
+  bench.hear(0x0027, 0);
+  bench.condition();
+  ASSERT_TRUE(bench.write(AxisState::moving, {.position = 1.0}));
+  bench.pack();
+  bench.hear(0x0027, 0);
+  bench.condition();
+  ASSERT_TRUE(bench.write(AxisState::unpowered, {.position = 1.0}));
+  bench.command(1, 120);
+  bench.pack();
+  for (int beat = 0; beat < 5; ++beat) {
+    bench.hear(0x0027, 0);
+    EXPECT_EQ(bench.condition(), AxisCondition::enabled) << beat;
+    ASSERT_TRUE(bench.write(AxisState::moving, {.position = 1.2}));
+  }
+}
+
 TEST(DrivenAxis, OneSetPointMayWaitForItsFrameButNotTwo) {
   Bench bench;
   const auto beat = [&](double position, bool sends) {
