@@ -18,7 +18,7 @@ constexpr std::int8_t done = 1;
 constexpr std::int8_t stopped = 2;
 constexpr std::int8_t refused = 4;
 
-/// So that a target position that nobody has commanded follows the actual position.
+/// Only then, a target position that nobody has commanded follows the actual position.
 TEST(MotionCommand, TheBusThreadReadsTheAxesBeforeTheFirstCommand) {
   MotionBus bus;
   bus.run(10);

@@ -81,7 +81,8 @@ class BootRunner {
   void on_heartbeat(NmtState state) noexcept;
   /// Takes the results of the client and runs the plan until a step has to wait.
   void on_time(Time now, SdoClient& client) noexcept;
-  /// Returns the deadline of the waits of the runner; the client has its own deadline.
+  /// Returns the time until which the runner itself waits. The deadline of the SDO client is not
+  /// part of it.
   Time deadline() const noexcept;
   /// Extends all deadlines by the time for which the master itself did not run.
   void extend_deadlines(Time away) noexcept;

@@ -190,7 +190,7 @@ class PdoOutputs {
     image_.values[signal] = set_point.value;
   }
   /// Notes that a command is accepted. It expires after `limit` cycles, of which `waited` are over;
-  /// a limit of 0 means that it does not expire.
+  /// with a limit of 0 the command does not expire.
   static void accept(Output& output, std::uint32_t limit, std::uint32_t waited,
                      OutputMoment moment) noexcept {
     output.expires = limit == 0 ? no_end : moment.cycle + limit - std::min(limit, waited);

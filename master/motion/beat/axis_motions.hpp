@@ -32,7 +32,7 @@ class AxisMotions {
   /// Does the same for all axes.
   void stop_all(StopCause cause) noexcept;
 
-  /// Runs one cycle. `inputs` has one element for each axis, and so has the result, which is valid
+  /// Runs one cycle. `inputs` has one element for each axis. The result has one, too; it is valid
   /// until the next call.
   std::span<const AxisReport> run(CycleNumber cycle, std::span<const AxisInput> inputs) noexcept;
   /// Ends the motion of the axis at once, because its last set-point did not reach the drive. The

@@ -19,8 +19,8 @@ enum class Cause : std::uint8_t {
   two_senders,           ///< two programs write one set-point
   not_synchronous,       ///< the RPDO takes effect when it arrives
   interpolation_period,  ///< 60C2 is not the period of the set-points
-  clock_beat,            ///< set-points arrive with a clock of their own
-  bus_load,              ///< other frames delay the set-point behind SYNC
+  clock_beat,            ///< the sender has another clock than SYNC
+  bus_load,              ///< other frames delay set-points beyond the next SYNC
   late,                  ///< set-points arrive behind the SYNC for which they were meant
   early,                 ///< set-points arrive before the SYNC in front of that one
   skipped,               ///< no set-point between two SYNCs

@@ -22,10 +22,10 @@ struct Tally {
 
 /// Deviations from one set-point in each cycle in motion.
 struct Arrivals {
-  Tally late;                            // none, and two in the next cycle
-  Tally early;                           // two, and none in the next cycle
-  Tally skipped;                         // none
-  Tally overwritten;                     // two
+  Tally late;                            // no set-point, and two in the next cycle
+  Tally early;                           // two set-points, and none in the next cycle
+  Tally skipped;                         // no set-point
+  Tally overwritten;                     // two set-points
   std::uint32_t longest_gap = 0;         // cycles without set-point
   std::vector<std::size_t> late_cycles;  // in which the late set-points came
   std::vector<Time> lateness;

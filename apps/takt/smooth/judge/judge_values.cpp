@@ -9,7 +9,7 @@
 namespace takt::smooth {
 namespace {
 
-constexpr std::size_t around = 4;  // cycles on each side that show the usual step
+constexpr std::size_t around = 4;  // cycles before and after; their steps are the usual ones
 constexpr std::uint64_t fewest_of_beat = 6;
 
 /// Cycles in motion whose values are not one step ahead.
