@@ -52,11 +52,12 @@ SendResult SimulatedBus::send(std::span<const Frame> frames) noexcept {
   return port_.send(frames, world_.now());
 }
 
-PortNews SimulatedBus::news() const noexcept {
-  PortNews news = port_.news();
-  news.since_1970 = realtime_offset();
-  if (news.last_sync_echo != Time{}) news.last_sync_echo = on_the_clock(news.last_sync_echo);
-  return news;
+PortCondition SimulatedBus::condition() const noexcept {
+  PortCondition condition = port_.condition();
+  condition.since_1970 = realtime_offset();
+  if (condition.last_sync_echo != Time{})
+    condition.last_sync_echo = on_the_clock(condition.last_sync_echo);
+  return condition;
 }
 
 /// `expected` is the time at which this call would have come on an otherwise idle machine.

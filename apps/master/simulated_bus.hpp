@@ -24,7 +24,7 @@ class SimulatedBus {
   bool wait_frame(Time until) noexcept;
   std::size_t receive(std::span<StampedFrame> frames) noexcept;
   SendResult send(std::span<const Frame> frames) noexcept;
-  PortNews news() const noexcept;
+  PortCondition condition() const noexcept;
 
  private:
   void catch_up(Time expected) noexcept;

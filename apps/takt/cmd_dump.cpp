@@ -184,11 +184,11 @@ std::string stamp_text(Time monotonic) {
 }
 
 /// Reports state changes and lost frames of the interface on stderr.
-class InterfaceNews {
+class InterfaceChanges {
  public:
-  explicit InterfaceNews(const std::string& bus) : bus_{bus} {}
+  explicit InterfaceChanges(const std::string& bus) : bus_{bus} {}
 
-  void announce(const PortNews& now) {
+  void announce(const PortCondition& now) {
     if (now.interface_down != last_.interface_down) {
       fmt::print(stderr, "takt dump: {} is {}\n", bus_, now.interface_down ? "down" : "up again");
     }
@@ -207,17 +207,17 @@ class InterfaceNews {
 
  private:
   const std::string& bus_;
-  PortNews last_;
+  PortCondition last_;
 };
 
 void dump_bus(const std::string& bus, Printer& printer) {
   FrameChannel channel = value_or_fail(FrameChannel::open(bus, BusMember::guest), 3);
   const Interrupt interrupt;
   StampedFrame got;
-  InterfaceNews news{bus};
+  InterfaceChanges changes{bus};
   while (!Interrupt::asked()) {
     const bool received = channel.receive(got, std::chrono::milliseconds{100});
-    news.announce(channel.news());
+    changes.announce(channel.condition());
     if (!received) {
       std::fflush(stdout);
       continue;

@@ -103,7 +103,7 @@ class TrafficCollector {
     const Time beyond_period = std::max(wait - frame.period, Time{0});
     if (frame.limit && *frame.limit <= beyond_period) return;
     frame.limit = beyond_period;
-    frame.why = BudgetLimit::patience;
+    frame.why = BudgetLimit::timeout;
     frame.waits = std::move(who);
   }
 
@@ -259,7 +259,7 @@ class TrafficCollector {
       if (node.sdo_timeout <= Time{0} || (frame.limit && *frame.limit <= node.sdo_timeout))
         continue;
       frame.limit = node.sdo_timeout;
-      frame.why = BudgetLimit::patience;
+      frame.why = BudgetLimit::timeout;
       frame.waits = "the master (sdo_timeout of " + node.name + ")";
     }
   }

@@ -39,7 +39,7 @@ enum class BudgetLimit : std::uint8_t {
   output_deadline,  ///< the same, if the deadline is earlier than the end of that window
   sync_window,      ///< 0x1007 of the devices
   own_period,       ///< the next frame of the same kind comes
-  patience,         ///< the receiver's time-out expires: SDO time-out, heartbeat consumer
+  timeout,          ///< the receiver's time-out expires: SDO time-out, heartbeat consumer
 };
 
 /// All frames of one identifier and sender.
@@ -62,7 +62,7 @@ struct TrafficFrame {
   bool on_change = false;       ///< sent when its values change, not periodically
   std::optional<Time> limit{};  ///< longest time from being queued to its end
   BudgetLimit why = BudgetLimit::none;
-  std::string waits{};   ///< patience: who waits, for example "arm (0x1016)"
+  std::string waits{};   ///< timeout: who waits, for example "arm (0x1016)"
   bool answers = false;  ///< the limit counts from the moment its request was queued
 
   bool by_itself() const noexcept { return !from_master && !in_cycle; }

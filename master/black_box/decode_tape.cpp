@@ -51,8 +51,8 @@ class TapeDecoder {
       case Mark::send:
         send(journal::SendPayload::of(payload));
         break;
-      case Mark::news:
-        news(payload);
+      case Mark::condition:
+        condition(payload);
         break;
       case Mark::set_points:
         keep(payload == 0 ? 0 : 1 + payload * sizeof(SetPoint) / 8);
@@ -88,7 +88,7 @@ class TapeDecoder {
     }
   }
 
-  void news(std::uint64_t parts) {
+  void condition(std::uint64_t parts) {
     const std::size_t bits = static_cast<std::size_t>(std::popcount(parts & 3));
     const auto times = rest_.first(std::min(bits, rest_.size()));
     if ((parts & journal::utc) != 0 && !times.empty()) {

@@ -20,7 +20,7 @@ std::uint64_t length_of(std::uint64_t word) noexcept {
       const auto send = journal::SendPayload::of(payload);
       return std::min(send.sent, send.offered);
     }
-    case Mark::news: {
+    case Mark::condition: {
       const auto times = static_cast<std::uint64_t>(std::popcount(payload & 3));
       return times + ((payload & journal::state) != 0 ? journal::state_words : 0);
     }

@@ -162,10 +162,10 @@ bool BusLoop<P, L, S>::send_sync() noexcept {
 
 template <Port P, FrontLink L, Services S>
 void BusLoop<P, L, S>::publish() noexcept {
-  bus_.status.port = port_.news();
+  bus_.status.port = port_.condition();
   published_ = port_.now();
   images_.publish(bus_.status.port, published_, intake_.predicted());
-  sender_.on_news(bus_.status.port, published_);
+  sender_.on_condition(bus_.status.port, published_);
   images_.run_controller();
   bus_.pdos.inputs().forget_marks();
 }

@@ -35,7 +35,9 @@ class FrameSender {
     return result.sent;
   }
   /// Reports what has changed at the interface.
-  void on_news(const PortNews& news, Time now) noexcept { watch_.on_news(news, now); }
+  void on_condition(const PortCondition& condition, Time now) noexcept {
+    watch_.on_condition(condition, now);
+  }
 
   template <class Archive>
   void keep(Archive& state) noexcept {

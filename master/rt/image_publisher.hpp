@@ -18,11 +18,11 @@ class ImagePublisher {
                  Controller* controller) noexcept
       : beat_{beat}, bus_{bus}, exchange_{exchange}, controller_{controller} {}
 
-  /// Closes the image and publishes it. `news` are those of the end of the receive window;
+  /// Closes the image and publishes it. `condition` are those of the end of the receive window;
   /// `predicted` is the time from SYNC to the arrival of the last expected TPDO in the next cycle.
-  void publish(const PortNews& news, Time now, Time predicted) noexcept {
-    const bool echoed = news.last_sync_echo >= beat_.sync_at();
-    const Time sync_time = echoed ? news.last_sync_echo : beat_.sync_at();
+  void publish(const PortCondition& condition, Time now, Time predicted) noexcept {
+    const bool echoed = condition.last_sync_echo >= beat_.sync_at();
+    const Time sync_time = echoed ? condition.last_sync_echo : beat_.sync_at();
     if (echoed) exchange_.timing.sync_on_wire.record(sync_time - beat_.deadline());
     beat_.note_publication(now);
     PdoInputs& inputs = bus_.pdos.inputs();

@@ -17,7 +17,7 @@ struct SendResult {
 
 /// State and counters of the interface itself. The port updates them, and the loop takes them once
 /// per cycle.
-struct PortNews {
+struct PortCondition {
   bool interface_down = false;  ///< current state
   bool error_passive = false;   ///< current state
   bool bus_off = false;         ///< current state
@@ -31,7 +31,7 @@ struct PortNews {
   /// Time of the master's newest SYNC on the wire, by its echo; 0 before the first echo.
   Time last_sync_echo{};
 
-  bool operator==(const PortNews&) const = default;
+  bool operator==(const PortCondition&) const = default;
 
   template <class Archive>
   void keep(Archive& state) noexcept {
@@ -53,11 +53,11 @@ concept Port = requires(P port, const P constant, Time until, std::span<const Fr
   /// Sleeps until a frame can be received (returns true) or until the given time (returns false).
   { port.wait_frame(until) } noexcept -> std::same_as<bool>;
   /// Takes the received frames in order, without waiting. Echoes of the master's SYNC appear only
-  /// in news().
+  /// in condition().
   { port.receive(in) } noexcept -> std::same_as<std::size_t>;
   /// Hands frames to the bus in order, without waiting.
   { port.send(out) } noexcept -> std::same_as<SendResult>;
-  { constant.news() } noexcept -> std::same_as<PortNews>;
+  { constant.condition() } noexcept -> std::same_as<PortCondition>;
 };
 
 }  // namespace takt

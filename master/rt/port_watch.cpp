@@ -4,28 +4,28 @@
 
 namespace takt {
 
-void PortWatch::on_news(const PortNews& news, Time now) noexcept {
+void PortWatch::on_condition(const PortCondition& condition, Time now) noexcept {
   using enum EventKind;
-  if (news.interface_down != seen_.interface_down) {
-    const int error = news.interface_down ? news.last_error : 0;
+  if (condition.interface_down != seen_.interface_down) {
+    const int error = condition.interface_down ? condition.last_error : 0;
     events_.push({.when = now,
-                  .kind = news.interface_down ? interface_down : interface_up,
+                  .kind = condition.interface_down ? interface_down : interface_up,
                   .detail = static_cast<std::uint32_t>(error)});
   }
-  if (news.bus_off != seen_.bus_off) {
-    events_.push({.when = now, .kind = news.bus_off ? bus_off : bus_recovered});
+  if (condition.bus_off != seen_.bus_off) {
+    events_.push({.when = now, .kind = condition.bus_off ? bus_off : bus_recovered});
   }
-  if (news.error_passive != seen_.error_passive && !news.bus_off) {
+  if (condition.error_passive != seen_.error_passive && !condition.bus_off) {
     events_.push({.when = now,
-                  .kind = news.error_passive ? bus_error_passive : bus_error_active,
-                  .detail = news.rx_error_counter,
-                  .value = news.tx_error_counter});
+                  .kind = condition.error_passive ? bus_error_passive : bus_error_active,
+                  .detail = condition.rx_error_counter,
+                  .value = condition.tx_error_counter});
   }
-  if (news.receive_overruns != seen_.receive_overruns) {
-    const std::uint32_t lost = news.receive_overruns - seen_.receive_overruns;
+  if (condition.receive_overruns != seen_.receive_overruns) {
+    const std::uint32_t lost = condition.receive_overruns - seen_.receive_overruns;
     events_.push({.when = now, .kind = receive_overrun, .value = lost});
   }
-  seen_ = news;
+  seen_ = condition;
 }
 
 void PortWatch::on_send(std::size_t unsent, int error, Time now) noexcept {

@@ -6,13 +6,13 @@
 
 namespace takt {
 
-/// Turns changes of PortNews and failed sends into events and reports each of them once. Bus thread
-/// only.
+/// Turns changes of PortCondition and failed sends into events and reports each of them once. Bus
+/// thread only.
 class PortWatch {
  public:
   explicit PortWatch(EventQueue& events) noexcept : events_{events} {}
 
-  void on_news(const PortNews& news, Time now) noexcept;
+  void on_condition(const PortCondition& condition, Time now) noexcept;
   /// Reports that the interface refused `unsent` frames with `error`; `unsent` is 0 if all went
   /// out.
   void on_send(std::size_t unsent, int error, Time now) noexcept;
@@ -24,7 +24,7 @@ class PortWatch {
 
  private:
   EventQueue& events_;
-  PortNews seen_;
+  PortCondition seen_;
   Time last_full_{};
   bool full_reported_ = false;
 };

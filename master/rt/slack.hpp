@@ -139,7 +139,7 @@ template <Port P, Services S>
 void Slack<P, S>::send_time() noexcept {
   const Time now = port_.now();
   if (now < time_.deadline() || bus_.observe) return;
-  const auto frame = time_.frame(now, port_.news().since_1970);
+  const auto frame = time_.frame(now, port_.condition().since_1970);
   if (!frame) return;
   const std::span one{&*frame, 1};
   const bool fits = now + bus_.wire.worst(one) <= beat_.outputs_due();

@@ -50,7 +50,7 @@ class MemoryPort {
     call([&] { pending_ |= out.front().id == CobId::base(0x080); });
     return {.sent = out.size()};
   }
-  PortNews news() const noexcept { return {}; }
+  PortCondition condition() const noexcept { return {}; }
 
   std::uint64_t calls = 0;
   bool alive = false;      ///< false: heartbeats instead of PDOs

@@ -34,7 +34,7 @@ TEST(BudgetLimits, TheMastersHeartbeatHasTheTimeOfItsLeastPatientConsumer) {
 
   const auto row = row_of(bus_budget(plan), "heartbeat master");
 
-  EXPECT_EQ(row.why, BudgetLimit::patience);
+  EXPECT_EQ(row.why, BudgetLimit::timeout);
   EXPECT_EQ(row.limit, 150ms);
   EXPECT_EQ(row.frame.waits, "n2 (0x1016)");
 }

@@ -127,7 +127,7 @@ class WorstPhase {
       sync_ = end;
       served_ = outputs_queued_ = false;
     }
-    if (cycles_without_room_ >= patience) relieve(end);
+    if (cycles_without_room_ >= most_full_cycles) relieve(end);
     queue_inputs(end);
   }
 
@@ -360,7 +360,7 @@ class WorstPhase {
     if (frame.sent == Sent::after_sync && frame.awaited && --awaited_ == 0 && !served_) serve(end);
   }
 
-  static constexpr unsigned patience = 2;
+  static constexpr unsigned most_full_cycles = 2;
   static constexpr std::uint32_t longest_answer = 100'000;
 
   const BusPlan& plan_;

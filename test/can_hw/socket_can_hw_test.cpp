@@ -7,7 +7,7 @@
 #include "master/linux/can/can_link.hpp"
 #include "master/linux/can/socket_can.hpp"
 #include "master/linux/rt_thread.hpp"
-#include "test/support/patience.hpp"
+#include "test/support/time_limit.hpp"
 #include "test/vcan/vcan_fixture.hpp"
 
 namespace takt {
@@ -17,7 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr Time limit = test::patience;
+constexpr Time limit = test::time_limit;
 constexpr CobId sync_id = CobId::base(0x080);
 const Frame sync_frame = make_frame(sync_id, {0x07});
 
@@ -95,8 +95,8 @@ TEST(SocketCanOnHardware, TheEchoOfSyncReportsWhenItWasOnTheWire) {
 
   a.send({&sync_frame, 1});
 
-  EXPECT_TRUE(soon(a, [&] { return a.news().last_sync_echo >= before; }));
-  EXPECT_LE(a.news().last_sync_echo, a.now());
+  EXPECT_TRUE(soon(a, [&] { return a.condition().last_sync_echo >= before; }));
+  EXPECT_LE(a.condition().last_sync_echo, a.now());
 }
 
 TEST(SocketCanOnHardware, AFullQueueOfTenIsReportedAsNoBuffers) {
@@ -109,19 +109,19 @@ TEST(SocketCanOnHardware, AFullQueueOfTenIsReportedAsNoBuffers) {
 
   EXPECT_EQ(result.error, ENOBUFS);
   EXPECT_LT(result.sent, burst.size());
-  EXPECT_FALSE(a.news().interface_down);
+  EXPECT_FALSE(a.condition().interface_down);
   EXPECT_TRUE(soon(a, [&] { return a.send({&sync_frame, 1}).sent == 1; }));
 }
 
 TEST(SocketCanOnHardware, AnInterfaceThatGoesDownComesBackWithItsFilters) {
   SocketCanPort a = open_port("can0");
   run("ip link set can0 down");
-  EXPECT_TRUE(soon(a, [&] { return a.news().interface_down; }));
+  EXPECT_TRUE(soon(a, [&] { return a.condition().interface_down; }));
   EXPECT_EQ(a.send({&sync_frame, 1}).sent, 0U);
 
   run("ip link set can0 up");
 
-  EXPECT_TRUE(soon(a, [&] { return !a.news().interface_down; }));
+  EXPECT_TRUE(soon(a, [&] { return !a.condition().interface_down; }));
   Peer peer{"can1"};
   peer.send(0x186, {1});
   peer.send(0x185, {2});
@@ -137,15 +137,15 @@ TEST(SocketCanOnHardware, TheDriverCanBeRemovedAndLoadedAgain) {
   const std::string device = "$(basename $(readlink -f /sys/class/net/can0/device))";
   run("echo " + device + " > /tmp/takt-can-hw-device && cat /tmp/takt-can-hw-device > " +
       std::string{pci} + "/unbind");
-  EXPECT_TRUE(soon(a, [&] { return a.news().interface_down; }));
+  EXPECT_TRUE(soon(a, [&] { return a.condition().interface_down; }));
 
   run("cat /tmp/takt-can-hw-device > " + std::string{pci} + "/bind");
   run("ip link set can0 up type can bitrate 1000000 restart-ms 100");
 
-  EXPECT_TRUE(soon(a, [&] { return !a.news().interface_down; }));
+  EXPECT_TRUE(soon(a, [&] { return !a.condition().interface_down; }));
   const Time before = a.now() - std::chrono::milliseconds{2};
   a.send({&sync_frame, 1});
-  EXPECT_TRUE(soon(a, [&] { return a.news().last_sync_echo >= before; }));
+  EXPECT_TRUE(soon(a, [&] { return a.condition().last_sync_echo >= before; }));
 }
 
 TEST(RtThreadOnAnRtKernel, GetsAllItAsksFor) {

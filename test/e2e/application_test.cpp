@@ -12,7 +12,7 @@
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"
 #include "test/support/folder.hpp"
-#include "test/support/patience.hpp"
+#include "test/support/time_limit.hpp"
 
 namespace takt::test {
 namespace {
@@ -24,10 +24,10 @@ class WatchedAxis {
  public:
   WatchedAxis(FrameChannel& channel, CobId rpdo) : channel_{channel}, rpdo_{rpdo} {}
 
-  /// Takes frames until `done` returns true, at most for `patience`.
+  /// Takes frames until `done` returns true, at most for `time_limit`.
   template <class Done>
   bool watch(Done done) {
-    const Time until = monotonic_now() + patience;
+    const Time until = monotonic_now() + time_limit;
     while (!done()) {
       if (monotonic_now() > until) return false;
       StampedFrame got;

@@ -4,7 +4,7 @@
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"
 #include "test/support/folder.hpp"
-#include "test/support/patience.hpp"
+#include "test/support/time_limit.hpp"
 
 namespace takt::test {
 namespace {
@@ -17,7 +17,7 @@ TEST(AuditOnTheBus, ReportsOfDevicesThatNobodyHasConfigured) {
   ASSERT_TRUE(devices.says("3 devices on"));
 
   Ended ended;
-  const Time until = monotonic_now() + patience;
+  const Time until = monotonic_now() + time_limit;
   do {  // the devices need time to boot
     ended = run({TAKT, "audit", network, "--bus", bus}, folder.path());
   } while (ended.output.find("answer") != std::string::npos && monotonic_now() < until);

@@ -13,7 +13,7 @@
 #include "master/lcm/messages.hpp"
 #include "master/lcm/tcpq/tcpq_broker.hpp"
 #include "master/linux/clock.hpp"
-#include "test/support/patience.hpp"
+#include "test/support/time_limit.hpp"
 
 namespace takt::test {
 namespace {
@@ -67,7 +67,7 @@ bool DaemonProcess::hear(const std::function<bool()>& done) {
 }
 
 bool DaemonProcess::work(const std::function<void()>& work, const std::function<bool()>& done) {
-  const Time until = monotonic_now() + patience;
+  const Time until = monotonic_now() + time_limit;
   while (!done()) {
     if (monotonic_now() > until) return false;
     take();

@@ -27,11 +27,11 @@ class DaemonProcess {
   void signal(int number) const { process_->signal(number); }
   /// Stops all threads of the daemon for this time.
   void stop_for(std::chrono::milliseconds time) const;
-  /// Waits at most `patience` for the exit code. Returns std::nullopt if the daemon still runs or
+  /// Waits at most `time_limit` for the exit code. Returns std::nullopt if the daemon still runs or
   /// if a signal ended it.
   std::optional<int> wait();
 
-  /// Receives messages until `done` returns true, at most for `patience`. Returns false if `done`
+  /// Receives messages until `done` returns true, at most for `time_limit`. Returns false if `done`
   /// never returned true.
   bool hear(const std::function<bool()>& done);
   /// Like hear(), but calls `work` after each round of messages.
@@ -59,7 +59,7 @@ class DaemonProcess {
   bool all_ready();
   std::string event_file() const;
   std::string log() const { return process_->output(); }
-  /// Waits for this text in the log. Returns false if it does not come within `patience`.
+  /// Waits for this text in the log. Returns false if it does not come within `time_limit`.
   bool says(const std::string& text) const { return process_->says(text); }
   const std::string& lcm_url() const noexcept { return url_; }
 

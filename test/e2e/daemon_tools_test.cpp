@@ -13,7 +13,7 @@
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"
 #include "test/support/folder.hpp"
-#include "test/support/patience.hpp"
+#include "test/support/time_limit.hpp"
 
 namespace takt::test {
 namespace {
@@ -65,7 +65,7 @@ TEST_F(ToolsAndDaemon, SdoLeavesTheTimeOutToTheNodeUnlessOneIsGiven) {
     if (!channel.ends_with("_REQUEST")) return;
     if (const auto request = decode<request_t>(data)) timeouts.push_back(request->timeout_ms);
   };
-  const Time until = monotonic_now() + patience;
+  const Time until = monotonic_now() + time_limit;
   while (statuses == 0 && monotonic_now() < until) lcm.serve(take, monotonic_now() + seconds{1});
 
   EXPECT_EQ(takt({"sdo", "read", "elbow", "6081", "u32"}).exit_code, 0);

@@ -8,12 +8,12 @@
 #include "master/linux/unix_bus/unix_address.hpp"
 #include "test/e2e/daemon_process.hpp"
 #include "test/support/folder.hpp"
-#include "test/support/patience.hpp"
+#include "test/support/time_limit.hpp"
 
 namespace takt::test {
 namespace {
 
-constexpr int patience_ms = static_cast<int>(std::chrono::milliseconds{patience}.count());
+constexpr int time_limit_ms = static_cast<int>(std::chrono::milliseconds{time_limit}.count());
 
 /// A client of the ASCII gateway.
 class Client {
@@ -52,7 +52,7 @@ class Client {
       pollfd wait{.fd = socket_.get(), .events = POLLIN, .revents = 0};
       char text[512];
       const ssize_t size =
-          ::poll(&wait, 1, patience_ms) == 1 ? ::recv(socket_.get(), text, sizeof text, 0) : 0;
+          ::poll(&wait, 1, time_limit_ms) == 1 ? ::recv(socket_.get(), text, sizeof text, 0) : 0;
       if (size <= 0) return "(nothing)";
       unread_.append(text, static_cast<std::size_t>(size));
     }

@@ -12,7 +12,7 @@
 #include <unistd.h>
 #include <utility>
 
-#include "test/support/patience.hpp"
+#include "test/support/time_limit.hpp"
 
 namespace takt::test {
 namespace {
@@ -52,7 +52,7 @@ bool Process::stop() const {
 }
 
 std::optional<int> Process::wait(const std::function<void()>& meanwhile) {
-  const auto until = Clock::now() + patience;
+  const auto until = Clock::now() + time_limit;
   int status = 0;
   while (::waitpid(pid_, &status, WNOHANG) == 0) {
     if (Clock::now() > until) return std::nullopt;
@@ -67,7 +67,7 @@ std::optional<int> Process::wait(const std::function<void()>& meanwhile) {
 std::string Process::output() const { return read_file(output_); }
 
 bool Process::says(const std::string& text) const {
-  const auto until = Clock::now() + patience;
+  const auto until = Clock::now() + time_limit;
   while (output().find(text) == std::string::npos) {
     if (Clock::now() > until) return false;
     std::this_thread::sleep_for(look_again);

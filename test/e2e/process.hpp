@@ -22,11 +22,11 @@ class Process {
   /// Stops the process and returns when none of its threads runs any more. Returns false if the
   /// process has ended.
   bool stop() const;
-  /// Waits at most `patience` for the exit code and calls `meanwhile` repeatedly. Returns
+  /// Waits at most `time_limit` for the exit code and calls `meanwhile` repeatedly. Returns
   /// std::nullopt if the process still runs or if a signal ended it.
   std::optional<int> wait(const std::function<void()>& meanwhile = {});
   std::string output() const;  ///< output so far
-  /// Waits for this text in the output. Returns false if it does not come within `patience`.
+  /// Waits for this text in the output. Returns false if it does not come within `time_limit`.
   bool says(const std::string& text) const;
 
  private:

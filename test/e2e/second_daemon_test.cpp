@@ -25,7 +25,7 @@ class SecondDaemon : public testing::Test {
   static bool before(Time until) { return monotonic_now() < until; }
 
   const Folder folder_;
-  const Time patience_ = monotonic_now() + 60s;
+  const Time time_limit_ = monotonic_now() + 60s;
 };
 
 TEST_F(SecondDaemon, IsRefusedByNameAndDoesNotTouchTheBus) {
@@ -59,7 +59,7 @@ TEST_F(SecondDaemon, OfTheSameBusNameOnLcmIsRefused) {
   ASSERT_TRUE(first.hear([&] { return first.all_ready(); }));
 
   Ended second;
-  while (second.exit_code != 3 && before(patience_)) {
+  while (second.exit_code != 3 && before(time_limit_)) {
     second = run({TAKTD, slow_network(folder_.path()).string(), "--bus", "sim", "--lcm-url",
                   first.lcm_url(), "--for", "100ms"},
                  folder_.path());
@@ -82,7 +82,7 @@ TEST_F(SecondDaemon, WithKeysIsOnlyWarnedByAStatusOfTheSameBusName) {
 
   Ended second;  // exit code 4: the time is over before the nodes are ready
   const auto is_warned = [&] { return second.output.contains("The message is unsigned"); };
-  while (second.exit_code != 3 && !is_warned() && before(patience_)) {
+  while (second.exit_code != 3 && !is_warned() && before(time_limit_)) {
     second =
         run({TAKTD, keyed.string(), "--bus", "sim", "--lcm-url", first.lcm_url(), "--for", "100ms"},
             folder_.path());
@@ -102,7 +102,7 @@ TEST_F(SecondDaemon, IsRefusedWhereAMasterOfAnotherKindHasAHeartbeat) {
   std::optional<int> ended;
   std::string output;
   std::size_t heard = 0;
-  while (ended != 3 && before(patience_)) {
+  while (ended != 3 && before(time_limit_)) {
     Process second{arguments, folder_ / "log"};
     heard = 0;
     ended = second.wait([&] {

@@ -9,7 +9,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "test/support/patience.hpp"
+#include "test/support/time_limit.hpp"
 
 namespace takt::test {
 namespace {
@@ -52,7 +52,7 @@ void Terminal::read() {
 }
 
 bool Terminal::shows(const std::string& text, const std::function<void()>& meanwhile) {
-  const auto until = Clock::now() + patience;
+  const auto until = Clock::now() + time_limit;
   shown_.clear();
   while (shown_.find(text) == std::string::npos) {
     if (Clock::now() > until) {
@@ -66,7 +66,7 @@ bool Terminal::shows(const std::string& text, const std::function<void()>& meanw
 }
 
 std::optional<int> Terminal::wait() {
-  const auto until = Clock::now() + patience;
+  const auto until = Clock::now() + time_limit;
   int status = 0;
   while (::waitpid(pid_, &status, WNOHANG) == 0) {
     if (Clock::now() > until) return std::nullopt;

@@ -19,11 +19,11 @@ class Terminal {
   void press(const std::string& keys) const;
   void signal(int number) const { ::kill(pid_, number); }
   /// Reads until the program has shown `text` since the last call, and calls `meanwhile`
-  /// repeatedly. Returns false if the text does not come within `patience`.
+  /// repeatedly. Returns false if the text does not come within `time_limit`.
   bool shows(const std::string& text, const std::function<void()>& meanwhile = {});
   /// The text that the last call of shows() has read.
   const std::string& shown() const noexcept { return shown_; }
-  /// Returns the exit code if the program ends by itself within `patience`.
+  /// Returns the exit code if the program ends by itself within `time_limit`.
   std::optional<int> wait();
   /// True if the terminal takes whole lines and echoes them, as before the start of the program.
   bool is_as_before() const;

@@ -11,7 +11,7 @@
 #include "test/e2e/process.hpp"
 #include "test/e2e/terminal.hpp"
 #include "test/support/folder.hpp"
-#include "test/support/patience.hpp"
+#include "test/support/time_limit.hpp"
 
 namespace takt::test {
 namespace {
@@ -23,7 +23,7 @@ class ToolsAlone : public testing::Test {
  protected:
   void SetUp() override {
     ASSERT_TRUE(devices_.says("3 devices on"));  // from here on the devices own the bus
-    const Time until = monotonic_now() + patience;
+    const Time until = monotonic_now() + time_limit;
     while (takt({"sdo", "read", "1", "1000", "--timeout", "100"}).exit_code != 0) {
       ASSERT_LT(monotonic_now(), until) << devices_.output();
     }
@@ -36,7 +36,7 @@ class ToolsAlone : public testing::Test {
   }
   /// Waits for this frame on the bus.
   static bool comes(FrameChannel& channel, CobId id, std::uint8_t first_byte) {
-    const Time until = monotonic_now() + patience;
+    const Time until = monotonic_now() + time_limit;
     StampedFrame got;
     while (monotonic_now() < until) {
       if (!channel.receive(got, milliseconds{100})) continue;

@@ -42,7 +42,7 @@ class ForwardingPort {
   }
   std::size_t receive(std::span<StampedFrame> in) noexcept { return port_.receive(in); }
   SendResult send(std::span<const Frame> out) noexcept { return port_.send(out); }
-  PortNews news() const noexcept { return port_.news(); }
+  PortCondition condition() const noexcept { return port_.condition(); }
 
   bool armed = false;  ///< the caller is trapped
 

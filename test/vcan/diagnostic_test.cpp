@@ -5,7 +5,7 @@
 #include "master/linux/can/can_link.hpp"
 #include "master/linux/can/socket_can.hpp"
 #include "master/linux/clock.hpp"
-#include "test/support/patience.hpp"
+#include "test/support/time_limit.hpp"
 #include "test/vcan/vcan_fixture.hpp"
 
 namespace takt {
@@ -23,7 +23,7 @@ class DiagnosticOnVcan : public testing::Test {
   /// Events until this many frames were heard since the begin of the test, error frames included.
   /// The kernel may hand them over later than they were sent.
   std::vector<Event> events(std::size_t frames) {
-    const Time limit = monotonic_now() + test::patience;
+    const Time limit = monotonic_now() + test::time_limit;
     while (true) {
       socket_.poll([this](const StampedFrame& frame) { heard_.push_back(frame.frame); });
       if (heard_.size() + socket_.traffic().error_frames >= frames) break;

@@ -4,13 +4,13 @@
 
 #include "master/linux/bus/frame_channel.hpp"
 #include "master/linux/can/can_filters.hpp"
-#include "test/support/patience.hpp"
+#include "test/support/time_limit.hpp"
 #include "test/vcan/vcan_fixture.hpp"
 
 namespace takt {
 namespace {
 
-constexpr Time limit = test::patience;
+constexpr Time limit = test::time_limit;
 constexpr CobId sync_id = CobId::base(0x080);
 const Frame sync_frame = make_frame(sync_id, {0x07});
 const Frame rpdo = make_frame(CobId::base(0x205), {0x0F, 0x00, 0x10, 0x20, 0x30, 0x40});
@@ -106,8 +106,8 @@ TEST(SocketCan, ReportsWhenTheOwnSyncWasOnTheWireAndKeepsItBack) {
   EXPECT_TRUE(port.wait_frame(port.now() + limit));
   EXPECT_EQ(port.receive(in), 0U);
   constexpr Time of_clock_reading = std::chrono::milliseconds{2};
-  EXPECT_GE(port.news().last_sync_echo, before - of_clock_reading);
-  EXPECT_LE(port.news().last_sync_echo, after + of_clock_reading);
+  EXPECT_GE(port.condition().last_sync_echo, before - of_clock_reading);
+  EXPECT_LE(port.condition().last_sync_echo, after + of_clock_reading);
 }
 
 TEST(SocketCan, TheSyncOfAnotherIsAFrameAndNoEcho) {
@@ -119,7 +119,7 @@ TEST(SocketCan, TheSyncOfAnotherIsAFrameAndNoEcho) {
   const auto got = receive_all(port, 1);
   ASSERT_EQ(got.size(), 1U);
   EXPECT_EQ(got[0].frame, sync_frame);
-  EXPECT_EQ(port.news().last_sync_echo, Time{0});
+  EXPECT_EQ(port.condition().last_sync_echo, Time{0});
 }
 
 TEST(SocketCan, DoesNotHearItsOwnOutputsEvenWhereTheFiltersAreWide) {
@@ -150,27 +150,28 @@ TEST(SocketCan, ErrorFramesBecomeNewsAndNoFrames) {
   Peer controller{"vcan0"};
 
   controller.send(CAN_ERR_FLAG | 0x004, {0, 0x30, 0, 0, 0, 0, 130, 129});
-  EXPECT_TRUE(soon(port, [&] { return port.news().error_passive; }));
-  EXPECT_EQ(port.news().tx_error_counter, 130);
-  EXPECT_EQ(port.news().rx_error_counter, 129);
+  EXPECT_TRUE(soon(port, [&] { return port.condition().error_passive; }));
+  EXPECT_EQ(port.condition().tx_error_counter, 130);
+  EXPECT_EQ(port.condition().rx_error_counter, 129);
 
   controller.send(CAN_ERR_FLAG | 0x040, {0, 0, 0, 0, 0, 0, 0, 0});
-  EXPECT_TRUE(soon(port, [&] { return port.news().bus_off; }));
+  EXPECT_TRUE(soon(port, [&] { return port.condition().bus_off; }));
 
   controller.send(CAN_ERR_FLAG | 0x100, {0, 0, 0, 0, 0, 0, 0, 0});
-  EXPECT_TRUE(soon(port, [&] { return !port.news().bus_off && !port.news().error_passive; }));
-  EXPECT_EQ(port.news().error_frames, 3U);
+  EXPECT_TRUE(
+      soon(port, [&] { return !port.condition().bus_off && !port.condition().error_passive; }));
+  EXPECT_EQ(port.condition().error_frames, 3U);
 }
 
 TEST(SocketCan, ABusOffControllerWhoseSyncIsOnTheWireAgainHasRecovered) {
   SocketCanPort port = open_port("vcan0");
   Peer controller{"vcan0"};
   controller.send(CAN_ERR_FLAG | 0x040, {0, 0, 0, 0, 0, 0, 0, 0});
-  ASSERT_TRUE(soon(port, [&] { return port.news().bus_off; }));
+  ASSERT_TRUE(soon(port, [&] { return port.condition().bus_off; }));
 
   port.send({&sync_frame, 1});
 
-  EXPECT_TRUE(soon(port, [&] { return !port.news().bus_off; }));
+  EXPECT_TRUE(soon(port, [&] { return !port.condition().bus_off; }));
 }
 
 TEST(SocketCan, CountsWhatTheKernelHadToDrop) {
@@ -183,7 +184,7 @@ TEST(SocketCan, CountsWhatTheKernelHadToDrop) {
   }
   peer.send(0x185, {2});  // the count of drops comes with the next frame
 
-  EXPECT_TRUE(soon(port, [&] { return port.news().receive_overruns > 0; }));
+  EXPECT_TRUE(soon(port, [&] { return port.condition().receive_overruns > 0; }));
 }
 
 TEST(SocketCan, AddsTheOverrunsOfTheControllerToWhatTheKernelHadToDrop) {
@@ -194,14 +195,14 @@ TEST(SocketCan, AddsTheOverrunsOfTheControllerToWhatTheKernelHadToDrop) {
   while (port.receive(in) > 0) {
   }
   peer.send(0x185, {2});
-  ASSERT_TRUE(soon(port, [&] { return port.news().receive_overruns > 0; }));
-  const std::uint32_t dropped = port.news().receive_overruns;
+  ASSERT_TRUE(soon(port, [&] { return port.condition().receive_overruns > 0; }));
+  const std::uint32_t dropped = port.condition().receive_overruns;
 
   peer.send(CAN_ERR_FLAG | 0x004, {0, 0x01, 0, 0, 0, 0, 0, 0});
   peer.send(0x185, {3});
 
   EXPECT_EQ(receive_all(port, 1).size(), 1U);
-  EXPECT_EQ(port.news().receive_overruns, dropped + 1);
+  EXPECT_EQ(port.condition().receive_overruns, dropped + 1);
 }
 
 TEST(SocketCan, ABatchIsFullEvenWhereSomeOfItWasForThePortAlone) {
@@ -242,8 +243,8 @@ TEST(SocketCan, AFullSendQueueIsReportedAsNoBuffersWithTheFramesThatWent) {
   EXPECT_EQ(result.error, ENOBUFS);
   EXPECT_GT(result.sent, 0U);
   EXPECT_LT(result.sent, 100U);
-  EXPECT_EQ(port.news().last_error, ENOBUFS);
-  EXPECT_FALSE(port.news().interface_down);
+  EXPECT_EQ(port.condition().last_error, ENOBUFS);
+  EXPECT_FALSE(port.condition().interface_down);
   run("ip link del vcan9");
 }
 
@@ -271,7 +272,7 @@ class SocketCanTrouble : public testing::Test {
 
   /// Filters and echo work again after trouble.
   void expect_working(SocketCanPort& port) {
-    ASSERT_TRUE(soon(port, [&] { return !port.news().interface_down; }));
+    ASSERT_TRUE(soon(port, [&] { return !port.condition().interface_down; }));
     Peer peer{"vcan8"};
     peer.send(0x186, {1});
     peer.send(0x185, {2});
@@ -281,8 +282,9 @@ class SocketCanTrouble : public testing::Test {
     const Time before = port.now();
     EXPECT_EQ(port.send({&sync_frame, 1}).sent, 1U);
     EXPECT_EQ(peer.receive().can_id, 0x080U);
-    EXPECT_TRUE(soon(
-        port, [&] { return port.news().last_sync_echo > before - std::chrono::milliseconds{2}; }));
+    EXPECT_TRUE(soon(port, [&] {
+      return port.condition().last_sync_echo > before - std::chrono::milliseconds{2};
+    }));
   }
 };
 
@@ -294,7 +296,7 @@ TEST_F(SocketCanTrouble, SendingReportsThatTheInterfaceIsDownAndItComesBack) {
 
   EXPECT_EQ(result.sent, 0U);
   EXPECT_EQ(result.error, ENETDOWN);
-  EXPECT_TRUE(port.news().interface_down);
+  EXPECT_TRUE(port.condition().interface_down);
   run("ip link set vcan8 up");
   expect_working(port);
 }
@@ -303,7 +305,7 @@ TEST_F(SocketCanTrouble, ReceivingReportsThatTheInterfaceIsDownAndItComesBack) {
   SocketCanPort port = open_port("vcan8");
   run("ip link set vcan8 down");
 
-  EXPECT_TRUE(soon(port, [&] { return port.news().interface_down; }));
+  EXPECT_TRUE(soon(port, [&] { return port.condition().interface_down; }));
 
   run("ip link set vcan8 up");
   expect_working(port);
@@ -312,11 +314,11 @@ TEST_F(SocketCanTrouble, ReceivingReportsThatTheInterfaceIsDownAndItComesBack) {
 TEST_F(SocketCanTrouble, ADeletedInterfaceIsFoundAgainByItsName) {
   SocketCanPort port = open_port("vcan8");
   run("ip link del vcan8");
-  EXPECT_TRUE(soon(port, [&] { return port.news().interface_down; }));
+  EXPECT_TRUE(soon(port, [&] { return port.condition().interface_down; }));
   EXPECT_EQ(port.send({&sync_frame, 1}).sent, 0U);
 
   run("ip link add vcan7 type vcan && ip link add vcan8 type vcan");  // another index than before
-  EXPECT_TRUE(port.news().interface_down);
+  EXPECT_TRUE(port.condition().interface_down);
   run("ip link set vcan8 up");
 
   expect_working(port);
@@ -326,7 +328,7 @@ TEST_F(SocketCanTrouble, ADeletedInterfaceIsFoundAgainByItsName) {
 TEST_F(SocketCanTrouble, WaitingOnAnInterfaceThatIsDownDoesNotSpin) {
   SocketCanPort port = open_port("vcan8");
   run("ip link set vcan8 down");
-  ASSERT_TRUE(soon(port, [&] { return port.news().interface_down; }));
+  ASSERT_TRUE(soon(port, [&] { return port.condition().interface_down; }));
 
   const Time until = port.now() + std::chrono::milliseconds{200};
   int waits = 0;

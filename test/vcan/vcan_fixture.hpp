@@ -12,7 +12,7 @@
 #include <sys/socket.h>
 
 #include "master/linux/file_descriptor.hpp"
-#include "test/support/patience.hpp"
+#include "test/support/time_limit.hpp"
 
 namespace takt {
 
@@ -31,7 +31,7 @@ class Peer {
     address.can_ifindex = static_cast<int>(if_nametoindex(interface));
     EXPECT_EQ(bind(socket_.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0)
         << interface << ": " << std::strerror(errno);
-    const timeval limit{.tv_sec = test::patience.count(), .tv_usec = 0};
+    const timeval limit{.tv_sec = test::time_limit.count(), .tv_usec = 0};
     setsockopt(socket_.get(), SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
   }
 

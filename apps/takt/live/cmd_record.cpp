@@ -10,10 +10,10 @@ namespace takt {
 namespace {
 
 /// Longer than the least interval between two recordings plus the time to write the files.
-constexpr std::chrono::seconds patience{30};
+constexpr std::chrono::seconds time_limit{30};
 
 int run(const LiveOptions& options) {
-  const reply_t reply = DaemonClient::find(options).demand(make_request("record"), patience);
+  const reply_t reply = DaemonClient::find(options).demand(make_request("record"), time_limit);
   std::puts(printable_text(reply.text).c_str());
   return 0;
 }

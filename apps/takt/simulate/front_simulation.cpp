@@ -7,7 +7,7 @@
 
 #include "apps/takt/simulate/candump_log.hpp"
 #include "apps/takt/simulate/outcome_ledger.hpp"
-#include "apps/takt/simulate/program/program_troubles.hpp"
+#include "apps/takt/simulate/program/program_fault_actor.hpp"
 #include "apps/takt/simulate/program/staged_port.hpp"
 #include "master/sim/bus/world.hpp"
 
@@ -52,12 +52,12 @@ class FrontRun {
         forger_{plan_, lcm_, [](SignalIndex, std::int64_t) {}, random_.fork(3)},
         applications_{make_programs(Part::application)},
         rivals_{make_programs(Part::rival)},
-        troubles_{
+        program_faults_{
             {lcm_, daemon_, applications_, rivals_, forger_}, options.programs, options.faults} {
     world_.observe(&log_);
     daemon_.hear(
         {.image = {}, .notice = {}, .event = [this](const Event& event) { announce(event); }});
-    stage_.add(troubles_);
+    stage_.add(program_faults_);
     stage_.add(daemon_);
     for (const auto& one : applications_) stage_.add(*one);
     for (const auto& one : rivals_) stage_.add(*one);
@@ -101,10 +101,10 @@ class FrontRun {
   }
 
   void cycle() {
-    if (daemon_.runs() && troubles_.daemon_dies()) {
+    if (daemon_.runs() && program_faults_.daemon_dies()) {
       count_daemon();
       daemon_.kill();
-      troubles_.daemon_died(world_.now());
+      program_faults_.daemon_died(world_.now());
     }
     if (!daemon_.runs()) return port_.sleep_until(world_.now() + without_taktd);
     daemon_.cycle();
@@ -157,7 +157,7 @@ class FrontRun {
   Forger forger_;
   VirtualApplications applications_;
   VirtualApplications rivals_;
-  ProgramTroubles troubles_;
+  ProgramFaultActor program_faults_;
   StatusSnapshot snapshot_;
   FrontOutcome front_;
   std::size_t most_led_ = 0;

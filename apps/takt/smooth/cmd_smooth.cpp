@@ -109,7 +109,7 @@ Trace listen_to_bus(const SmoothArguments& options, Time until) {
     builder.add(to_string(
         CandumpLine{.stamp = stamp_of(got.when), .interface = options.bus, .frame = got.frame}));
   }
-  if (channel.news().receive_overruns != 0) {
+  if (channel.condition().receive_overruns != 0) {
     complain("frames were lost; causes that need every frame may be wrong", 0);
   }
   return builder.take();

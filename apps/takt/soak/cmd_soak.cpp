@@ -100,11 +100,11 @@ int run(const SoakArguments& arguments) {
   const SoakCounts& total = sum.total;
   const double hours = std::chrono::duration<double, std::ratio<3600>>(total.simulated).count();
   std::cout << sum.runs << " seeds, " << hours << " h of bus '" << network.plan.name
-            << "': " << total.images << " images, " << total.frames << " frames (" << total.rubbish
-            << " random), " << total.faults << " faults, " << total.boots << " boots, "
-            << total.requests << " requests, " << total.events << " events, " << total.commands
-            << " commands (" << total.forged << " forged), " << total.moves << " moves, "
-            << total.troubles << " program faults; " << sum.bad
+            << "': " << total.images << " images, " << total.frames << " frames ("
+            << total.random_frames << " random), " << total.faults << " faults, " << total.boots
+            << " boots, " << total.requests << " requests, " << total.events << " events, "
+            << total.commands << " commands (" << total.forged << " forged), " << total.moves
+            << " moves, " << total.program_faults << " program faults; " << sum.bad
             << (sum.bad == 1 ? " violation" : " violations") << std::endl;
   std::cerr << static_cast<long>(hours * 3600 / elapsed()) << " times real time\n";
   return sum.bad == 0 ? 0 : 1;

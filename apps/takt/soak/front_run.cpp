@@ -13,8 +13,8 @@
 #include "apps/takt/soak/fault_walk.hpp"
 #include "apps/takt/soak/judge/stop_judge.hpp"
 #include "apps/takt/soak/judge/wire_judge.hpp"
+#include "apps/takt/soak/random_program_faults.hpp"
 #include "apps/takt/soak/soak_trace.hpp"
-#include "apps/takt/soak/troubles.hpp"
 #include "master/sim/bus/world.hpp"
 
 namespace takt::soak {
@@ -84,11 +84,11 @@ class FrontWalk {
                 random_.fork(3)},
         applications_{make_applications()},
         rival_{make_application("axes 0", 7, applications_.front()->nodes())},
-        troubles_{{world_, lcm_, clocks_, daemon_, applications_, *rival_, forger_},
-                  random_.fork(4),
-                  front_calm,
-                  front_calm + options.duration,
-                  options.verbose} {
+        program_faults_{{world_, lcm_, clocks_, daemon_, applications_, *rival_, forger_},
+                        random_.fork(4),
+                        front_calm,
+                        front_calm + options.duration,
+                        options.verbose} {
     world_.observe(&listener_);
     daemon_.hear({.image = [this](const ImageView& image, Time now) { judge_wait(image, now); },
                   .notice = [this](const Notice& notice) { announce(notice); },
@@ -98,7 +98,7 @@ class FrontWalk {
       daemon_.rewrite(
           [this](command_t& command) { options_.front.command(command, seen_cycles()); });
     }
-    stage_.add(troubles_);
+    stage_.add(program_faults_);
     stage_.add(daemon_);
     for (const auto& application : applications_) stage_.add(*application);
     stage_.add(*rival_);
@@ -120,7 +120,7 @@ class FrontWalk {
              .commands = commands,
              .moves = wire_.moves(),
              .forged = forger_.sent(),
-             .troubles = troubles_.count()},
+             .program_faults = program_faults_.count()},
             options_.seed,
             verdict_.violation()};
   }
@@ -165,10 +165,10 @@ class FrontWalk {
 
   void cycle() {
     verdict_.at(cycle_, world_.now());
-    if (daemon_.runs() && troubles_.daemon_dies()) {
+    if (daemon_.runs() && program_faults_.daemon_dies()) {
       daemon_.kill();
       wire_.begin_anew();
-      troubles_.daemon_died(world_.now());
+      program_faults_.daemon_died(world_.now());
       last_published_ = {};
     }
     if (daemon_.runs()) {
@@ -284,7 +284,7 @@ class FrontWalk {
   Forger forger_;
   std::vector<std::unique_ptr<VirtualApplication>> applications_;
   std::unique_ptr<VirtualApplication> rival_;
-  Troubles troubles_;
+  RandomProgramFaults program_faults_;
   std::uint64_t cycle_ = 0;
   std::uint64_t images_ = 0;
   std::uint64_t events_ = 0;

@@ -5,8 +5,8 @@
 
 namespace takt::soak {
 
-/// A foreign device on the bus that sends rubbish: random identifiers, lengths and contents, and
-/// frames that nearly make sense (PDOs of a wrong length, SDO responses that nobody requested,
+/// A foreign device on the bus that sends random frames: random identifiers, lengths and contents,
+/// and frames that nearly make sense (PDOs of a wrong length, SDO responses that nobody requested,
 /// foreign NMT commands).
 class Intruder {
  public:

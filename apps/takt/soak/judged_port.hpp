@@ -33,7 +33,7 @@ class JudgedPort {
     judge_.sent(frames.first(result.sent), port_.now());
     return result;
   }
-  PortNews news() const noexcept { return port_.news(); }
+  PortCondition condition() const noexcept { return port_.condition(); }
 
  private:
   sim::SimPort& port_;

@@ -72,7 +72,7 @@ class BusWalk {
     return {{.simulated = world_.now(),
              .images = images_.images(),
              .frames = images_.frames(),
-             .rubbish = intruder_.sent(),
+             .random_frames = intruder_.sent(),
              .faults = faults_of(plan_, options_).size(),
              .requests = user_.asked(),
              .boots = nodes_.boots(status_),
@@ -119,8 +119,8 @@ class BusWalk {
     }
   }
 
-  /// Switches all devices off and on, because rubbish may have reconfigured them, and checks that
-  /// all nodes come back and all requests are answered without further faults.
+  /// Switches all devices off and on, because random frames may have reconfigured them, and checks
+  /// that all nodes come back and all requests are answered without further faults.
   void settle() {
     intruder_.leave();
     for (const NodePlan& node : plan_.nodes) world_.power(node.id, false);
@@ -184,7 +184,7 @@ SoakCounts& SoakCounts::operator+=(const SoakCounts& other) noexcept {
   simulated += other.simulated;
   images += other.images;
   frames += other.frames;
-  rubbish += other.rubbish;
+  random_frames += other.random_frames;
   faults += other.faults;
   requests += other.requests;
   boots += other.boots;
@@ -192,7 +192,7 @@ SoakCounts& SoakCounts::operator+=(const SoakCounts& other) noexcept {
   commands += other.commands;
   moves += other.moves;
   forged += other.forged;
-  troubles += other.troubles;
+  program_faults += other.program_faults;
   return *this;
 }
 

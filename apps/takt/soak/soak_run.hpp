@@ -32,15 +32,15 @@ struct SoakCounts {
   Time simulated{};
   std::uint64_t images = 0;
   std::uint64_t frames = 0;
-  std::uint64_t rubbish = 0;  ///< frames that the intruder sent
+  std::uint64_t random_frames = 0;  ///< frames that the intruder sent
   std::uint64_t faults = 0;
   std::uint64_t requests = 0;
   std::uint64_t boots = 0;  ///< successful boots
   std::uint64_t events = 0;
-  std::uint64_t commands = 0;  ///< commands that the programs sent
-  std::uint64_t moves = 0;     ///< positions on the wire that the programs commanded
-  std::uint64_t forged = 0;    ///< forged messages
-  std::uint64_t troubles = 0;  ///< faults of programs: stalls, deaths, rivals, replays ...
+  std::uint64_t commands = 0;        ///< commands that the programs sent
+  std::uint64_t moves = 0;           ///< positions on the wire that the programs commanded
+  std::uint64_t forged = 0;          ///< forged messages
+  std::uint64_t program_faults = 0;  ///< faults of programs: stalls, deaths, rivals, replays ...
 
   SoakCounts& operator+=(const SoakCounts& other) noexcept;
 };

@@ -26,10 +26,12 @@ class AxisMemory {
 
   /// Returns true if a TPDO with the statusword has come since the previous call. `frames` counts
   /// its frames.
-  bool news(std::uint32_t frames) noexcept { return std::exchange(frames_, frames) != frames; }
+  bool has_new_frames(std::uint32_t frames) noexcept {
+    return std::exchange(frames_, frames) != frames;
+  }
   /// Call this once a cycle. `statusword` is the one that was received by PDO; it is empty unless
-  /// news() is true. `controlword` is the one that PDOs command; it is empty if they command
-  /// nothing.
+  /// has_new_frames() is true. `controlword` is the one that PDOs command; it is empty if they
+  /// command nothing.
   void look(std::optional<std::int64_t> statusword,
             std::optional<std::int64_t> controlword) noexcept;
   /// Takes a statusword that was read by SDO.
@@ -81,7 +83,7 @@ class AxisMemory {
   ServiceWord word_ = ServiceWord::harmless;
   bool operational_ = false;
   std::uint8_t quiet_ = 0;    ///< Cycles without an enabling word, at most standing_cycles.
-  std::uint32_t frames_ = 0;  ///< see news()
+  std::uint32_t frames_ = 0;  ///< see has_new_frames()
   QuickStop quick_stop_ = QuickStop::unread;
 };
 

@@ -58,11 +58,11 @@ bool NodeSession::take_guarding_answer(const Heartbeat& sign, Time now) noexcept
 void NodeSession::on_heartbeat(const Heartbeat& sign, Time now) noexcept {
   if (!take_guarding_answer(sign, now)) return;
   const NmtState state = sign.state;
-  const auto news = watch_.on_heartbeat(state, now, status_);
-  if (news == NodeWatch::Sign::bootup) return on_bootup(now);
+  const auto noticed = watch_.on_heartbeat(state, now, status_);
+  if (noticed == NodeWatch::Sign::bootup) return on_bootup(now);
   const bool against = ends_exchange() && state == NmtState::operational;
   heartbeats_against_ = against ? heartbeats_against_ + 1 : 0;
-  if (news == NodeWatch::Sign::new_state) {
+  if (noticed == NodeWatch::Sign::new_state) {
     announce(EventKind::node_state, now, static_cast<std::int64_t>(state));
   }
   const bool halted = command_ == Command::application;

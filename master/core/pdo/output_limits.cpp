@@ -155,16 +155,16 @@ double OutputLimits::offset(std::size_t place, std::int64_t raw) const noexcept 
 
 /// Returns the set-point that the axis would follow, in counts of the limited output.
 double OutputLimits::set_point(std::size_t place, const AxisCommand& command,
-                               Leads found) const noexcept {
+                               ModesFollowed modes) const noexcept {
   const double target = number(limits_[place].signal, command.value);
-  return found.any() ? target + offset(place, command.offset) : target;
+  return modes.any() ? target + offset(place, command.offset) : target;
 }
 
 /// Returns the set-point that results from the values that were sent last if the axis is in the
 /// commanded mode.
-double OutputLimits::last_set_point(std::size_t place, Leads found) const noexcept {
+double OutputLimits::last_set_point(std::size_t place, ModesFollowed modes) const noexcept {
   const Slot& slot = slots_[place];
-  return found.any() ? slot.value + slot.offset : slot.value;
+  return modes.any() ? slot.value + slot.offset : slot.value;
 }
 
 AxisCommand OutputLimits::image_command(std::size_t place) const noexcept {
@@ -266,7 +266,7 @@ bool OutputLimits::lacks_start(std::size_t place, std::int64_t mode) const noexc
   const bool measured = limits_[place].step != OutputLimit::none ||
                         slot.rate != OutputLimit::none || slot.bend != OutputLimit::none;
   return measured && limits_[place].feedback && !inputs_.fresh(*limits_[place].feedback) &&
-         follows_each(place, leads(place, mode));
+         follows_each(place, modes_followed(place, mode));
 }
 
 /// Returns the distance of `value` from the actual position. With `from_earlier`, the nearest
@@ -287,7 +287,7 @@ std::optional<LimitBreach> OutputLimits::judge(std::size_t place, const AxisComm
                                                Obeying obeying,
                                                std::uint64_t cycle) const noexcept {
   const Slot& slot = slots_[place];
-  const Leads mode = leads(place, command.mode);
+  const ModesFollowed mode = modes_followed(place, command.mode);
   const double value = set_point(place, command, mode);
   const bool each = follows_each(place, mode);
   const bool follows = obeying == Obeying::yes && enabled(place);
@@ -351,7 +351,7 @@ bool OutputLimits::refuse(std::size_t place, std::uint64_t cycle) noexcept {
   return first;
 }
 
-void OutputLimits::forgive(std::size_t place, std::uint64_t cycle) noexcept {
+void OutputLimits::end_refusal(std::size_t place, std::uint64_t cycle) noexcept {
   if (slots_[place].refused && cycle > slots_[place].refused_at) set_refused(place, false);
 }
 
@@ -359,21 +359,21 @@ void OutputLimits::end_old_refusals(std::uint64_t cycle) noexcept {
   constexpr Time longest = std::chrono::seconds{1};
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (!slots_[i].refused) continue;
-    std::uint64_t patience = signal_of(i).fallback_cycles;
-    if (patience == 0 && plan_.cycle.period > Time{0}) {
-      patience = static_cast<std::uint64_t>(longest / plan_.cycle.period);
+    std::uint64_t longest_pause = signal_of(i).fallback_cycles;
+    if (longest_pause == 0 && plan_.cycle.period > Time{0}) {
+      longest_pause = static_cast<std::uint64_t>(longest / plan_.cycle.period);
     }
-    if (cycle > slots_[i].refused_at + patience) set_refused(i, false);
+    if (cycle > slots_[i].refused_at + longest_pause) set_refused(i, false);
   }
 }
 
 void OutputLimits::admit(std::size_t place, const AxisCommand& command,
                          std::uint64_t cycle) noexcept {
   Slot& slot = slots_[place];
-  slot.news = true;
+  slot.unsent = true;
   // An event-driven frame is not sent again for the same value, so the command counts as sent.
   if (!slot.known) return;
-  const Leads mode = leads(place, command.mode);
+  const ModesFollowed mode = modes_followed(place, command.mode);
   if (set_point(place, command, mode) != last_set_point(place, mode)) return;
   slot.cycle = cycle;
   slot.speed = 0;
@@ -393,12 +393,12 @@ void OutputLimits::sent(SignalIndex signal, std::uint64_t cycle) noexcept {
 void OutputLimits::note_sent(std::size_t place, std::uint64_t cycle) noexcept {
   Slot& slot = slots_[place];
   const AxisCommand command = image_command(place);
-  const Leads mode = leads(place, command.mode);
+  const ModesFollowed mode = modes_followed(place, command.mode);
   const double value = set_point(place, command, mode);
   const double last = last_set_point(place, mode);
-  if (!slot.known || slot.news || value != last) {
+  if (!slot.known || slot.unsent || value != last) {
     const double cycles = cycles_since(slot, cycle);
-    const bool moves = slot.known && slot.news && enabled(place);
+    const bool moves = slot.known && slot.unsent && enabled(place);
     slot.speed = moves ? distance(place, last, value) / cycles : 0.0;
     slot.gap = moves ? cycles : 1.0;
     slot.cycle = cycle;
@@ -407,7 +407,7 @@ void OutputLimits::note_sent(std::size_t place, std::uint64_t cycle) noexcept {
   slot.offset = offset(place, command.offset);
   slot.set_point = value;
   if (limits_[place].target && mode.both()) slot.set_point.reset();
-  slot.news = false;
+  slot.unsent = false;
   slot.idle = !follows_each(place, mode);
 }
 

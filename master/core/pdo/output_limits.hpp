@@ -103,7 +103,7 @@ class OutputLimits {
   bool refuse(std::size_t place, std::uint64_t cycle) noexcept;
   /// Notes that a command was inside its limits. This ends the refusal that refuse() has begun,
   /// from the next cycle on.
-  void forgive(std::size_t place, std::uint64_t cycle) noexcept;
+  void end_refusal(std::size_t place, std::uint64_t cycle) noexcept;
   /// Ends refusals that were not repeated for the time to live of a command.
   void expire(std::uint64_t cycle) noexcept {
     if (holds_any()) end_old_refusals(cycle);
@@ -142,7 +142,7 @@ class OutputLimits {
     std::uint64_t cycle = 0;
     std::uint64_t refused_at = 0;
     bool known = false;      ///< a value was sent since open()
-    bool news = false;       ///< a command was accepted and is not sent yet
+    bool unsent = false;     ///< a command was accepted and is not sent yet
     bool refused = false;    ///< the newest command was outside its limits
     bool idle = false;       ///< the value was sent in a mode that does not follow each set-point
     std::int64_t order = 0;  ///< the controlword that was sent last
@@ -152,7 +152,7 @@ class OutputLimits {
     template <class Archive>
     void keep(Archive& state) noexcept {
       state(low, high, rate, bend, bounded, value, offset, set_point, speed, gap, cycle, refused_at,
-            known, news, refused, idle, order, positions, remembered);
+            known, unsent, refused, idle, order, positions, remembered);
       // A damaged checkpoint may contain any number.
       remembered = std::min(remembered, cycles_remembered);
     }
@@ -180,9 +180,10 @@ class OutputLimits {
   double distance(std::size_t place, double from, double to) const noexcept;
   std::optional<double> actual(std::size_t place) const noexcept;
   double offset(std::size_t place, std::int64_t raw) const noexcept;
-  struct Leads;
-  double set_point(std::size_t place, const AxisCommand& command, Leads found) const noexcept;
-  double last_set_point(std::size_t place, Leads found) const noexcept;
+  struct ModesFollowed;
+  double set_point(std::size_t place, const AxisCommand& command,
+                   ModesFollowed modes) const noexcept;
+  double last_set_point(std::size_t place, ModesFollowed modes) const noexcept;
   AxisCommand image_command(std::size_t place) const noexcept;
   double distance_from_actual(std::size_t place, double value, bool from_earlier) const noexcept;
   void note_sent(std::size_t place, std::uint64_t cycle) noexcept;
@@ -192,7 +193,7 @@ class OutputLimits {
   bool starts_from_actual(std::size_t place, std::int64_t order) const noexcept;
   /// States whether the axis follows a set-point that contains this output: in the commanded mode,
   /// and in the mode that the drive displays.
-  struct Leads {
+  struct ModesFollowed {
     bool commanded = false;
     bool shown = false;
 
@@ -200,12 +201,12 @@ class OutputLimits {
     bool any() const noexcept { return commanded || shown; }
     bool both() const noexcept { return commanded && shown; }
   };
-  Leads leads(std::size_t place, std::int64_t mode) const noexcept;
+  ModesFollowed modes_followed(std::size_t place, std::int64_t mode) const noexcept;
   /// Returns true if steps of this output are checked, because the drive follows each of its
   /// values. Steps of target velocities and torques are checked in every mode, because the drive
   /// may follow them after a change of the mode.
-  bool follows_each(std::size_t place, Leads found) const noexcept {
-    return limits_[place].quantity != AxisQuantity::position || found.any();
+  bool follows_each(std::size_t place, ModesFollowed modes) const noexcept {
+    return limits_[place].quantity != AxisQuantity::position || modes.any();
   }
   double cycles_since(const Slot& slot, std::uint64_t cycle) const noexcept;
   /// Returns the largest permitted difference, rounded to counts that the frame can carry.

@@ -47,7 +47,8 @@ bool OutputLimits::begins(std::size_t place, std::int64_t order) const noexcept 
   return limits_[place].controlword && enables(order) && !enabled(place);
 }
 
-OutputLimits::Leads OutputLimits::leads(std::size_t place, std::int64_t mode) const noexcept {
+OutputLimits::ModesFollowed OutputLimits::modes_followed(std::size_t place,
+                                                         std::int64_t mode) const noexcept {
   const OutputLimit& limit = limits_[place];
   const bool commanded = limit.mode ? follows(limit.quantity, mode) : !limit.idle;
   if (!limit.mode_display) return {.commanded = commanded, .shown = commanded};
@@ -56,7 +57,7 @@ OutputLimits::Leads OutputLimits::leads(std::size_t place, std::int64_t mode) co
 }
 
 bool OutputLimits::covered_by_target(std::size_t place, std::int64_t mode) const noexcept {
-  return limits_[place].target && leads(place, mode).both();
+  return limits_[place].target && modes_followed(place, mode).both();
 }
 
 }  // namespace takt

@@ -157,14 +157,14 @@ bool PdoInputs::use_late(std::size_t position, const StampedFrame& stamped) noex
   return !plan_.pdos.tpdos[position].drop_late;
 }
 
-[[gnu::always_inline]] inline void PdoInputs::accept(Row& row, PdoMark& news,
+[[gnu::always_inline]] inline void PdoInputs::accept(Row& row, PdoMark& mark,
                                                      const StampedFrame& stamped) noexcept {
   unpack(load(stamped.frame), {fields_.data() + row.first, row.count}, image_.values.data());
   // A frame that has arrived before this SYNC belongs to the previous SYNC.
   const unsigned before = stamped.when < sync_ ? 1 : 0;
-  ++news.received;
-  news.cycle = static_cast<std::uint32_t>(cycle_) - before;
-  news.flags |= PdoMark::arrived;
+  ++mark.received;
+  mark.cycle = static_cast<std::uint32_t>(cycle_) - before;
+  mark.flags |= PdoMark::arrived;
   const std::uint64_t of_beat = beat_ - before;
   row.last_beat = of_beat;
   if (row.deadline > Time{}) row.expires = stamped.when + row.deadline;

@@ -114,7 +114,7 @@ class PdoInputs {
   void change_reception(std::size_t node_index, Reception reception) noexcept;
   std::uint16_t find_extended(CobId id) const noexcept;
   std::uint16_t find_object(std::uint16_t first, const Frame& frame) const noexcept;
-  void accept(Row& row, PdoMark& news, const StampedFrame& stamped) noexcept;
+  void accept(Row& row, PdoMark& mark, const StampedFrame& stamped) noexcept;
   // These functions are rarely needed and are kept out of the path of a frame.
   [[gnu::cold]] bool use_odd_length(std::size_t position, const StampedFrame& stamped) noexcept;
   [[gnu::cold]] bool use_late(std::size_t position, const StampedFrame& stamped) noexcept;

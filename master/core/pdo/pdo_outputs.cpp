@@ -62,7 +62,7 @@ void PdoOutputs::fall(Output& output, SignalIndex signal) noexcept {
 
 /// Lets the output take its fallback because its sender has released it. An output without a time
 /// to live keeps its value, as it does when no more commands come.
-void PdoOutputs::let_go(Output& output, SignalIndex signal) noexcept {
+void PdoOutputs::release_output(Output& output, SignalIndex signal) noexcept {
   if (!output.commanded || output.fallen || output.limit == 0) return;
   fall(output, signal);
   output.released = true;
@@ -86,7 +86,7 @@ bool PdoOutputs::hear(Row& row, Output& output, SignalIndex signal, const SetPoi
   const bool released = set_point.time_to_live == output_released;
   if (released || refuses(output) || is_late(output, set_point, moment)) {
     output.generation = set_point.generation;
-    if (released && !refuses(output)) let_go(output, signal);
+    if (released && !refuses(output)) release_output(output, signal);
     return false;
   }
   if (output.fallen && !output.released && row.risen++ == 0) row.first_risen = signal;

@@ -218,7 +218,7 @@ class PdoOutputs {
     return waited >= std::chrono::seconds{1} / plan_.cycle.period;
   }
   /// Lets the output take its fallback, because its sender has released it.
-  void let_go(Output& output, SignalIndex signal) noexcept;
+  void release_output(Output& output, SignalIndex signal) noexcept;
   /// Returns the number of cycles since the front thread has determined the age of the command. The
   /// result is 0 if this was after the previous outputs, which may have been made up to a quarter
   /// of a period early.
@@ -249,29 +249,29 @@ class PdoOutputs {
   /// Checks one command from within the bus thread. Returns false if it is dropped.
   bool within_limits(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
   /// Returns true if this command is new and will be accepted if it is inside its limits.
-  bool is_news(const Output& output, const SetPoint& set_point,
-               OutputMoment moment) const noexcept {
+  bool is_new_command(const Output& output, const SetPoint& set_point,
+                      OutputMoment moment) const noexcept {
     return set_point.generation != output.generation && set_point.time_to_live != output_released &&
            !refuses(output) && !is_late(output, set_point, moment);
   }
-  bool has_news(std::span<const SetPoint> set_points) const noexcept;
+  bool has_new_commands(std::span<const SetPoint> set_points) const noexcept;
   bool limited_row_open(std::size_t place) const noexcept;
   Obeying obeying(SignalIndex signal) const noexcept;
-  void judge_news(std::size_t place, std::span<const SetPoint> set_points,
-                  OutputMoment moment) noexcept;
+  void judge_commands(std::size_t place, std::span<const SetPoint> set_points,
+                      OutputMoment moment) noexcept;
   struct Newest {
     std::int64_t value = 0;
-    bool news = false;  ///< a new command of this pack
+    bool is_new = false;  ///< a new command of this pack
   };
   Newest newest(std::optional<SignalIndex> signal, std::span<const SetPoint> set_points,
                 OutputMoment moment) const noexcept;
-  void admit_news(std::size_t place, std::span<const SetPoint> set_points,
-                  OutputMoment moment) noexcept;
+  void admit_commands(std::size_t place, std::span<const SetPoint> set_points,
+                      OutputMoment moment) noexcept;
   bool awaits_sending(SignalIndex signal) const noexcept;
   void take_back(SignalIndex signal, std::int64_t before) noexcept;
   AxisCommand command_with(std::size_t place, SignalIndex signal,
                            std::int64_t value) const noexcept;
-  bool covered(std::size_t place, std::int64_t mode, bool target_news) const noexcept;
+  bool covered(std::size_t place, std::int64_t mode, bool target_is_new) const noexcept;
   bool suits_targets(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
   /// The output for which a refusal is reported, and its raw value.
   struct Cause {
@@ -284,7 +284,7 @@ class PdoOutputs {
              OutputMoment moment) noexcept;
   void drop_node(std::size_t node_index) noexcept;
   /// Ends the refusal of commands to an output, after the fallback of its node was sent.
-  void forgive(std::size_t place, OutputMoment moment) noexcept;
+  void end_refusal(std::size_t place, OutputMoment moment) noexcept;
   void note_limited(std::size_t row, std::uint64_t cycle) noexcept;
   void fall(Output& output, SignalIndex signal) noexcept;
   void seed(Output& output, SignalIndex signal) noexcept;

@@ -84,7 +84,7 @@ bool PdoOutputs::judge(std::size_t place, const AxisCommand& command, Cause caus
 /// Ends the refusal of commands to an output, but not before the fallback of its node was sent. A
 /// cycle without outputs, or an inhibit time, may delay the fallback. Until it is sent, the axis
 /// still follows its old set-points, although commands would already be judged as if it did not.
-void PdoOutputs::forgive(std::size_t place, OutputMoment moment) noexcept {
+void PdoOutputs::end_refusal(std::size_t place, OutputMoment moment) noexcept {
   const std::size_t node_index = plan_.layout.signals[limits_.limit(place).signal].node_index;
   if (!limits_.holds(node_index)) return;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -92,7 +92,7 @@ void PdoOutputs::forgive(std::size_t place, OutputMoment moment) noexcept {
     const bool waits = row.open && row.ready && row.pending;
     if (waits && plan_.pdos.rpdos[i].node_index == node_index) return;
   }
-  limits_.forgive(place, moment.cycle);
+  limits_.end_refusal(place, moment.cycle);
 }
 
 /// Returns the newest value of an output in this pack: a new command, or else the value in the
@@ -102,8 +102,8 @@ PdoOutputs::Newest PdoOutputs::newest(std::optional<SignalIndex> signal,
                                       OutputMoment moment) const noexcept {
   if (!signal) return {};
   const SetPoint& set_point = set_points[output_of(*signal)];
-  const bool news = is_news(outputs_[output_of(*signal)], set_point, moment);
-  return {.value = news ? set_point.value : image_.values[*signal], .news = news};
+  const bool is_new = is_new_command(outputs_[output_of(*signal)], set_point, moment);
+  return {.value = is_new ? set_point.value : image_.values[*signal], .is_new = is_new};
 }
 
 /// Returns true if a controller in the bus thread has commanded this controlword and it is not sent
@@ -115,38 +115,38 @@ bool PdoOutputs::awaits_sending(SignalIndex signal) const noexcept {
 
 /// Judges a new command. A new mode of operation is judged as well, because it may make a set-point
 /// effective that is far away. The same is true of a controlword that enables the axis.
-void PdoOutputs::judge_news(std::size_t place, std::span<const SetPoint> set_points,
-                            OutputMoment moment) noexcept {
+void PdoOutputs::judge_commands(std::size_t place, std::span<const SetPoint> set_points,
+                                OutputMoment moment) noexcept {
   const OutputLimit& limit = limits_.limit(place);
   const Newest target = newest(limit.signal, set_points, moment);
   const Newest offset = newest(limit.offset, set_points, moment);
   const Newest mode = newest(limit.mode, set_points, moment);
   const Newest order = newest(limit.controlword, set_points, moment);
   const bool begins = limits_.begins(place, order.value) &&
-                      (order.news || (!limits_.begins(place, limits_.order(place)) &&
-                                      awaits_sending(*limit.controlword)));
-  if (!target.news && !offset.news && !mode.news && !begins) return;
+                      (order.is_new || (!limits_.begins(place, limits_.order(place)) &&
+                                        awaits_sending(*limit.controlword)));
+  if (!target.is_new && !offset.is_new && !mode.is_new && !begins) return;
   Output& output = outputs_[output_of(limit.signal)];
-  if (!target.news && !output.known) return;
-  if (covered(place, mode.value, newest(limit.target, set_points, moment).news)) {
-    if (target.news) forgive(place, moment);
+  if (!target.is_new && !output.known) return;
+  if (covered(place, mode.value, newest(limit.target, set_points, moment).is_new)) {
+    if (target.is_new) end_refusal(place, moment);
     return;
   }
-  if (target.news && limits_.lacks_start(place, mode.value)) {
+  if (target.is_new && limits_.lacks_start(place, mode.value)) {
     output.generation = set_points[output_of(limit.signal)].generation;
     return;
   }
-  const bool held = !target.news && !offset.news;
+  const bool held = !target.is_new && !offset.is_new;
   const AxisCommand command{.value = target.value,
                             .offset = offset.value,
                             .mode = mode.value,
                             .order = order.value,
                             .age = held ? SetPointAge::held : SetPointAge::commanded};
-  const Cause cause = offset.news && !target.news ? Cause{*limit.offset, offset.value}
-                                                  : Cause{limit.signal, target.value};
+  const Cause cause = offset.is_new && !target.is_new ? Cause{*limit.offset, offset.value}
+                                                      : Cause{limit.signal, target.value};
   if (judge(place, command, cause, moment)) {
-    if (target.news || offset.news) forgive(place, moment);
-  } else if (begins && !order.news) {
+    if (target.is_new || offset.is_new) end_refusal(place, moment);
+  } else if (begins && !order.is_new) {
     take_back(*limit.controlword, limits_.order(place));
   }
 }
@@ -157,12 +157,12 @@ void PdoOutputs::take_back(SignalIndex signal, std::int64_t before) noexcept {
   if (plan_.layout.signals[signal].fallback == Fallback::hold) image_.values[signal] = before;
 }
 
-void PdoOutputs::admit_news(std::size_t place, std::span<const SetPoint> set_points,
-                            OutputMoment moment) noexcept {
+void PdoOutputs::admit_commands(std::size_t place, std::span<const SetPoint> set_points,
+                                OutputMoment moment) noexcept {
   const SignalIndex signal = limits_.limit(place).signal;
   const Newest target = newest(signal, set_points, moment);
   const Newest offset = newest(limits_.limit(place).offset, set_points, moment);
-  if (!target.news && !offset.news) return;
+  if (!target.is_new && !offset.is_new) return;
   if (limits_.holds(plan_.layout.signals[signal].node_index)) return;
   const Newest mode = newest(limits_.limit(place).mode, set_points, moment);
   limits_.admit(place, {.value = target.value, .offset = offset.value, .mode = mode.value},
@@ -170,7 +170,7 @@ void PdoOutputs::admit_news(std::size_t place, std::span<const SetPoint> set_poi
 }
 
 /// Returns true if an output has a command that the last pack has not seen.
-bool PdoOutputs::has_news(std::span<const SetPoint> set_points) const noexcept {
+bool PdoOutputs::has_new_commands(std::span<const SetPoint> set_points) const noexcept {
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     if (set_points[i].generation != outputs_[i].generation) return true;
   }
@@ -181,15 +181,16 @@ void PdoOutputs::check_limits(std::span<const SetPoint> set_points, OutputMoment
   if (!limits_.concerns_any()) return;
   limits_.expire(moment.cycle);
   limits_.remember();
-  const bool news = has_news(set_points);
+  const bool commanded = has_new_commands(set_points);
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     if (!limits_.bounds(i)) continue;
     const auto order = limits_.limit(i).controlword;
-    // Without news, only a controlword from within the bus thread can need a judgement.
-    if (!news && !(order && limits_.begins(i, image_.values[*order]))) continue;
-    if (limited_row_open(i)) judge_news(i, set_points, moment);
+    // Without a new command, only a controlword from within the bus thread can need a judgement.
+    if (!commanded && !(order && limits_.begins(i, image_.values[*order]))) continue;
+    if (limited_row_open(i)) judge_commands(i, set_points, moment);
   }
-  for (std::size_t i = 0; news && i < limits_.size(); ++i) admit_news(i, set_points, moment);
+  for (std::size_t i = 0; commanded && i < limits_.size(); ++i)
+    admit_commands(i, set_points, moment);
   if (!limits_.holds_any()) return;
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const Signal& signal = plan_.layout.signals[inputs_count_ + i];
@@ -214,13 +215,13 @@ AxisCommand PdoOutputs::command_with(std::size_t place, SignalIndex signal,
                                                                      : SetPointAge::commanded};
 }
 
-/// Returns true if the output is an offset that the check of its target covers. `target_news`
+/// Returns true if the output is an offset that the check of its target covers. `target_is_new`
 /// states whether the target is commanded in this pack.
-bool PdoOutputs::covered(std::size_t place, std::int64_t mode, bool target_news) const noexcept {
+bool PdoOutputs::covered(std::size_t place, std::int64_t mode, bool target_is_new) const noexcept {
   if (!limits_.covered_by_target(place, mode)) return false;
   const SignalIndex target = *limits_.limit(place).target;
   return limited_row_open(limits_.place_of(target)) &&
-         (target_news || outputs_[output_of(target)].known);
+         (target_is_new || outputs_[output_of(target)].known);
 }
 
 /// Checks a mode of operation or an offset from within the bus thread. A controlword is normally
@@ -239,7 +240,7 @@ bool PdoOutputs::suits_targets(SignalIndex signal, std::int64_t value,
     const bool held = command.age == SetPointAge::held;
     const Cause cause = held ? Cause{target, command.value} : Cause{signal, value};
     if (!judge(place, command, cause, moment)) return false;
-    if (!held) forgive(place, moment);
+    if (!held) end_refusal(place, moment);
   }
   return true;
 }
@@ -258,7 +259,7 @@ bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
     if (limits_.lacks_start(place, command.mode)) return false;
     const bool covers = covered(place, command.mode, false);
     if (!covers && !judge(place, command, {signal, value}, moment)) return false;
-    forgive(place, moment);
+    end_refusal(place, moment);
   }
   if (limits_.holds(node_index)) return false;
   if (limited) limits_.admit(place, command, moment.cycle);

@@ -50,7 +50,7 @@ void add_emcys(const EmcyLog& log, node_status_t& message) {
   message.num_emcys = static_cast<std::int32_t>(codes.size());
 }
 
-std::int16_t bus_state(const PortNews& port) noexcept {
+std::int16_t bus_state(const PortCondition& port) noexcept {
   if (port.interface_down) return 3;
   if (port.bus_off) return 2;
   return port.error_passive ? 1 : 0;

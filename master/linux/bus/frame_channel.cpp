@@ -55,8 +55,8 @@ bool FrameChannel::sees(CobId id, std::uint8_t first, Time timeout) noexcept {
   return false;
 }
 
-PortNews FrameChannel::news() const noexcept {
-  return std::visit([](const auto& port) { return port.news(); }, port_);
+PortCondition FrameChannel::condition() const noexcept {
+  return std::visit([](const auto& port) { return port.condition(); }, port_);
 }
 
 }  // namespace takt

@@ -37,7 +37,7 @@ class FrameChannel {
   /// bus, however long it waits in the queue of the interface.
   bool sees(CobId id, std::uint8_t first, Time timeout) noexcept;
 
-  PortNews news() const noexcept;
+  PortCondition condition() const noexcept;
 
  private:
   std::variant<SocketCanPort, UnixBusPort> port_;

@@ -14,29 +14,29 @@ constexpr unsigned state_bits =
 
 }  // namespace
 
-void apply_error_frame(const can_frame& frame, PortNews& news) noexcept {
-  ++news.error_frames;
+void apply_error_frame(const can_frame& frame, PortCondition& condition) noexcept {
+  ++condition.error_frames;
   if ((frame.can_id & CAN_ERR_CRTL) != 0) {
     const unsigned what = frame.data[1];
-    if ((what & state_bits) != 0) news.error_passive = (what & passive_bits) != 0;
-    if ((what & CAN_ERR_CRTL_RX_OVERFLOW) != 0) ++news.receive_overruns;
-    if ((what & state_bits) != 0) news.bus_off = false;
+    if ((what & state_bits) != 0) condition.error_passive = (what & passive_bits) != 0;
+    if ((what & CAN_ERR_CRTL_RX_OVERFLOW) != 0) ++condition.receive_overruns;
+    if ((what & state_bits) != 0) condition.bus_off = false;
   }
   // Drivers fill in the counters when the state changes; newer drivers announce them by
   // CAN_ERR_CNT.
   if ((frame.can_id & (CAN_ERR_CRTL | CAN_ERR_CNT)) != 0) {
-    news.tx_error_counter = frame.data[6];
-    news.rx_error_counter = frame.data[7];
+    condition.tx_error_counter = frame.data[6];
+    condition.rx_error_counter = frame.data[7];
   }
   if ((frame.can_id & CAN_ERR_BUSOFF) != 0) {
-    news.bus_off = true;
-    news.tx_error_counter = 255;
+    condition.bus_off = true;
+    condition.tx_error_counter = 255;
   }
   if ((frame.can_id & CAN_ERR_RESTARTED) != 0) {
-    news.bus_off = false;
-    news.error_passive = false;
-    news.tx_error_counter = 0;
-    news.rx_error_counter = 0;
+    condition.bus_off = false;
+    condition.error_passive = false;
+    condition.tx_error_counter = 0;
+    condition.rx_error_counter = 0;
   }
 }
 

@@ -47,8 +47,8 @@ struct SocketCanPort::State {
   Time spin{};
   SentFrames* sent = nullptr;
   Time next_look{};
-  PortNews news;
-  std::uint32_t dropped = 0;  // part of news.receive_overruns that the kernel dropped
+  PortCondition condition;
+  std::uint32_t dropped = 0;  // part of condition.receive_overruns that the kernel dropped
   MessageBatch<can_frame, can_batch_frames, can_control_bytes> in;
   MessageBatch<can_frame, can_batch_frames, 0> out;
 
@@ -73,10 +73,10 @@ bool SocketCanPort::State::bind_interface() noexcept {
 }
 
 void SocketCanPort::State::note(int error) noexcept {
-  news.last_error = error;
+  condition.last_error = error;
   if (!means_down(error)) return;
-  if (!news.interface_down) next_look = monotonic_now() + look_at_interface_again;
-  news.interface_down = true;
+  if (!condition.interface_down) next_look = monotonic_now() + look_at_interface_again;
+  condition.interface_down = true;
 }
 
 void SocketCanPort::State::look_for_interface() noexcept {
@@ -89,9 +89,9 @@ void SocketCanPort::State::look_for_interface() noexcept {
   int stale = 0;  // the error of the lost interface, if no call has reported it yet
   socklen_t size = sizeof stale;
   getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &stale, &size);
-  news.interface_down = false;
-  news.bus_off = false;  // a controller starts in the state error-active
-  news.error_passive = false;
+  condition.interface_down = false;
+  condition.bus_off = false;  // a controller starts in the state error-active
+  condition.error_passive = false;
 }
 
 /// Returns the number of messages in the next batch.
@@ -110,16 +110,16 @@ bool SocketCanPort::State::take(std::size_t i, Time offset, Time now,
   msghdr& header = in.header(i);
   const CanControl control = can_control_of(header);
   if (control.dropped) {
-    news.receive_overruns += *control.dropped - std::exchange(dropped, *control.dropped);
+    condition.receive_overruns += *control.dropped - std::exchange(dropped, *control.dropped);
   }
   if ((raw.can_id & CAN_ERR_FLAG) != 0) {
-    apply_error_frame(raw, news);
+    apply_error_frame(raw, condition);
     return false;
   }
   const Time when = monotonic_stamp(control.realtime, offset, now);
   if (header.msg_flags & MSG_CONFIRM) {
-    if (sync_id == raw.can_id) news.last_sync_echo = when;
-    news.bus_off = false;  // an echo proves that the controller is not bus-off
+    if (sync_id == raw.can_id) condition.last_sync_echo = when;
+    condition.bus_off = false;  // an echo proves that the controller is not bus-off
     return false;
   }
   frame = {.frame = from_kernel(raw.can_id, raw.can_dlc, raw.data), .when = when};
@@ -190,20 +190,20 @@ void SocketCanPort::sleep_precisely_until(Time until) noexcept {
 }
 
 bool SocketCanPort::wait_frame(Time until) noexcept {
-  if (state_->news.interface_down) return wait_to_look_again(look_at_interface_again, until);
+  if (state_->condition.interface_down) return wait_to_look_again(look_at_interface_again, until);
   return wait_for_frame(state_->fd.get(), until);
 }
 
 std::size_t SocketCanPort::receive(std::span<StampedFrame> in) noexcept {
   State& state = *state_;
-  if (state.news.interface_down) state.look_for_interface();
+  if (state.condition.interface_down) state.look_for_interface();
   std::size_t taken = 0;
   for (bool more = true; more;) {
     const std::size_t room = std::min(in.size() - taken, can_batch_frames);
     const std::size_t got = state.fetch(room);
     if (got == 0) break;
     const Time offset = realtime_offset();
-    state.news.since_1970 = offset;
+    state.condition.since_1970 = offset;
     const Time now = monotonic_now();
     for (std::size_t i = 0; i < got; ++i) {
       if (state.take(i, offset, now, in[taken])) ++taken;
@@ -215,7 +215,7 @@ std::size_t SocketCanPort::receive(std::span<StampedFrame> in) noexcept {
 
 SendResult SocketCanPort::send(std::span<const Frame> out) noexcept {
   State& state = *state_;
-  if (state.news.interface_down) return {.sent = 0, .error = state.news.last_error};
+  if (state.condition.interface_down) return {.sent = 0, .error = state.condition.last_error};
   if (state.sent != nullptr) state.sent->add(out);
   const auto fill = [](can_frame& record, const Frame& frame) { record = to_kernel(frame); };
   SendResult result{.sent = state.out.send_all(state.fd.get(), out, fill)};
@@ -227,7 +227,7 @@ SendResult SocketCanPort::send(std::span<const Frame> out) noexcept {
   return result;
 }
 
-PortNews SocketCanPort::news() const noexcept { return state_->news; }
+PortCondition SocketCanPort::condition() const noexcept { return state_->condition; }
 
 static_assert(Port<SocketCanPort>);
 

@@ -18,7 +18,7 @@ struct SocketCanOptions {
   std::string interface;
   std::vector<can_filter> filters;  ///< at most max_kernel_filters; see filters_for
   /// The kernel echoes frames of this port with this identifier when they were on the wire;
-  /// news().last_sync_echo is the newest echo. The kernel echoes only identifiers that pass
+  /// condition().last_sync_echo is the newest echo. The kernel echoes only identifiers that pass
   /// `filters`.
   std::optional<CobId> sync_cob_id{};
   Time spin{};                 ///< spin time of sleep_precisely_until
@@ -46,7 +46,7 @@ class SocketCanPort {
   bool wait_frame(Time until) noexcept;
   std::size_t receive(std::span<StampedFrame> in) noexcept;
   SendResult send(std::span<const Frame> out) noexcept;
-  PortNews news() const noexcept;
+  PortCondition condition() const noexcept;
 
  private:
   struct State;

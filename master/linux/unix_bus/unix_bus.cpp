@@ -34,7 +34,7 @@ struct UnixBusPort::State {
   SentFrames* sent = nullptr;
   Time next_look{};
   std::uint32_t lost_before = 0;  // frames lost on earlier connections
-  PortNews news;
+  PortCondition condition;
   MessageBatch<UnixBusRecord, batch_frames, 0> in;
   MessageBatch<UnixBusRecord, batch_frames, 0> out;
 
@@ -48,14 +48,14 @@ struct UnixBusPort::State {
 
 void UnixBusPort::State::disconnected() noexcept {
   socket.reset();
-  lost_before = news.receive_overruns;
-  news.interface_down = true;
+  lost_before = condition.receive_overruns;
+  condition.interface_down = true;
   next_look = monotonic_now() + look_again;
 }
 
 void UnixBusPort::State::note(int error) noexcept {
   const bool full = error == EAGAIN || error == ENOBUFS;
-  news.last_error = full ? ENOBUFS : ENETDOWN;
+  condition.last_error = full ? ENOBUFS : ENETDOWN;
   if (!full) disconnected();
 }
 
@@ -64,7 +64,7 @@ void UnixBusPort::State::look_for_hub() noexcept {
   if (!address || now < next_look) return;
   next_look = now + look_again;
   socket = connect_unix(*address);
-  news.interface_down = !socket;
+  condition.interface_down = !socket;
 }
 
 /// Sends received frames back to their sender as its own. A lost echo does no harm.
@@ -83,10 +83,10 @@ void UnixBusPort::State::echo(std::size_t count) noexcept {
 bool UnixBusPort::State::take(std::size_t i, StampedFrame& frame) noexcept {
   const UnixBusRecord& record = in.record(i);
   if (in.bytes(i) != sizeof(UnixBusRecord) || !valid(record)) return false;
-  news.receive_overruns = lost_before + record.lost;
+  condition.receive_overruns = lost_before + record.lost;
   const Time when = record.when != 0 ? Time{record.when} : monotonic_now();
   if (record.own != 0) {
-    if (sync_id == record.can_id) news.last_sync_echo = when;
+    if (sync_id == record.can_id) condition.last_sync_echo = when;
     return false;
   }
   frame = {.frame = from_kernel(record.can_id, record.length, record.data), .when = when};
@@ -150,14 +150,14 @@ void UnixBusPort::sleep_precisely_until(Time until) noexcept {
 }
 
 bool UnixBusPort::wait_frame(Time until) noexcept {
-  if (state_->news.interface_down) return wait_to_look_again(look_again, until);
+  if (state_->condition.interface_down) return wait_to_look_again(look_again, until);
   return wait_for_frame(state_->socket.get(), until);
 }
 
 std::size_t UnixBusPort::receive(std::span<StampedFrame> in) noexcept {
   State& state = *state_;
-  if (state.news.interface_down) state.look_for_hub();
-  if (state.news.interface_down || in.empty()) return 0;
+  if (state.condition.interface_down) state.look_for_hub();
+  if (state.condition.interface_down || in.empty()) return 0;
   std::size_t taken = 0;
   for (bool more = true; more;) {
     const std::size_t room = std::min(in.size() - taken, batch_frames);
@@ -165,7 +165,7 @@ std::size_t UnixBusPort::receive(std::span<StampedFrame> in) noexcept {
     if (got < 0 && errno != EAGAIN && errno != EINTR) state.note(errno);
     if (got <= 0) break;
     const auto count = static_cast<std::size_t>(got);
-    state.news.since_1970 = realtime_offset();
+    state.condition.since_1970 = realtime_offset();
     if (state.echoes) state.echo(count);
     for (std::size_t i = 0; i < count; ++i) {
       if (state.take(i, in[taken])) ++taken;
@@ -179,7 +179,7 @@ std::size_t UnixBusPort::receive(std::span<StampedFrame> in) noexcept {
 
 SendResult UnixBusPort::send(std::span<const Frame> out) noexcept {
   State& state = *state_;
-  if (state.news.interface_down) return {.sent = 0, .error = ENETDOWN};
+  if (state.condition.interface_down) return {.sent = 0, .error = ENETDOWN};
   if (state.sent != nullptr) state.sent->add(out);
   const auto fill = [now = monotonic_now().count()](UnixBusRecord& record, const Frame& frame) {
     record = to_record(frame);
@@ -188,13 +188,13 @@ SendResult UnixBusPort::send(std::span<const Frame> out) noexcept {
   SendResult result{.sent = state.out.send_all(state.socket.get(), out, fill)};
   if (result.sent < out.size()) {
     state.note(errno);
-    result.error = state.news.last_error;
+    result.error = state.condition.last_error;
   }
   if (state.sent != nullptr) state.sent->take_back(out.subspan(result.sent));
   return result;
 }
 
-PortNews UnixBusPort::news() const noexcept { return state_->news; }
+PortCondition UnixBusPort::condition() const noexcept { return state_->condition; }
 
 static_assert(Port<UnixBusPort>);
 

@@ -21,7 +21,7 @@ enum class BusMember : std::uint8_t {
 
 struct UnixBusOptions {
   std::string path;  ///< path of `unix:PATH`, without `unix:`
-  /// COB-ID of the frames of this port whose echo is news().last_sync_echo.
+  /// COB-ID of the frames of this port whose echo is condition().last_sync_echo.
   std::optional<CobId> sync_cob_id{};
   Time spin{};
   SentFrames* sent = nullptr;  ///< counts the sent frames for a DiagnosticSocket
@@ -45,7 +45,7 @@ class UnixBusPort {
   bool wait_frame(Time until) noexcept;
   std::size_t receive(std::span<StampedFrame> in) noexcept;
   SendResult send(std::span<const Frame> out) noexcept;
-  PortNews news() const noexcept;
+  PortCondition condition() const noexcept;
 
  private:
   struct State;

@@ -102,7 +102,7 @@ class Beat {
   void await_deadline(P& port) noexcept;
   template <Port P, class Drain>
   void await_sync(P& port, std::span<const NodeStatus> nodes, Drain drain) noexcept;
-  void open_or_hold_wire(const PortNews& news) noexcept;
+  void open_or_hold_wire(const PortCondition& condition) noexcept;
   void begin(Time now) noexcept;
   std::uint64_t begin_by_sync(bool was_locked) noexcept;
   std::uint64_t begin_without_sync(Time now, std::span<const NodeStatus> nodes,
@@ -131,8 +131,8 @@ void Beat::await(P& port, const S& services, Drain drain) noexcept {
   } else {
     await_deadline(port);
   }
-  if (gate_.doubtful(port.news())) drain();  // the echo of SYNC may be among the frames
-  open_or_hold_wire(port.news());
+  if (gate_.doubtful(port.condition())) drain();  // the echo of SYNC may be among the frames
+  open_or_hold_wire(port.condition());
 }
 
 inline void Beat::begin(Time now) noexcept {
@@ -205,12 +205,12 @@ inline bool Beat::begins_cycle(const StampedFrame& stamped) noexcept {
 }
 
 /// If earlier frames could not leave yet, no others may follow.
-inline void Beat::open_or_hold_wire(const PortNews& news) noexcept {
-  wire_ = gate_.open(news, sync_at_) ? Wire::open : Wire::held;
+inline void Beat::open_or_hold_wire(const PortCondition& condition) noexcept {
+  wire_ = gate_.open(condition, sync_at_) ? Wire::open : Wire::held;
   if (wire_ == Wire::open) {
     missed_.release(sync_at_);
   } else {
-    missed_.hold(news);
+    missed_.hold(condition);
   }
 }
 

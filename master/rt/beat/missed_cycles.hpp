@@ -23,8 +23,8 @@ class MissedCycles {
   void unheard() noexcept { ++status_.cycles_missed; }
 
   /// Notes a cycle that sends nothing, because earlier frames may still be in the interface.
-  void hold(const PortNews& news) noexcept {
-    set_cause(news);
+  void hold(const PortCondition& condition) noexcept {
+    set_cause(condition);
     ++held_;
     ++status_.cycles_missed;
   }
@@ -45,11 +45,11 @@ class MissedCycles {
  private:
   /// A late cycle explains only the cycle that follows it. A controller error explains all held
   /// cycles, because the controller may report it some cycles later.
-  void set_cause(const PortNews& news) noexcept {
+  void set_cause(const PortCondition& condition) noexcept {
     if (held_ != 0 && because_ == MissedBecause::wire_blocked) return;
     because_ = MissedBecause::not_seen;
     if (held_ == 0 && late_cycle_) because_ = MissedBecause::sent_late;
-    if (news.bus_off || news.error_passive) because_ = MissedBecause::wire_blocked;
+    if (condition.bus_off || condition.error_passive) because_ = MissedBecause::wire_blocked;
   }
   void announce(std::uint64_t periods, MissedBecause cause, Time now) noexcept {
     events_.push({.when = now,

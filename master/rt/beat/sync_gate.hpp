@@ -18,14 +18,14 @@ class SyncGate {
   explicit SyncGate(Time period) noexcept : tolerance_{period / 4} {}
 
   /// Returns true if the newest SYNC has not been seen on the wire.
-  bool doubtful(const PortNews& news) const noexcept {
-    return news.last_sync_echo > Time{0} && news.last_sync_echo + tolerance_ < last_sent_;
+  bool doubtful(const PortCondition& condition) const noexcept {
+    return condition.last_sync_echo > Time{0} && condition.last_sync_echo + tolerance_ < last_sent_;
   }
 
   /// Returns true if the loop may hand the frames of this cycle to the interface.
-  bool open(const PortNews& news, Time now) noexcept {
-    if (news.interface_down) last_sent_ = Time{0};
-    if (news.interface_down || (!news.bus_off && !doubtful(news))) {
+  bool open(const PortCondition& condition, Time now) noexcept {
+    if (condition.interface_down) last_sent_ = Time{0};
+    if (condition.interface_down || (!condition.bus_off && !doubtful(condition))) {
       holding_ = false;
       pause_ = waits::held_sync_first;
       return true;
@@ -35,7 +35,7 @@ class SyncGate {
       try_at_ = now + pause_;
       return false;
     }
-    if (news.bus_off || now < try_at_) return false;
+    if (condition.bus_off || now < try_at_) return false;
     pause_ = std::min(2 * pause_, waits::held_sync_longest);
     try_at_ = now + pause_;
     return true;

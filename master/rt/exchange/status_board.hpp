@@ -43,7 +43,7 @@ struct BusStatus {
   Time sync_period{};             ///< measured period of that SYNC
   StopStage stop = StopStage::running;
   StopResult stop_result = StopResult::none;
-  PortNews port;
+  PortCondition port;
 };
 static_assert(std::is_trivially_copyable_v<BusStatus>);
 

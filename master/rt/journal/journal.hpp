@@ -17,12 +17,12 @@ namespace takt {
 /// Kinds of journal records. A record is one word with tag and payload, and the further words that
 /// the tag demands. The numbers are part of the file format.
 enum class Mark : std::uint8_t {
-  cycle = 1,    ///< payload: cycle number
-  now = 2,      ///< payload: time
-  wait = 3,     ///< payload: 1 if a frame can be received
-  receive = 4,  ///< payload: number of frames, three words each
-  send = 5,     ///< payload: SendPayload; two words for each frame that was offered
-  news = 6,     ///< payload: NewsPart; the words of the parts that have changed
+  cycle = 1,      ///< payload: cycle number
+  now = 2,        ///< payload: time
+  wait = 3,       ///< payload: 1 if a frame can be received
+  receive = 4,    ///< payload: number of frames, three words each
+  send = 5,       ///< payload: SendPayload; two words for each frame that was offered
+  condition = 6,  ///< payload: ConditionPart; the words of the parts that have changed
   /// Payload: number of set points, or 0 if unchanged; time, then three words each.
   set_points = 7,
   request = 8,        ///< payload: number of words

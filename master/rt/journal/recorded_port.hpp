@@ -12,8 +12,8 @@ namespace takt {
 
 namespace journal {
 
-/// Tells which parts of the news follow, each in its own words.
-enum NewsPart : std::uint64_t { echo = 1, utc = 2, state = 4 };
+/// Tells which parts of the condition follow, each in its own words.
+enum ConditionPart : std::uint64_t { echo = 1, utc = 2, state = 4 };
 inline constexpr std::size_t state_words = 3;
 
 struct SendPayload {
@@ -30,23 +30,23 @@ struct SendPayload {
   }
 };
 
-/// Packs all of the news except its times.
-inline void put_state(const PortNews& news, std::uint64_t* to) noexcept {
-  to[0] = std::uint64_t{news.interface_down} | std::uint64_t{news.error_passive} << 1 |
-          std::uint64_t{news.bus_off} << 2 | std::uint64_t{news.tx_error_counter} << 8 |
-          std::uint64_t{news.rx_error_counter} << 16;
-  to[1] = std::uint64_t{news.receive_overruns} | std::uint64_t{news.error_frames} << 32;
-  to[2] = static_cast<std::uint64_t>(std::int64_t{news.last_error});
+/// Packs all of the condition except its times.
+inline void put_state(const PortCondition& condition, std::uint64_t* to) noexcept {
+  to[0] = std::uint64_t{condition.interface_down} | std::uint64_t{condition.error_passive} << 1 |
+          std::uint64_t{condition.bus_off} << 2 | std::uint64_t{condition.tx_error_counter} << 8 |
+          std::uint64_t{condition.rx_error_counter} << 16;
+  to[1] = std::uint64_t{condition.receive_overruns} | std::uint64_t{condition.error_frames} << 32;
+  to[2] = static_cast<std::uint64_t>(std::int64_t{condition.last_error});
 }
-inline void get_state(const std::uint64_t* from, PortNews& news) noexcept {
-  news.interface_down = (from[0] & 1) != 0;
-  news.error_passive = (from[0] & 2) != 0;
-  news.bus_off = (from[0] & 4) != 0;
-  news.tx_error_counter = static_cast<std::uint8_t>(from[0] >> 8);
-  news.rx_error_counter = static_cast<std::uint8_t>(from[0] >> 16);
-  news.receive_overruns = static_cast<std::uint32_t>(from[1]);
-  news.error_frames = static_cast<std::uint32_t>(from[1] >> 32);
-  news.last_error = static_cast<int>(static_cast<std::int64_t>(from[2]));
+inline void get_state(const std::uint64_t* from, PortCondition& condition) noexcept {
+  condition.interface_down = (from[0] & 1) != 0;
+  condition.error_passive = (from[0] & 2) != 0;
+  condition.bus_off = (from[0] & 4) != 0;
+  condition.tx_error_counter = static_cast<std::uint8_t>(from[0] >> 8);
+  condition.rx_error_counter = static_cast<std::uint8_t>(from[0] >> 16);
+  condition.receive_overruns = static_cast<std::uint32_t>(from[1]);
+  condition.error_frames = static_cast<std::uint32_t>(from[1] >> 32);
+  condition.last_error = static_cast<int>(static_cast<std::int64_t>(from[2]));
 }
 
 }  // namespace journal
@@ -88,46 +88,46 @@ class RecordedPort {
     }
     return result;
   }
-  PortNews news() const noexcept {
-    PortNews news = port_->news();
-    if (journal_ != nullptr) note(news);
-    return news;
+  PortCondition condition() const noexcept {
+    PortCondition condition = port_->condition();
+    if (journal_ != nullptr) note(condition);
+    return condition;
   }
 
  private:
   /// The time of day is accurate to a few microseconds at best. The port hides smaller changes from
   /// the loop, because each would need a record.
-  void note(PortNews& news) const noexcept {
+  void note(PortCondition& condition) const noexcept {
     constexpr Time jitter = std::chrono::microseconds{50};
     if (beginnings_ != journal_->beginnings()) {
       beginnings_ = journal_->beginnings();
       reported_ = {};
     }
     std::uint64_t parts = 0;
-    const Time drift = news.since_1970 - reported_.since_1970;
+    const Time drift = condition.since_1970 - reported_.since_1970;
     if (drift > jitter || drift < -jitter) {
       parts |= journal::utc;
     } else {
-      news.since_1970 = reported_.since_1970;
+      condition.since_1970 = reported_.since_1970;
     }
-    if (news.last_sync_echo != reported_.last_sync_echo) parts |= journal::echo;
-    if (!same_state(news)) parts |= journal::state;
+    if (condition.last_sync_echo != reported_.last_sync_echo) parts |= journal::echo;
+    if (!same_state(condition)) parts |= journal::state;
     const auto bits = static_cast<std::size_t>(std::popcount(parts & 3));
     const std::size_t words = bits + ((parts & journal::state) != 0 ? journal::state_words : 0);
-    std::uint64_t* room = journal_->claim(Mark::news, parts, words);
+    std::uint64_t* room = journal_->claim(Mark::condition, parts, words);
     if (room != nullptr) {
-      if ((parts & journal::echo) != 0) *room++ = count_of(news.last_sync_echo);
-      if ((parts & journal::utc) != 0) *room++ = count_of(news.since_1970);
-      if ((parts & journal::state) != 0) journal::put_state(news, room);
+      if ((parts & journal::echo) != 0) *room++ = count_of(condition.last_sync_echo);
+      if ((parts & journal::utc) != 0) *room++ = count_of(condition.since_1970);
+      if ((parts & journal::state) != 0) journal::put_state(condition, room);
     }
-    if (parts != 0) reported_ = news;
+    if (parts != 0) reported_ = condition;
   }
   /// Returns true if only times have changed since the last record.
-  bool same_state(const PortNews& news) const noexcept {
-    PortNews recorded = reported_;
-    recorded.since_1970 = news.since_1970;
-    recorded.last_sync_echo = news.last_sync_echo;
-    return news == recorded;
+  bool same_state(const PortCondition& condition) const noexcept {
+    PortCondition recorded = reported_;
+    recorded.since_1970 = condition.since_1970;
+    recorded.last_sync_echo = condition.last_sync_echo;
+    return condition == recorded;
   }
   static std::uint64_t count_of(Time time) noexcept {
     return static_cast<std::uint64_t>(time.count());
@@ -135,7 +135,7 @@ class RecordedPort {
 
   P* port_;
   Journal* journal_;
-  mutable PortNews reported_;  // as recorded last
+  mutable PortCondition reported_;  // as recorded last
   mutable unsigned beginnings_ = 0;
 };
 

@@ -23,7 +23,7 @@ void ReplayPort::begin_part() const noexcept {
   words_ = parts_[part_].words;
   frames_ = parts_[part_].frames;
   at_ = 0;
-  news_ = {};  // each recording tells all that differs from this state
+  condition_ = {};  // each recording tells all that differs from this state
 }
 
 void ReplayPort::differ(ReplayDifference difference) const noexcept {
@@ -39,7 +39,7 @@ void ReplayPort::pass_checkpoint() const noexcept {
   const std::uint64_t count = journal::payload_of(words_[at_++]);
   std::span<const std::uint64_t> words;
   take(count, words);
-  news_ = {};
+  condition_ = {};
 }
 
 bool ReplayPort::comes(Mark mark) const noexcept {
@@ -153,21 +153,21 @@ SendResult ReplayPort::send(std::span<const Frame> out) noexcept {
   return {.sent = sent, .error = recorded.error};
 }
 
-PortNews ReplayPort::news() const noexcept {
-  const auto parts = next(Mark::news);
-  if (!parts) return news_;
-  if ((*parts & journal::echo) != 0) take_time(news_.last_sync_echo);
+PortCondition ReplayPort::condition() const noexcept {
+  const auto parts = next(Mark::condition);
+  if (!parts) return condition_;
+  if ((*parts & journal::echo) != 0) take_time(condition_.last_sync_echo);
   std::span<const std::uint64_t> words;
   if ((*parts & journal::utc) != 0 && take(1, words)) {
     // TIME checks the result; the clamp keeps sums within the range of Time.
     const auto utc = static_cast<std::int64_t>(words[0]);
     constexpr std::int64_t limit = std::int64_t{1} << 61;
-    news_.since_1970 = Time{std::clamp(utc, -limit, limit)};
+    condition_.since_1970 = Time{std::clamp(utc, -limit, limit)};
   }
   if ((*parts & journal::state) != 0 && take(journal::state_words, words)) {
-    journal::get_state(words.data(), news_);
+    journal::get_state(words.data(), condition_);
   }
-  return news_;
+  return condition_;
 }
 
 void ReplayPort::begin_cycle(std::uint64_t cycle) noexcept {

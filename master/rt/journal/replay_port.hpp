@@ -69,7 +69,7 @@ class ReplayPort {
   bool wait_frame(Time until) noexcept;
   std::size_t receive(std::span<StampedFrame> in) noexcept;
   SendResult send(std::span<const Frame> out) noexcept;
-  PortNews news() const noexcept;
+  PortCondition condition() const noexcept;
 
   // What came from the front thread, for ReplayedLink.
   void begin_cycle(std::uint64_t cycle) noexcept;
@@ -92,13 +92,14 @@ class ReplayPort {
   void begin_part() const noexcept;
 
   std::span<const Recording> parts_;
-  // Reading the news does not change a port, but advances the recording. It is therefore `mutable`.
+  // Reading the condition does not change a port, but advances the recording. It is therefore
+  // `mutable`.
   mutable std::size_t part_ = 0;
   mutable std::span<const std::uint64_t> words_;
   mutable std::span<const Frame> frames_;
   mutable std::size_t at_ = 0;
   mutable std::optional<ReplayDifference> difference_;
-  mutable PortNews news_;
+  mutable PortCondition condition_;
   Time now_{};
   std::uint64_t cycle_ = 0;
   SetPointFrame points_;

@@ -91,7 +91,7 @@ class AxisMemories {
     std::optional<std::int64_t> statusword;
     const bool exchanging = bus_.exchanging[axis.node_index];
     if (axis.statusword && exchanging &&
-        memory.news(bus_.pdos.inputs().marks()[axis.word_row].received)) {
+        memory.has_new_frames(bus_.pdos.inputs().marks()[axis.word_row].received)) {
       statusword = image.values[*axis.statusword];
     }
     std::optional<std::int64_t> controlword;

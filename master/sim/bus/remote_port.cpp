@@ -37,7 +37,7 @@ std::size_t RemotePort::receive(std::span<StampedFrame> frames) noexcept {
   return taken;
 }
 
-PortNews RemotePort::news() const noexcept {
+PortCondition RemotePort::condition() const noexcept {
   const BusNode& node = bus_.node(node_);
   const std::uint64_t frames = bus_.counters().frames;
   return {.interface_down = down_,

@@ -33,7 +33,7 @@ class RemotePort {
   SendResult send(std::span<const Frame> frames, Time now) noexcept;
   std::size_t receive(std::span<StampedFrame> frames) noexcept;
   bool has_frames() const noexcept { return count_ != 0; }
-  PortNews news() const noexcept;
+  PortCondition condition() const noexcept;
   BusNodeIndex node() const noexcept { return node_; }
   const RemotePortOptions& options() const noexcept { return options_; }
 

@@ -33,7 +33,7 @@ class SimPort {
   SendResult send(std::span<const Frame> frames) noexcept {
     return port_.send(frames, world_.now());
   }
-  PortNews news() const noexcept { return port_.news(); }
+  PortCondition condition() const noexcept { return port_.condition(); }
 
  private:
   World& world_;

@@ -9,7 +9,7 @@ namespace takt::sim {
 namespace {
 
 constexpr Time session_limit = std::chrono::seconds{1};
-constexpr Time block_patience = std::chrono::milliseconds{700};  // within a sub-block
+constexpr Time block_timeout = std::chrono::milliseconds{700};  // within a sub-block
 constexpr std::size_t buffer_limit = 1 << 20;
 constexpr std::uint8_t toggle_bit = 0x10;
 
@@ -198,7 +198,7 @@ void SdoServer::start_block_download(const Frame& frame, Time now, Transmitter& 
 
 void SdoServer::block_received(BlockReceiver::Then then, Time now, Transmitter& out) noexcept {
   using Then = BlockReceiver::Then;
-  deadline_ = now + (then == Then::wait ? block_patience : session_limit);
+  deadline_ = now + (then == Then::wait ? block_timeout : session_limit);
   if (then == Then::abort) return abort(receiver_.code(), now, out);
   if (then == Then::confirm) return reply(receiver_.confirmation(*faults_), now, out);
   if (then != Then::finish) return;

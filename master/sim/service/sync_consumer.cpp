@@ -12,7 +12,7 @@ constexpr std::uint16_t sync_length = 0x8240;
 
 /// SYNC is overdue after 1.5 periods, but not earlier than this time after the period: a master
 /// without real-time scheduling may send SYNC that late.
-constexpr Time least_patience = std::chrono::milliseconds{20};
+constexpr Time least_timeout = std::chrono::milliseconds{20};
 
 std::uint64_t value_of(const Object* object) noexcept {
   return object == nullptr ? 0 : object->value;
@@ -36,7 +36,7 @@ CobId SyncConsumer::id() const noexcept {
 std::uint8_t SyncConsumer::on_sync(const Frame& frame, Time now) noexcept {
   const std::uint64_t period = value_of(period_);
   const Time expected = std::chrono::microseconds{period};
-  deadline_ = period == 0 ? never : now + expected + std::max(expected / 2, least_patience);
+  deadline_ = period == 0 ? never : now + expected + std::max(expected / 2, least_timeout);
   const std::uint64_t window = value_of(window_);
   window_end_ = window == 0 ? never : now + std::chrono::microseconds{window};
   emcy_.clear(sync_missing);

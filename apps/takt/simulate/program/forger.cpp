@@ -53,7 +53,7 @@ void Forger::act_up(Time now) {
     case 0:
       return forge_image(now);
     case 1:
-      return send_rubbish();
+      return send_random_bytes();
     case 2:
       return replay(now);
     default:
@@ -126,7 +126,7 @@ void Forger::forge_image(Time now) {
   publish(channels_.image, encode(*image, buffer_));
 }
 
-void Forger::send_rubbish() {
+void Forger::send_random_bytes() {
   std::vector<std::byte> bytes;
   if (!heard_.empty() && random_.chance(0.5)) {
     bytes = heard_.back().command;

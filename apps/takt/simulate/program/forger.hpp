@@ -32,7 +32,7 @@ class Forger final : public Actor {
   /// Sends an image of a cycle in the far future.
   void forge_image(Time now);
   /// Sends random bytes of random length, or a truncated command, on a random channel.
-  void send_rubbish();
+  void send_random_bytes();
   std::uint64_t sent() const noexcept { return sent_; }
 
   Time next() const noexcept override { return lcm_.next_arrival(); }

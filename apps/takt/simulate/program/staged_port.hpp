@@ -43,7 +43,7 @@ class StagedPort {
     sent_(frames.first(result.sent), world_.now());
     return result;
   }
-  PortNews news() const noexcept { return port_.news(); }
+  PortCondition condition() const noexcept { return port_.condition(); }
 
  private:
   /// Returns the time of the next action. An actor that is overdue acts now, because time never

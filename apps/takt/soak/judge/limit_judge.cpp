@@ -76,7 +76,7 @@ void LimitJudge::begin_anew() {
   for (Place& place : places_) {
     place.value.reset();
     place.last_way.reset();
-    place.news = News::none;
+    place.change = Change::none;
     place.enables = false;
     place.doubt = state_doubt;
   }
@@ -263,17 +263,17 @@ void LimitJudge::sent(SignalIndex index, std::uint64_t bits, bool begins) {
         place.enables = false;
         place.doubt = state_doubt;
       }
-      place.news = std::max(place.news, begins ? News::begins : News::value);
-    } else if (place.limit->offset == index && place.news == News::none && place.value) {
-      place.news = News::value;
+      place.change = std::max(place.change, begins ? Change::begins : Change::value);
+    } else if (place.limit->offset == index && place.change == Change::none && place.value) {
+      place.change = Change::value;
     }
   }
 }
 
 void LimitJudge::judge(Time now) {
   for (Place& place : places_) {
-    const News news = std::exchange(place.news, News::none);
-    if (news != News::none) judge_place(place, news, now);
+    const Change change = std::exchange(place.change, Change::none);
+    if (change != Change::none) judge_place(place, change, now);
   }
 }
 
@@ -306,7 +306,7 @@ bool LimitJudge::is_own(const Place& place) const noexcept {
          (offset_now == place.offset || own(*offset));
 }
 
-void LimitJudge::judge_place(Place& place, News news, Time now) {
+void LimitJudge::judge_place(Place& place, Change change, Time now) {
   const auto limited = limited_value(place);
   if (!limited) {
     place.value.reset();
@@ -314,7 +314,7 @@ void LimitJudge::judge_place(Place& place, News news, Time now) {
     return;
   }
   const double value = *limited;
-  if (news == News::value && value == place.value) return;
+  if (change == Change::value && value == place.value) return;
   ++judged_;
   const bool own = is_own(place);
   if (own) place.doubt = state_doubt;

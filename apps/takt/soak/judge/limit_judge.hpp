@@ -54,7 +54,7 @@ class LimitJudge {
     unsigned cycles = 1;
   };
   /// What was sent of an output, or of its offset, since the newest judge().
-  enum class News : std::uint8_t { none, value, begins };
+  enum class Change : std::uint8_t { none, value, begins };
   struct Place {
     const OutputLimit* limit = nullptr;
     std::optional<SignalIndex> controlword{};  ///< of the same axis, if it is an output
@@ -68,7 +68,7 @@ class LimitJudge {
     bool enabled = true;            ///< the last statusword received is enabled
     unsigned doubt = 0;             ///< cycles in which the master may not know the state
     unsigned mode_doubt = 0;        ///< as `doubt`, for the mode
-    News news = News::none;
+    Change change = Change::none;
     std::deque<Seen> actual{};  ///< actual positions since cycles_[0], newest last
   };
 
@@ -79,7 +79,7 @@ class LimitJudge {
   bool in_force(const Place& place) const noexcept;
   std::optional<double> limited_value(const Place& place) const noexcept;
   bool is_own(const Place& place) const noexcept;
-  void judge_place(Place& place, News news, Time now);
+  void judge_place(Place& place, Change change, Time now);
   bool in_profile(const Place& place) const noexcept;
   double length(const Place& place, double from, double to) const noexcept;
   Way way_to(const Place& place, double value, Time now) const noexcept;

@@ -45,7 +45,7 @@ void NodeJudge::judge(const StatusSnapshot& status, Time now) {
     if (node.boot != progress.boot || node.boot_step != progress.step) {
       progress = {.boot = node.boot, .step = node.boot_step, .since = now};
     }
-    if (node.boot == BootState::booting && now - progress.since > patience) {
+    if (node.boot == BootState::booting && now - progress.since > time_limit) {
       verdict_.report_violation("every wait ends", description(i, node) + " for 60 s");
     }
   }

@@ -22,7 +22,7 @@ class NodeJudge {
   std::uint64_t boots(const StatusSnapshot& status) const noexcept;
 
  private:
-  static constexpr Time patience = std::chrono::seconds{60};  ///< limit for one step of a boot
+  static constexpr Time time_limit = std::chrono::seconds{60};  ///< limit for one step of a boot
 
   struct Progress {
     BootState boot = BootState::idle;

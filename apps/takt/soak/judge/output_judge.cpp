@@ -59,7 +59,7 @@ void OutputJudge::note_nmt(const Frame& frame, Time now) {
 /// Checks the SYNC counter. It may restart up to ten cycles before its NMT command leaves, if the
 /// bus is full.
 void OutputJudge::judge_counter(std::uint8_t counter, Time now) {
-  const Time patience = 10 * plan_.cycle.period;
+  const Time time_limit = 10 * plan_.cycle.period;
   const unsigned wanted = last_counter_ % plan_.cycle.sync_overflow + 1U;
   if (counter != wanted && counter != 1) {
     verdict_.report_violation("the SYNC counter has no gap",
@@ -73,9 +73,9 @@ void OutputJudge::judge_counter(std::uint8_t counter, Time now) {
     }
   }
   if (restarted_ == never) return;
-  if (restarts_ >= restarted_ - patience) {
+  if (restarts_ >= restarted_ - time_limit) {
     restarted_ = never;
-  } else if (now - restarted_ > patience) {
+  } else if (now - restarted_ > time_limit) {
     restarted_ = never;
     verdict_.report_violation("the SYNC counter has no gap",
                               "the counter restarted at 1 without a reason");

@@ -18,10 +18,10 @@ class RestlessPort {
   bool wait_frame(Time until) noexcept { return port_.wait_frame(until); }
   std::size_t receive(std::span<StampedFrame> in) noexcept { return port_.receive(in); }
   SendResult send(std::span<const Frame> out) noexcept { return port_.send(out); }
-  PortNews news() const noexcept {
-    PortNews news = port_.news();
-    news.error_passive = port_.now() / std::chrono::milliseconds{4} % 2 != 0;
-    return news;
+  PortCondition condition() const noexcept {
+    PortCondition condition = port_.condition();
+    condition.error_passive = port_.now() / std::chrono::milliseconds{4} % 2 != 0;
+    return condition;
   }
 
  private:

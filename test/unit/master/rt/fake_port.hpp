@@ -62,7 +62,7 @@ class FakePort {
     }
     return {taken, taken == out.size() ? 0 : error};
   }
-  PortNews news() const noexcept { return news_now; }
+  PortCondition condition() const noexcept { return news_now; }
 
   std::vector<Sent> sent_with(std::uint32_t id) const {
     std::vector<Sent> found;
@@ -76,7 +76,7 @@ class FakePort {
   std::vector<Sent> sent;
   std::vector<std::string> calls;
   std::function<void(const Frame&)> on_sent;
-  PortNews news_now;
+  PortCondition news_now;
   Time stall{};          ///< delay of the next precise sleep
   Time second_stall{};   ///< delay of the precise sleep after that
   Time receive_stall{};  ///< duration of the next receive()

@@ -155,17 +155,17 @@ TEST(SyncGate, IsHeldByBusOffAlone) {
 TEST(SyncGate, ForgetsTheSyncThatAnInterfaceTookDownWithIt) {
   SyncGate gate{2ms};
   gate.sent(1s);
-  PortNews news{.bus_off = true, .last_sync_echo = 1ms};
-  EXPECT_FALSE(gate.open(news, 1002ms));
+  PortCondition condition{.bus_off = true, .last_sync_echo = 1ms};
+  EXPECT_FALSE(gate.open(condition, 1002ms));
 
-  news.interface_down = true;
-  for (Time now = 1004ms; now < 61s; now += 2ms) EXPECT_TRUE(gate.open(news, now));
+  condition.interface_down = true;
+  for (Time now = 1004ms; now < 61s; now += 2ms) EXPECT_TRUE(gate.open(condition, now));
 
-  news.interface_down = news.bus_off = false;
-  EXPECT_TRUE(gate.open(news, 61s));
+  condition.interface_down = condition.bus_off = false;
+  EXPECT_TRUE(gate.open(condition, 61s));
   gate.sent(61s);
-  EXPECT_FALSE(gate.open(news, 61s + 2ms));  // a new doubt begins with the shortest pause
-  EXPECT_TRUE(gate.open(news, 61s + 102ms));
+  EXPECT_FALSE(gate.open(condition, 61s + 2ms));  // a new doubt begins with the shortest pause
+  EXPECT_TRUE(gate.open(condition, 61s + 102ms));
 }
 
 TEST(SyncGate, KnowsNoDoubtWithoutEchoes) {
@@ -193,17 +193,17 @@ std::vector<EventKind> drain(EventQueue& events) {
 TEST(PortWatch, ReportsEachChangeOnce) {
   auto events = std::make_unique<EventQueue>();
   PortWatch watch{*events};
-  watch.on_news({}, 0ms);
+  watch.on_condition({}, 0ms);
   EXPECT_TRUE(drain(*events).empty());
-  watch.on_news({.error_passive = true}, 1ms);
-  watch.on_news({.error_passive = true}, 2ms);
+  watch.on_condition({.error_passive = true}, 1ms);
+  watch.on_condition({.error_passive = true}, 2ms);
   EXPECT_EQ(drain(*events), std::vector{EventKind::bus_error_passive});
-  watch.on_news({.error_passive = true, .bus_off = true}, 3ms);
-  watch.on_news({}, 4ms);
+  watch.on_condition({.error_passive = true, .bus_off = true}, 3ms);
+  watch.on_condition({}, 4ms);
   EXPECT_EQ(drain(*events), (std::vector{EventKind::bus_off, EventKind::bus_recovered,
                                          EventKind::bus_error_active}));
-  watch.on_news({.interface_down = true, .last_error = ENETDOWN}, 5ms);
-  watch.on_news({.receive_overruns = 7}, 6ms);
+  watch.on_condition({.interface_down = true, .last_error = ENETDOWN}, 5ms);
+  watch.on_condition({.receive_overruns = 7}, 6ms);
   EXPECT_EQ(drain(*events), (std::vector{EventKind::interface_down, EventKind::interface_up,
                                          EventKind::receive_overrun}));
 }
@@ -211,8 +211,8 @@ TEST(PortWatch, ReportsEachChangeOnce) {
 TEST(PortWatch, GivesTheErrorOfAnInterfaceOnlyWhileItIsDown) {
   auto events = std::make_unique<EventQueue>();
   PortWatch watch{*events};
-  watch.on_news({.interface_down = true, .last_error = ENETDOWN}, 1ms);
-  watch.on_news({.last_error = ENETDOWN}, 2ms);
+  watch.on_condition({.interface_down = true, .last_error = ENETDOWN}, 1ms);
+  watch.on_condition({.last_error = ENETDOWN}, 2ms);
   Event event;
   ASSERT_TRUE(events->pop(event));
   EXPECT_EQ(event.kind, EventKind::interface_down);
@@ -229,7 +229,7 @@ TEST(PortWatch, NamesTheCauseOfAFullBuffer) {
   EXPECT_TRUE(events->empty());
   watch.on_send(3, ENOBUFS, 0ms);
   watch.on_send(3, ENOBUFS, 500ms);
-  watch.on_news({.bus_off = true}, 600ms);
+  watch.on_condition({.bus_off = true}, 600ms);
   watch.on_send(3, ENOBUFS, 1s);
   std::vector<std::uint32_t> causes;
   for (Event event; events->pop(event);) {

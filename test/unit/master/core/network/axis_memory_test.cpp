@@ -131,9 +131,9 @@ TEST(AxisMemory, TakesStatuswordsBySdo) {
 
 TEST(AxisMemory, HearsEachFrameOnce) {
   AxisMemory axis;
-  EXPECT_TRUE(axis.news(1));
-  EXPECT_FALSE(axis.news(1));
-  EXPECT_TRUE(axis.news(2));
+  EXPECT_TRUE(axis.has_new_frames(1));
+  EXPECT_FALSE(axis.has_new_frames(1));
+  EXPECT_TRUE(axis.has_new_frames(2));
 }
 
 }  // namespace

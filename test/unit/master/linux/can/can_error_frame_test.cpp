@@ -16,54 +16,54 @@ can_frame error_frame(canid_t classes, std::initializer_list<std::uint8_t> bytes
 
 // Bytes as the drivers write them; linux/can/error.h.
 TEST(CanErrorFrame, TransmitPassiveSetsPassiveAndTheCounters) {
-  PortNews news;
+  PortCondition condition;
 
-  apply_error_frame(error_frame(0x004, {0, 0x20, 0, 0, 0, 0, 128, 3}), news);
+  apply_error_frame(error_frame(0x004, {0, 0x20, 0, 0, 0, 0, 128, 3}), condition);
 
-  EXPECT_TRUE(news.error_passive);
-  EXPECT_EQ(news.tx_error_counter, 128);
-  EXPECT_EQ(news.rx_error_counter, 3);
-  EXPECT_EQ(news.error_frames, 1U);
+  EXPECT_TRUE(condition.error_passive);
+  EXPECT_EQ(condition.tx_error_counter, 128);
+  EXPECT_EQ(condition.rx_error_counter, 3);
+  EXPECT_EQ(condition.error_frames, 1U);
 }
 
 TEST(CanErrorFrame, AWarningAfterPassiveMeansNoLongerPassive) {
-  PortNews news;
-  apply_error_frame(error_frame(0x004, {0, 0x10, 0, 0, 0, 0, 0, 130}), news);
+  PortCondition condition;
+  apply_error_frame(error_frame(0x004, {0, 0x10, 0, 0, 0, 0, 0, 130}), condition);
 
-  apply_error_frame(error_frame(0x004, {0, 0x04, 0, 0, 0, 0, 0, 100}), news);
+  apply_error_frame(error_frame(0x004, {0, 0x04, 0, 0, 0, 0, 0, 100}), condition);
 
-  EXPECT_FALSE(news.error_passive);
-  EXPECT_EQ(news.rx_error_counter, 100);
+  EXPECT_FALSE(condition.error_passive);
+  EXPECT_EQ(condition.rx_error_counter, 100);
 }
 
 TEST(CanErrorFrame, BusOffLastsUntilTheRestart) {
-  PortNews news;
-  apply_error_frame(error_frame(0x040, {}), news);
-  EXPECT_TRUE(news.bus_off);
+  PortCondition condition;
+  apply_error_frame(error_frame(0x040, {}), condition);
+  EXPECT_TRUE(condition.bus_off);
 
-  apply_error_frame(error_frame(0x100, {}), news);
+  apply_error_frame(error_frame(0x100, {}), condition);
 
-  EXPECT_FALSE(news.bus_off);
-  EXPECT_FALSE(news.error_passive);
+  EXPECT_FALSE(condition.bus_off);
+  EXPECT_FALSE(condition.error_passive);
 }
 
 TEST(CanErrorFrame, AControllerOverflowCountsAsLostFramesAndChangesNoState) {
-  PortNews news;
-  news.error_passive = true;
+  PortCondition condition;
+  condition.error_passive = true;
 
-  apply_error_frame(error_frame(0x004, {0, 0x01, 0, 0, 0, 0, 0, 0}), news);
+  apply_error_frame(error_frame(0x004, {0, 0x01, 0, 0, 0, 0, 0, 0}), condition);
 
-  EXPECT_EQ(news.receive_overruns, 1U);
-  EXPECT_TRUE(news.error_passive);
+  EXPECT_EQ(condition.receive_overruns, 1U);
+  EXPECT_TRUE(condition.error_passive);
 }
 
 TEST(CanErrorFrame, AFrameThatCouldNotBeSentIsNoLostReceivedFrame) {
-  PortNews news;
+  PortCondition condition;
 
-  apply_error_frame(error_frame(0x004, {0, 0x02, 0, 0, 0, 0, 0, 0}), news);
+  apply_error_frame(error_frame(0x004, {0, 0x02, 0, 0, 0, 0, 0, 0}), condition);
 
-  EXPECT_EQ(news.receive_overruns, 0U);
-  EXPECT_EQ(news.error_frames, 1U);
+  EXPECT_EQ(condition.receive_overruns, 0U);
+  EXPECT_EQ(condition.error_frames, 1U);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ TEST(SocketPairBus, EchoesTheSyncThatTheDevicesHaveSeen) {
   ASSERT_EQ(master.receive(in), 1U);
   EXPECT_EQ(seen.frame, sync_frame);
   EXPECT_EQ(in[0].frame, tpdo);
-  EXPECT_GE(master.news().last_sync_echo, before);
+  EXPECT_GE(master.condition().last_sync_echo, before);
 }
 
 TEST(SocketPairBus, ABatchIsFullEvenWhereSomeOfItWasForThePortAlone) {
@@ -42,7 +42,7 @@ TEST(SocketPairBus, GoesDownForGoodWhenTheDevicesEnd) {
   std::array<StampedFrame, 4> in;
   EXPECT_EQ(master.receive(in), 0U);
 
-  EXPECT_TRUE(master.news().interface_down);
+  EXPECT_TRUE(master.condition().interface_down);
   EXPECT_EQ(master.send({&tpdo, 1}).error, ENETDOWN);
 }
 

@@ -7,11 +7,11 @@
 
 #include "master/linux/unix_bus/unix_bus.hpp"
 #include "test/support/folder.hpp"
-#include "test/support/patience.hpp"
+#include "test/support/time_limit.hpp"
 
 namespace takt::test {
 
-inline constexpr Time limit = patience;  // for another thread; never reached
+inline constexpr Time limit = time_limit;  // for another thread; never reached
 
 inline const Frame sync_frame = make_frame(CobId::base(0x080), {0x01});
 inline const Frame tpdo = make_frame(CobId::base(0x185), {1, 2, 3, 4, 5, 6, 7, 8});

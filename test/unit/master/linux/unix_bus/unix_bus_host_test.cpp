@@ -76,10 +76,10 @@ TEST_F(UnixBus, AnotherProcessTakesOverWhenTheHostIsKilled) {
   kill(host, SIGKILL);
   waitpid(host, nullptr, 0);
 
-  EXPECT_TRUE(soon(a, [&] { return a.news().interface_down; }));
+  EXPECT_TRUE(soon(a, [&] { return a.condition().interface_down; }));
   EXPECT_EQ(a.send({&tpdo, 1}).error, ENETDOWN);
-  EXPECT_TRUE(soon(a, [&] { return !a.news().interface_down; }));
-  EXPECT_TRUE(soon(b, [&] { return !b.news().interface_down; }));
+  EXPECT_TRUE(soon(a, [&] { return !a.condition().interface_down; }));
+  EXPECT_TRUE(soon(b, [&] { return !b.condition().interface_down; }));
   make_acquainted(a, b);
   close(ready[0]);
   close(ready[1]);
@@ -97,7 +97,7 @@ TEST_F(UnixBus, WhatTheHostHasTakenArrivesAlthoughItEnds) {
     host.reset();
 
     EXPECT_EQ(receive_all(receiver, taken).size(), taken);
-    EXPECT_EQ(receiver.news().receive_overruns, 0u);
+    EXPECT_EQ(receiver.condition().receive_overruns, 0u);
   }
 }
 
@@ -114,7 +114,7 @@ TEST_F(UnixBus, AGuestHostsOnlyWhereNobodyElseDoes) {
 
   auto alone = guest();
   ASSERT_TRUE(alone);
-  EXPECT_TRUE(soon(*alone, [&] { return !alone->news().interface_down; }));
+  EXPECT_TRUE(soon(*alone, [&] { return !alone->condition().interface_down; }));
   EXPECT_TRUE(connect_unix(*unix_address(path_)));
 }
 

@@ -35,8 +35,8 @@ TEST_F(UnixBus, ReportsWhenTheOwnSyncWasOnTheWire) {
 
   a.send({&sync_frame, 1});
 
-  EXPECT_TRUE(soon(a, [&] { return a.news().last_sync_echo >= before; }));
-  EXPECT_LE(a.news().last_sync_echo, a.now());
+  EXPECT_TRUE(soon(a, [&] { return a.condition().last_sync_echo >= before; }));
+  EXPECT_LE(a.condition().last_sync_echo, a.now());
 }
 
 TEST_F(UnixBus, TheSyncOfAnotherIsAFrameAndNoEcho) {
@@ -49,7 +49,7 @@ TEST_F(UnixBus, TheSyncOfAnotherIsAFrameAndNoEcho) {
   const auto got = receive_all(a, 1);
   ASSERT_EQ(got.size(), 1U);
   EXPECT_EQ(got[0].frame, sync_frame);
-  EXPECT_EQ(a.news().last_sync_echo, Time{0});
+  EXPECT_EQ(a.condition().last_sync_echo, Time{0});
 }
 
 TEST_F(UnixBus, KeepsTheOrderOfALargeBatch) {
@@ -95,9 +95,9 @@ TEST_F(UnixBus, ASlowReaderLosesFramesIsReportedHowManyAndBlocksNobody) {
 
   EXPECT_TRUE(soon(slow, [&] {
     a.send({&tpdo, 1});
-    return slow.news().receive_overruns > 0;
+    return slow.condition().receive_overruns > 0;
   }));
-  EXPECT_EQ(b.news().receive_overruns, 0U);
+  EXPECT_EQ(b.condition().receive_overruns, 0U);
 }
 
 TEST_F(UnixBus, AFullSocketIsReportedAsNoBuffers) {
@@ -107,8 +107,8 @@ TEST_F(UnixBus, AFullSocketIsReportedAsNoBuffers) {
   for (int i = 0; i < 100'000 && result.error == 0; ++i) result = a.send({&tpdo, 1});
 
   EXPECT_EQ(result.error, ENOBUFS);
-  EXPECT_FALSE(a.news().interface_down);
-  EXPECT_EQ(a.news().last_error, ENOBUFS);
+  EXPECT_FALSE(a.condition().interface_down);
+  EXPECT_EQ(a.condition().last_error, ENOBUFS);
 }
 
 /// A tool that sends one command and ends does not read the frames that others send in this time.

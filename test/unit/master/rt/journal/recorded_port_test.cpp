@@ -15,7 +15,7 @@ TEST(RecordedPort, HidesChangesOfTheTimeOfDayThatAreJitter) {
   const RecordedPort<test::FakePort> recorded{port, &journal};
   const auto shown = [&](Time since_1970) {
     port.news_now.since_1970 = since_1970;
-    return recorded.news().since_1970;
+    return recorded.condition().since_1970;
   };
 
   EXPECT_EQ(shown(1h), 1h);

@@ -211,12 +211,12 @@ TEST_F(WorldFaults, AFullTransmitQueueIsEnobufs) {
 TEST_F(WorldFaults, MasterBusOffIsNewsAndEnds) {
   build({{.kind = FaultKind::bus_off, .at = 100ms}});
   port_->sleep_until(110ms);
-  EXPECT_TRUE(port_->news().bus_off);
+  EXPECT_TRUE(port_->condition().bus_off);
   const Frame frame = make_frame(CobId::base(0x080), {});
   EXPECT_EQ(port_->send({&frame, 1}).error, ENETDOWN);
 
   port_->sleep_until(250ms);
-  EXPECT_FALSE(port_->news().bus_off);
+  EXPECT_FALSE(port_->condition().bus_off);
   EXPECT_EQ(port_->send({&frame, 1}).sent, 1u);
 }
 
@@ -245,10 +245,10 @@ TEST_F(WorldFaults, StallLetsTheMasterWakeLate) {
 TEST_F(WorldFaults, InterfaceDownReceivesNothing) {
   build({{.kind = FaultKind::interface_down, .at = 10ms, .until = 100ms}});
   port_->sleep_until(90ms);
-  EXPECT_TRUE(port_->news().interface_down);
+  EXPECT_TRUE(port_->condition().interface_down);
   EXPECT_EQ(received(0x705), 0u);
   port_->sleep_until(110ms);
-  EXPECT_FALSE(port_->news().interface_down);
+  EXPECT_FALSE(port_->condition().interface_down);
 }
 
 TEST_F(WorldFaults, TheEchoOfOwnSyncIsItsEndOnTheWire) {
@@ -257,7 +257,7 @@ TEST_F(WorldFaults, TheEchoOfOwnSyncIsItsEndOnTheWire) {
   send(make_frame(CobId::base(0x080), {}));
   port_->sleep_until(101ms);
 
-  EXPECT_EQ(port_->news().last_sync_echo, 100ms + 48us);
+  EXPECT_EQ(port_->condition().last_sync_echo, 100ms + 48us);
   EXPECT_EQ(received(0x080), 0u) << "own frames do not come back";
 }
 
@@ -268,7 +268,7 @@ TEST_F(WorldFaults, AWorldWithoutDevicesAcknowledges) {
   port.send({&frame, 1});
   port.sleep_until(1ms);
 
-  EXPECT_EQ(port.news().last_sync_echo, 48us);
+  EXPECT_EQ(port.condition().last_sync_echo, 48us);
   EXPECT_EQ(world.bus().counters().frames, 1u);
 }
 

@@ -1,4 +1,4 @@
-#include "apps/takt/soak/troubles.hpp"
+#include "apps/takt/soak/random_program_faults.hpp"
 
 #include <algorithm>
 
@@ -13,11 +13,12 @@ constexpr Time mean_pause = 400ms;
 
 }  // namespace
 
-Troubles::Troubles(Cast cast, sim::Random random, Time from, Time until, bool verbose)
+RandomProgramFaults::RandomProgramFaults(Cast cast, sim::Random random, Time from, Time until,
+                                         bool verbose)
     : cast_{cast}, random_{random}, next_{from}, until_{until}, verbose_{verbose} {}
 
 /// Returns the duration of a fault: mostly short, sometimes longer than every time to live.
-Time Troubles::span() {
+Time RandomProgramFaults::span() {
   switch (random_.below(8)) {
     case 0:
       return 1s + random_.up_to(8s);
@@ -29,13 +30,13 @@ Time Troubles::span() {
   }
 }
 
-VirtualApplication& Troubles::application() {
+VirtualApplication& RandomProgramFaults::application() {
   return *cast_.applications[random_.below(static_cast<std::uint32_t>(cast_.applications.size()))];
 }
 
-Time Troubles::next() const noexcept { return std::min(next_, agenda_.next()); }
+Time RandomProgramFaults::next() const noexcept { return std::min(next_, agenda_.next()); }
 
-void Troubles::act(Time now) {
+void RandomProgramFaults::act(Time now) {
   agenda_.act(now);
   if (next_ > now) return;
   begin(now);
@@ -43,7 +44,7 @@ void Troubles::act(Time now) {
   if (next_ >= until_) next_ = never;
 }
 
-void Troubles::begin(Time now) {
+void RandomProgramFaults::begin(Time now) {
   ++count_;
   switch (random_.below(13)) {
     case 0:
@@ -77,7 +78,7 @@ void Troubles::begin(Time now) {
   }
 }
 
-void Troubles::stall_front(Time now) {
+void RandomProgramFaults::stall_front(Time now) {
   const Time stall = span();
   announce(now, "the front thread is stalled", stall);
   cast_.daemon.stall(now + stall);
@@ -85,7 +86,7 @@ void Troubles::stall_front(Time now) {
 
 /// Stalls both threads of taktd, as SIGSTOP does. Chance decides which of them continues first, and
 /// an application may die meanwhile.
-void Troubles::stall_process(Time now) {
+void RandomProgramFaults::stall_process(Time now) {
   const Time stall = span();
   announce(now, "taktd is stopped", stall);
   cast_.world.add({.kind = sim::FaultKind::stall_master, .at = now, .until = now + stall});
@@ -94,25 +95,25 @@ void Troubles::stall_process(Time now) {
     agenda_.add(now + stall / 2, [this, at = now + stall / 2] { kill_application(at); });
 }
 
-void Troubles::daemon_died(Time now) {
+void RandomProgramFaults::daemon_died(Time now) {
   daemon_dies_ = false;
   agenda_.add(now + 20ms + span(), [this] { cast_.daemon.start(); });
 }
 
-void Troubles::stall_application(Time now) {
+void RandomProgramFaults::stall_application(Time now) {
   const Time stall = span();
   announce(now, "an application is stalled", stall);
   application().stall(now + stall);
 }
 
 /// Lets an application jump, by little more than its limits permit or by far more.
-void Troubles::let_jump(Time now) {
+void RandomProgramFaults::let_jump(Time now) {
   const std::int64_t counts = std::int64_t{16} << random_.below(16);
   announce(now, "an application jumps", {});
   application().jump(random_.chance(0.5) ? counts : -counts);
 }
 
-void Troubles::kill_application(Time now) {
+void RandomProgramFaults::kill_application(Time now) {
   VirtualApplication& one = application();
   if (!one.runs()) return;
   const Time away = 20ms + span();
@@ -126,7 +127,7 @@ void Troubles::kill_application(Time now) {
   agenda_.add(now + away, [&one] { one.start(); });
 }
 
-void Troubles::bring_rival(Time now) {
+void RandomProgramFaults::bring_rival(Time now) {
   if (cast_.rival.runs()) return;
   const Time stay = span();
   announce(now, "a second program of the same name starts", stay);
@@ -134,14 +135,14 @@ void Troubles::bring_rival(Time now) {
   agenda_.add(now + stay, [this] { cast_.rival.kill(); });
 }
 
-void Troubles::slow_down_lcm(Time now) {
+void RandomProgramFaults::slow_down_lcm(Time now) {
   const Time lasts = span();
   announce(now, "messages are slow", lasts);
   cast_.lcm.set_delay(1ms + random_.up_to(300ms));
   agenda_.add(now + lasts, [this] { cast_.lcm.set_delay(VirtualLcm::usual_delay); });
 }
 
-void Troubles::announce(Time now, const char* what, Time span) const {
+void RandomProgramFaults::announce(Time now, const char* what, Time span) const {
   if (!verbose_) return;
   const double ms = 1e-6 * static_cast<double>(span.count());
   print_at(now, span == Time{} ? what : fmt::format("{} for {:.3f} ms", what, ms));

@@ -17,7 +17,7 @@ namespace takt {
 using VirtualApplications = std::vector<std::unique_ptr<VirtualApplication>>;
 
 /// Applies the program faults of a fault file to the programs of a run.
-class ProgramTroubles final : public Actor {
+class ProgramFaultActor final : public Actor {
  public:
   /// The objects that the faults act on. Each application has a rival with the same name.
   struct Cast {
@@ -29,7 +29,7 @@ class ProgramTroubles final : public Actor {
   };
 
   /// Of the bus faults in `bus`, only `stall_master` is used: it stalls the front thread too.
-  ProgramTroubles(Cast cast, const ProgramFaults& faults, const sim::Faults& bus);
+  ProgramFaultActor(Cast cast, const ProgramFaults& faults, const sim::Faults& bus);
 
   Time next() const noexcept override { return agenda_.next(); }
   void act(Time now) override { agenda_.act(now); }

@@ -1,10 +1,10 @@
-#include "apps/takt/simulate/program/program_troubles.hpp"
+#include "apps/takt/simulate/program/program_fault_actor.hpp"
 
 #include <algorithm>
 
 namespace takt {
 
-ProgramTroubles::ProgramTroubles(Cast cast, const ProgramFaults& faults, const sim::Faults& bus)
+ProgramFaultActor::ProgramFaultActor(Cast cast, const ProgramFaults& faults, const sim::Faults& bus)
     : cast_{cast} {
   for (const ProgramFault& fault : faults) {
     agenda_.add(fault.at, [this, fault] { begin(fault); });
@@ -16,14 +16,14 @@ ProgramTroubles::ProgramTroubles(Cast cast, const ProgramFaults& faults, const s
   }
 }
 
-void ProgramTroubles::each(const ProgramFault& fault, VirtualApplications& programs,
-                           const std::function<void(VirtualApplication& one)>& act) const {
+void ProgramFaultActor::each(const ProgramFault& fault, VirtualApplications& programs,
+                             const std::function<void(VirtualApplication& one)>& act) const {
   for (std::size_t i = 0; i < programs.size(); ++i) {
     if (fault.application.value_or(i) == i) act(*programs[i]);
   }
 }
 
-void ProgramTroubles::begin(const ProgramFault& fault) {
+void ProgramFaultActor::begin(const ProgramFault& fault) {
   using enum ProgramFaultKind;
   switch (fault.kind) {
     case stall_front:
@@ -56,17 +56,17 @@ void ProgramTroubles::begin(const ProgramFault& fault) {
   }
 }
 
-void ProgramTroubles::repeat(const ProgramFault& fault, Time now) {
+void ProgramFaultActor::repeat(const ProgramFault& fault, Time now) {
   if (now >= fault.until) return;
   if (fault.kind == ProgramFaultKind::replay) cast_.forger.replay(now);
   if (fault.kind == ProgramFaultKind::forge_command) cast_.forger.forge_command(now);
   if (fault.kind == ProgramFaultKind::forge_image) cast_.forger.forge_image(now);
-  if (fault.kind == ProgramFaultKind::damage_messages) cast_.forger.send_rubbish();
+  if (fault.kind == ProgramFaultKind::damage_messages) cast_.forger.send_random_bytes();
   const Time then = now + fault.time;
   agenda_.add(then, [this, fault, then] { repeat(fault, then); });
 }
 
-void ProgramTroubles::end(const ProgramFault& fault) {
+void ProgramFaultActor::end(const ProgramFault& fault) {
   using enum ProgramFaultKind;
   switch (fault.kind) {
     case kill_application:
@@ -91,7 +91,7 @@ void ProgramTroubles::end(const ProgramFault& fault) {
   }
 }
 
-void ProgramTroubles::daemon_died(Time now) {
+void ProgramFaultActor::daemon_died(Time now) {
   daemon_dies_ = false;
   if (restart_ != never) agenda_.add(std::max(now, restart_), [this] { cast_.daemon.start(); });
 }

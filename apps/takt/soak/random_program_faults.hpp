@@ -14,7 +14,7 @@
 
 namespace takt::soak {
 
-/// The objects that the troubles act on.
+/// The objects that the faults of programs act on.
 struct Cast {
   sim::World& world;
   VirtualLcm& lcm;
@@ -28,9 +28,9 @@ struct Cast {
 /// Applies random faults to the programs: they are stopped for a time, die and start again, and
 /// have rivals; their messages are slow, repeated and forged. Each fault comes at a random time and
 /// lasts for a random time.
-class Troubles final : public Actor {
+class RandomProgramFaults final : public Actor {
  public:
-  Troubles(Cast cast, sim::Random random, Time from, Time until, bool verbose);
+  RandomProgramFaults(Cast cast, sim::Random random, Time from, Time until, bool verbose);
 
   Time next() const noexcept override;
   void act(Time now) override;
