@@ -1,0 +1,85 @@
+#include "master/gateway/motion/motion_goals.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <utility>
+
+#include "master/gateway/motion/motion_senders.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Time default_motion_timeout = 500ms;
+
+std::optional<motion::Synchronisation> synchronisation_of(const std::string& name) {
+  if (name.empty() || name == "time") return motion::Synchronisation::time;
+  if (name == "phase") return motion::Synchronisation::phase;
+  if (name == "none") return motion::Synchronisation::none;
+  return std::nullopt;
+}
+
+std::expected<motion::AxisGoal, MotionRefusal> axis_goal(const motion_goal_t& goal,
+                                                         std::size_t axis, motion::Goal kind,
+                                                         const AxisMotionLimits& limits) {
+  const auto refused = [&](std::string why) {
+    return std::unexpected{MotionRefusal{.why = std::move(why), .axis = axis}};
+  };
+  const auto within = limits.of(axis, goal);
+  if (!within) return refused(within.error());
+  const bool is_jog = kind == motion::Goal::velocity;
+  const double wanted = is_jog ? goal.velocity : goal.position;
+  if (!(std::abs(wanted) <= AxisMotionLimits::largest)) {
+    return refused(fmt::format("its target {} is infinite, NaN or too large", wanted));
+  }
+  if (!(goal.max_following_error >= 0.0)) return refused("max_following_error is negative or NaN");
+  return motion::AxisGoal{
+      .axis = static_cast<std::uint8_t>(axis),
+      .to = {.position = is_jog ? 0.0 : goal.position, .velocity = is_jog ? goal.velocity : 0.0},
+      .limits = *within,
+      .range = limits.range(axis),
+      .max_following_error = goal.max_following_error > 0.0
+                                 ? goal.max_following_error
+                                 : std::numeric_limits<double>::infinity()};
+}
+
+}  // namespace
+
+bool is_motion_timeout(std::int32_t milliseconds) noexcept {
+  return milliseconds >= 0 && milliseconds <= MotionSenders::longest_timeout / 1ms;
+}
+
+Time motion_timeout_of(const motion_command_t& command) noexcept {
+  const bool given = command.timeout_ms != 0 && is_motion_timeout(command.timeout_ms);
+  return given ? std::chrono::milliseconds{command.timeout_ms} : default_motion_timeout;
+}
+
+std::uint64_t cycles_in(Time span, Time period) noexcept {
+  return period <= Time{0} ? 1 : static_cast<std::uint64_t>((span + period - Time{1}) / period);
+}
+
+std::expected<MotionJob, MotionRefusal> motion_job(const motion_command_t& command,
+                                                   std::span<const std::size_t> axes,
+                                                   const AxisMotionLimits& limits, Time period) {
+  const auto synchronisation = synchronisation_of(command.synchronisation);
+  if (!synchronisation) {
+    return std::unexpected{
+        MotionRefusal{.why = "its synchronisation is none of \"time\", \"phase\", \"none\""}};
+  }
+  MotionJob job{.name = {.id = command.id, .sender = command.sender}, .instance = command.instance};
+  job.group.goal = command.kind == "jog" ? motion::Goal::velocity : motion::Goal::position;
+  job.group.synchronisation = *synchronisation;
+  job.group.timeout = cycles_in(motion_timeout_of(command), period);
+  job.group.tag = {.id = command.id, .instance = command.instance};
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const auto goal = axis_goal(command.goals[i], axes[i], job.group.goal, limits);
+    if (!goal) return std::unexpected{goal.error()};
+    job.goals.push_back(*goal);
+  }
+  return job;
+}
+
+}  // namespace takt

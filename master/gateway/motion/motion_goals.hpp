@@ -1,0 +1,24 @@
+#pragma once
+#include <expected>
+#include <span>
+#include <takt/motion_command_t.hpp>
+
+#include "master/gateway/motion/axis_motion_limits.hpp"
+#include "master/gateway/motion/motion_job.hpp"
+
+namespace takt {
+
+/// Returns true if a motion may have this `timeout_ms`.
+bool is_motion_timeout(std::int32_t milliseconds) noexcept;
+/// Returns the timeout of the message. A `timeout_ms` that is refused counts as the default one.
+Time motion_timeout_of(const motion_command_t& command) noexcept;
+/// Returns the number of periods that begin in this time, at least 1.
+std::uint64_t cycles_in(Time span, Time period) noexcept;
+
+/// Turns a move or jog into a job, of which the caller sets `until` and the number of the sender.
+/// `axes` are those of its goals, as positions in motion_axes(); `period` is that of the cycle.
+std::expected<MotionJob, MotionRefusal> motion_job(const motion_command_t& command,
+                                                   std::span<const std::size_t> axes,
+                                                   const AxisMotionLimits& limits, Time period);
+
+}  // namespace takt

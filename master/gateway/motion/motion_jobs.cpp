@@ -1,0 +1,134 @@
+#include "master/gateway/motion/motion_jobs.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "master/gateway/motion/motion_text.hpp"
+
+namespace takt {
+namespace {
+
+/// The bus thread takes an order in the next cycle, so two cycles more are enough if this thread is
+/// in time.
+constexpr motion::CycleNumber lead_cycles = 3;
+constexpr unsigned most_tries = 100;  ///< also limits the wait for the first report
+
+/// The order was planned too late or from another state: a new plan can succeed.
+bool can_be_planned_again(motion::Outcome outcome) {
+  return outcome == motion::Outcome::too_late || outcome == motion::Outcome::other_start ||
+         outcome == motion::Outcome::second_in_cycle ||
+         outcome == motion::Outcome::group_incomplete;
+}
+
+}  // namespace
+
+MotionJobs::MotionJobs(const BusPlan& plan, const std::vector<MotionAxis>& axes,
+                       const Commands& commands, MotionAnswers& answers, SubmitMotion submit)
+    : axes_{axes},
+      commands_{commands},
+      answers_{answers},
+      submit_{std::move(submit)},
+      planner_{axes.size(), std::chrono::duration<double>{plan.cycle.period}.count()} {}
+
+void MotionJobs::start(MotionJob job, const CommandContext& context) {
+  drop_replaced(job);
+  if (!plan(job, context)) jobs_.push_back(std::move(job));
+}
+
+void MotionJobs::drop(std::size_t axis) {
+  std::erase_if(jobs_, [&](const MotionJob& job) {
+    return std::ranges::find(job.goals, axis, &motion::AxisGoal::axis) != job.goals.end();
+  });
+}
+
+/// A newer command of an axis ends the wait of an older one.
+void MotionJobs::drop_replaced(const MotionJob& job) {
+  for (const motion::AxisGoal& goal : job.goals) drop(goal.axis);
+}
+
+/// Plans the job and sends its orders. Returns false if it has to wait for the next report, or for
+/// the bus thread's answer.
+bool MotionJobs::plan(MotionJob& job, const CommandContext& context) {
+  if (!holds(job, context)) {
+    answers_.refuse(job, {.why = "its sender does not hold the nodes any longer"}, context);
+    return true;
+  }
+  const std::uint64_t since = context.cycle - std::min(context.cycle, snapshot_.cycle);
+  const auto orders = planner_.plan(job.group, job.goals, planner_.cycle() + since + lead_cycles);
+  if (!orders) {
+    const motion::PlanRefusal& refusal = orders.error();
+    const bool waits =
+        refusal.fault == motion::PlanFault::no_report || refusal.fault == motion::PlanFault::busy;
+    if (waits && ++job.tries < most_tries) return false;
+    const bool of_axis = refusal.fault != motion::PlanFault::no_report;
+    answers_.refuse(job,
+                    {.why = std::string{text(refusal)},
+                     .axis = of_axis ? std::optional<std::size_t>{refusal.axis} : std::nullopt},
+                    context);
+    return true;
+  }
+  job.order = orders->front().id;
+  job.begin = orders->front().begin;
+  ++job.tries;
+  for (const motion::MotionOrder& order : *orders) {
+    submit_({.kind = motion::MessageKind::order, .order = order});
+  }
+  return false;
+}
+
+void MotionJobs::observe(const MotionSnapshot& snapshot, const CommandContext& context) {
+  snapshot_ = snapshot;
+  planner_.observe(snapshot.cycle, snapshot.axes);
+  std::erase_if(jobs_, [&](const MotionJob& job) {
+    return job.order != 0 && snapshot.axes[job.goals.front().axis].running == job.order;
+  });
+  for (std::size_t i = 0; i < jobs_.size();) {
+    const bool ended = jobs_[i].order == 0 && plan(jobs_[i], context);
+    if (ended) {
+      jobs_.erase(jobs_.begin() + static_cast<std::ptrdiff_t>(i));
+    } else {
+      ++i;
+    }
+  }
+}
+
+bool MotionJobs::holds(const MotionJob& job, const CommandContext& context) const {
+  return std::ranges::all_of(job.goals, [&](const motion::AxisGoal& goal) {
+    return commands_.holds(axes_[goal.axis].node_index, job.instance, context.cycle);
+  });
+}
+
+/// Orders on their way can't be called back, so the bus thread decides whether they begin. It also
+/// knows whether their sender is silent. An order that the bus thread could not take has no answer.
+bool MotionJobs::has_begin_ahead(const MotionJob& job, const CommandContext& context) {
+  return job.order != 0 && context.cycle <= job.begin + lead_cycles;
+}
+
+std::optional<MotionJob> MotionJobs::take_lost(const CommandContext& context) {
+  const auto lost = std::ranges::find_if(
+      jobs_, [&](const MotionJob& job) { return job.order != 0 && !holds(job, context); });
+  if (lost == jobs_.end()) return std::nullopt;
+  MotionJob job = std::move(*lost);
+  jobs_.erase(lost);
+  return job;
+}
+
+void MotionJobs::expire(const CommandContext& context) {
+  std::erase_if(jobs_, [&](const MotionJob& job) {
+    if (context.now <= job.until || has_begin_ahead(job, context)) return false;
+    answers_.refuse(job, {.why = "it did not begin in time"}, context);
+    return true;
+  });
+}
+
+void MotionJobs::on_refused(const motion::MotionEnd& end, const CommandContext& context) {
+  const auto job = std::ranges::find(jobs_, end.order.id, &MotionJob::order);
+  if (job == jobs_.end()) return;
+  job->order = 0;
+  if (can_be_planned_again(end.order.outcome) && job->tries < most_tries) return;
+  answers_.refuse(*job, {.why = std::string{text(end.order.outcome)}, .axis = end.axis}, context);
+  jobs_.erase(job);
+}
+
+}  // namespace takt

@@ -1,0 +1,63 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "eds_parser/table/motion_axes.hpp"
+#include "master/gateway/command/commands.hpp"
+#include "master/gateway/motion/motion_answers.hpp"
+#include "master/gateway/motion/motion_job.hpp"
+#include "master/rt/exchange/motion_board.hpp"
+
+namespace takt {
+
+/// Brings moves and jogs to the bus thread: it plans them, and plans them again if their orders
+/// came too late. Front thread.
+class MotionJobs {
+ public:
+  /// Keeps references to the arguments except the last one. `axes` are the motion_axes() of the
+  /// plan.
+  MotionJobs(const BusPlan& plan, const std::vector<MotionAxis>& axes, const Commands& commands,
+             MotionAnswers& answers, SubmitMotion submit);
+
+  /// Plans the job and sends its orders, or lets it wait for the next report. It replaces older
+  /// jobs of its axes.
+  void start(MotionJob job, const CommandContext& context);
+  /// Forgets the job of the axis, because a stop replaces it.
+  void drop(std::size_t axis);
+  /// Takes the newest reports, and plans what waits for them.
+  void observe(const MotionSnapshot& snapshot, const CommandContext& context);
+  /// The bus thread has refused an order. All orders of its group are refused then.
+  void on_refused(const motion::MotionEnd& end, const CommandContext& context);
+  /// An order has begun, and has ended.
+  void on_ended(std::uint32_t order) {
+    std::erase_if(jobs_, [&](const MotionJob& job) { return job.order == order; });
+  }
+  /// Takes out a job with orders on their way whose sender has lost a node meanwhile: they must not
+  /// begin. Empty if there is none.
+  std::optional<MotionJob> take_lost(const CommandContext& context);
+  /// Refuses the jobs that did not begin in time.
+  void expire(const CommandContext& context);
+
+  /// The order of the axis with this id. Null if it is unknown, see MotionPlanner::order().
+  const motion::TaggedOrder* order(std::size_t axis, std::uint32_t id) const noexcept {
+    return planner_.order(axis, id);
+  }
+  const MotionSnapshot& snapshot() const noexcept { return snapshot_; }
+
+ private:
+  bool plan(MotionJob& job, const CommandContext& context);
+  bool holds(const MotionJob& job, const CommandContext& context) const;
+  static bool has_begin_ahead(const MotionJob& job, const CommandContext& context);
+  void drop_replaced(const MotionJob& job);
+
+  const std::vector<MotionAxis>& axes_;
+  const Commands& commands_;
+  MotionAnswers& answers_;
+  SubmitMotion submit_;
+  motion::MotionPlanner planner_;
+  MotionSnapshot snapshot_;
+  std::vector<MotionJob> jobs_;  ///< at most one for each axis
+};
+
+}  // namespace takt

@@ -1,0 +1,62 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "eds_parser/table/motion_axes.hpp"
+#include "master/gateway/command/commands.hpp"
+#include "master/gateway/motion/motion_job.hpp"
+
+namespace takt {
+
+/// Hands stops to the bus thread, and tells it which senders have lost their nodes. A stop is never
+/// lost: if the bus thread can't take it now, serve() tries again. Front thread.
+class MotionStops {
+ public:
+  /// Keeps references to the first two arguments. `axes` are the motion_axes() of the plan.
+  MotionStops(const std::vector<MotionAxis>& axes, const Commands& commands, SubmitMotion submit)
+      : axes_{axes},
+        commands_{commands},
+        submit_{std::move(submit)},
+        owners_(axes.size()),
+        waiting_(axes.size()) {}
+
+  void stop(std::size_t axis) {
+    waiting_[axis] =
+        !submit_({.kind = motion::MessageKind::stop, .axis = static_cast<std::uint8_t>(axis)});
+  }
+  /// A motion of the axis has begun: the number of its sender for the bus thread, and its instance.
+  void began(std::size_t axis, std::uint8_t number, std::int64_t instance) {
+    owners_[axis] = {.instance = instance, .number = number};
+  }
+  void serve(const CommandContext& context) {
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      if (waiting_[i]) stop(i);
+      tell_lost(i, context);
+    }
+  }
+
+ private:
+  /// A sender as the nodes and as the bus thread know it.
+  struct Owner {
+    std::int64_t instance = 0;  ///< 0 for none
+    std::uint8_t number = 0;
+  };
+
+  void tell_lost(std::size_t axis, const CommandContext& context) {
+    Owner& owner = owners_[axis];
+    if (owner.instance == 0) return;
+    if (commands_.holds(axes_[axis].node_index, owner.instance, context.cycle)) return;
+    const bool told = submit_({.kind = motion::MessageKind::left,
+                               .sender = owner.number,
+                               .axis = static_cast<std::uint8_t>(axis)});
+    if (told) owner = {};
+  }
+
+  const std::vector<MotionAxis>& axes_;
+  const Commands& commands_;
+  SubmitMotion submit_;
+  std::vector<Owner> owners_;  ///< by axis: the sender of the motion that began last
+  std::vector<bool> waiting_;  ///< by axis: a stop has to be handed over
+};
+
+}  // namespace takt
