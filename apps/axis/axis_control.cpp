@@ -25,6 +25,11 @@ command_t& AxisControl::command() {
   return state_->command;
 }
 
+command_t& AxisControl::controls(std::span<const Index> axes) {
+  state_->make_controls(axes);
+  return state_->command;
+}
+
 AxisControl::Index AxisControl::size() const noexcept { return state_->size(); }
 const AxisSignals& AxisControl::signals(Index axis) const { return state_->at(axis).signals; }
 const DriveSequence& AxisControl::drive(Index axis) const { return state_->at(axis).drive; }
@@ -67,16 +72,18 @@ void AxisControl::set_goal(DriveGoal goal) {
   for (State::Axis& axis : state_->axes) axis.drive.set_goal(goal);
 }
 
+void AxisControl::reset_fault(Index axis) { state_->at(axis).drive.reset_fault(); }
+
 void AxisControl::reset_faults() {
   for (State::Axis& axis : state_->axes) axis.drive.reset_fault();
 }
 
 bool AxisControl::in_mode() const noexcept {
-  return std::ranges::all_of(state_->axes, [this](const State::Axis& axis) {
-    if (!axis.signals.mode_display) return axis.signals.mode.has_value();
-    return axis.shown_mode == std::to_underlying(state_->commanded_mode);
-  });
+  return std::ranges::all_of(state_->axes,
+                             [this](const State::Axis& axis) { return state_->in_mode(axis); });
 }
+
+bool AxisControl::in_mode(Index axis) const { return state_->in_mode(state_->at(axis)); }
 
 void AxisControl::set_velocities(const Eigen::Ref<const Eigen::VectorXd>& si) {
   for (Index i = 0; i < size(); ++i) {

@@ -2,13 +2,16 @@
 #include <array>
 #include <cstdio>
 #include <ctime>
+#include <map>
 #include <optional>
 #include <poll.h>
 #include <span>
 #include <string_view>
 #include <takt/axis.hpp>
+#include <takt/motion_t.hpp>
 #include <utility>
 
+#include "apps/axis/find_axes.hpp"
 #include "apps/axis/node_holders.hpp"
 #include "master/lcm/channel_names.hpp"
 #include "master/lcm/envelope/envelope.hpp"
@@ -52,8 +55,12 @@ class AxisGroup::State {
   void take_image(std::span<const std::byte> data);
   void take_layout(std::span<const std::byte> data);
   void take_status(std::span<const std::byte> data);
+  void take_motion(std::span<const std::byte> data);
   void report_schema(std::int16_t schema);
   bool publish(command_t& command);
+  template <class Message>
+  bool send(const std::string& channel, Message& message);
+  std::optional<axis_motion_t> motion_of(const AxisSignals& signals) const;
   std::chrono::nanoseconds age() const { return Clock::now() - arrival; }
   std::chrono::nanoseconds period() const { return std::chrono::nanoseconds{input.period_ns()}; }
   bool is_stale() const { return input.has_image() && age() > options.stale_cycles * period(); }
@@ -68,11 +75,15 @@ class AxisGroup::State {
   std::string layout_channel;
   std::string command_channel;
   std::string secured_channel;
+  std::string motion_channel;
+  std::string motion_command_channel;
   std::string event_channel;
   std::string status_channel;
   ImageInput input;
   AxisControl axes;
   NodeHolders holders;
+  std::map<std::int16_t, node_status_t> nodes;                            // by node-ID
+  std::map<std::pair<std::int16_t, std::int8_t>, axis_motion_t> motions;  // by node-ID and axis
   bool fresh = false;
   bool new_layout = false;
   bool reported_stale = false;
@@ -106,6 +117,9 @@ void AxisGroup::State::listen_to(std::string_view name) {
   secured_channel = channel_name(bus, "SECURED");
   event_channel = channel_name(bus, "EVENT");
   status_channel = channel_name(bus, "STATUS");
+  motion_channel = channel_name(bus, "MOTION");
+  motion_command_channel = channel_name(bus, "MOTION_COMMAND");
+  lcm->subscribe(motion_channel);
   lcm->subscribe(image_channel);
   lcm->subscribe(event_channel);
   lcm->subscribe(status_channel);
@@ -120,6 +134,8 @@ void AxisGroup::State::take(std::string_view channel, std::span<const std::byte>
     take_layout(data);
   } else if (channel == status_channel) {
     take_status(data);
+  } else if (channel == motion_channel) {
+    take_motion(data);
   } else if (channel == event_channel && events.size() < most_events) {
     if (auto event = decode<event_t>(data)) events.push_back(std::move(*event));
   }
@@ -141,12 +157,32 @@ void AxisGroup::State::take_layout(std::span<const std::byte> data) {
   if (!input.take(*part)) return;
   new_layout = true;
   holders.clear();
+  nodes.clear();
+  motions.clear();
 }
 
 void AxisGroup::State::take_status(std::span<const std::byte> data) {
   const auto part = decode<status_t>(data);
   const bool fits = part && part->schema == message_schema && input.has_layout();
-  if (fits && part->session == input.session()) holders.take(*part);
+  if (!fits || part->session != input.session()) return;
+  holders.take(*part);
+  for (const node_status_t& node : part->nodes) nodes.insert_or_assign(node.node_id, node);
+}
+
+void AxisGroup::State::take_motion(std::span<const std::byte> data) {
+  const auto part = decode<motion_t>(data);
+  const bool fits = part && part->schema == message_schema && input.has_layout();
+  if (!fits || part->session != input.session()) return;
+  for (const axis_motion_t& axis : part->axes) {
+    motions.insert_or_assign({axis.node_id, axis.axis}, axis);
+  }
+}
+
+std::optional<axis_motion_t> AxisGroup::State::motion_of(const AxisSignals& signals) const {
+  const std::int32_t controlword = input.signals()[*signals.controlword].index;
+  const auto found = motions.find({signals.node, number_of_axis(controlword)});
+  if (found == motions.end()) return std::nullopt;
+  return found->second;
 }
 
 void AxisGroup::State::report_schema(std::int16_t schema) {
@@ -174,15 +210,20 @@ void AxisGroup::State::serve() {
 }
 
 bool AxisGroup::State::publish(command_t& command) {
+  command.time_to_live = options.time_to_live;
+  return send(command_channel, command);
+}
+
+template <class Message>
+bool AxisGroup::State::send(const std::string& channel, Message& message) {
   using std::chrono::microseconds;
   const auto now = std::chrono::system_clock::now().time_since_epoch();
-  command.utime = std::chrono::duration_cast<microseconds>(now).count();
-  command.instance = instance;
-  command.sender = sender;
-  command.time_to_live = options.time_to_live;
-  const Bytes message = encode(command, buffer);
-  if (!seal) return lcm->publish(command_channel, message);
-  return lcm->publish(secured_channel, seal->seal(command_channel, message, command.session, now));
+  message.utime = std::chrono::duration_cast<microseconds>(now).count();
+  message.instance = instance;
+  message.sender = sender;
+  const Bytes bytes = encode(message, buffer);
+  if (!seal) return lcm->publish(channel, bytes);
+  return lcm->publish(secured_channel, seal->seal(channel, bytes, message.session, now));
 }
 
 Input AxisGroup::wait(std::chrono::nanoseconds longest) {
@@ -222,6 +263,22 @@ bool AxisGroup::send() {
   return state_->publish(command);
 }
 
+bool AxisGroup::send_controls(std::span<const AxisControl::Index> axes) {
+  state_->commands = true;
+  command_t& command = state_->axes.controls(axes);
+  command.release = 0;
+  return state_->publish(command);
+}
+
+bool AxisGroup::send_motion(motion_command_t& command) {
+  state_->commands = true;
+  command.schema = message_schema;
+  command.session = state_->input.session();
+  command.cycle = state_->input.cycle();
+  command.num_goals = static_cast<std::int32_t>(command.goals.size());
+  return state_->send(state_->motion_command_channel, command);
+}
+
 bool AxisGroup::release() {
   if (!std::exchange(state_->commands, false)) return true;
   command_t command{};
@@ -253,6 +310,7 @@ bool AxisGroup::load_targets(const Eigen::Ref<const Eigen::VectorXd>& positions)
 }
 
 AxisControl& AxisGroup::axes() noexcept { return state_->axes; }
+const AxisControl& AxisGroup::axes() const noexcept { return state_->axes; }
 const ImageInput& AxisGroup::input() const noexcept { return state_->input; }
 const std::string& AxisGroup::sender() const noexcept { return state_->sender; }
 const std::string& AxisGroup::bus() const noexcept { return state_->bus; }
@@ -261,6 +319,16 @@ std::chrono::nanoseconds AxisGroup::age() const { return state_->age(); }
 
 const NodeHolder& AxisGroup::holder(AxisControl::Index axis) const {
   return state_->holders[state_->axes.signals(axis).node];
+}
+
+std::optional<axis_motion_t> AxisGroup::motion(AxisControl::Index axis) const {
+  return state_->motion_of(state_->axes.signals(axis));
+}
+
+std::optional<node_status_t> AxisGroup::node_status(AxisControl::Index axis) const {
+  const auto found = state_->nodes.find(state_->axes.signals(axis).node);
+  if (found == state_->nodes.end()) return std::nullopt;
+  return found->second;
 }
 
 }  // namespace takt

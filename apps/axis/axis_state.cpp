@@ -124,6 +124,23 @@ void AxisControl::State::rest(Index index, const ImageInput& input) {
   axis.seeded |= !axis.stale && (goes_on || axis.signals.position);
 }
 
+void AxisControl::State::make_controls(std::span<const Index> chosen) {
+  command.schema = message_schema;
+  command.signals.clear();
+  command.values.clear();
+  for (const Index i : chosen) {
+    const Axis& axis = at(i);
+    put(axis.signals.controlword, axis.controlword);
+    put(axis.signals.mode, std::to_underlying(commanded_mode));
+  }
+  command.num_values = static_cast<std::int32_t>(command.values.size());
+}
+
+bool AxisControl::State::in_mode(const Axis& axis) const noexcept {
+  if (!axis.signals.mode_display) return axis.signals.mode.has_value();
+  return axis.shown_mode == std::to_underlying(commanded_mode);
+}
+
 void AxisControl::State::make_command() {
   command.schema = message_schema;
   command.signals.clear();

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <takt/axis_control.hpp>
 #include <takt/command_t.hpp>
 #include <takt/drive402.hpp>
@@ -33,6 +34,9 @@ struct AxisControl::State {
   void on_image(const ImageInput& input);
   /// Writes the set-points of all axes to `command`.
   void make_command();
+  /// Writes the controlwords and modes of these axes to `command`.
+  void make_controls(std::span<const Index> chosen);
+  bool in_mode(const Axis& axis) const noexcept;
   Eigen::VectorXd target_positions_in_counts() const;
   void set_positions(const Eigen::Ref<const Eigen::VectorXd>& si);
 

@@ -47,15 +47,19 @@ const Meaning* meaning_of(const signal_t& signal) {
 
 }  // namespace
 
+std::int8_t number_of_axis(std::int32_t object) noexcept {
+  return static_cast<std::int8_t>((object - first_profile_object) / axis_step + 1);
+}
+
 std::vector<AxisSignals> find_axes(std::span<const signal_t> signals) {
-  std::map<std::pair<std::int16_t, std::int32_t>, AxisSignals> found;
+  std::map<std::pair<std::int16_t, std::int8_t>, AxisSignals> found;
   for (std::size_t i = 0; i < signals.size(); ++i) {
     const signal_t& signal = signals[i];
     const Meaning* meaning = meaning_of(signal);
     if (meaning == nullptr) continue;
-    const std::int32_t number = (signal.index - first_profile_object) / axis_step;
+    const std::int8_t number = number_of_axis(signal.index);
     AxisSignals& axis = found[{signal.node_id, number}];
-    axis.name = number == 0 ? signal.node : signal.node + "." + std::to_string(number + 1);
+    axis.name = number == 1 ? signal.node : signal.node + "." + std::to_string(number);
     axis.node = signal.node_id;
     axis.*(meaning->place) = i;
   }

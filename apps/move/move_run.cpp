@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "apps/axis/not_ready.hpp"
 #include "apps/move/held_axes.hpp"
-#include "apps/move/not_enabled.hpp"
 #include "apps/move/sine.hpp"
 
 namespace takt {
@@ -150,7 +150,9 @@ bool MoveRun::enable() {
   };
   if (hold_until(decided, enable_seconds) && ready()) return true;
   if (stop_ != 0 || axes_taken(1)) return false;
-  for (const std::string& line : why_not_ready(group_)) progress_.say(line);
+  for (const AxisControl::Index i : numbers_of(axes_)) {
+    for (const std::string& line : why_not_ready(group_, i)) progress_.say(line);
+  }
   return false;
 }
 

@@ -5,11 +5,16 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <takt/axis_control.hpp>
+#include <takt/axis_motion_t.hpp>
 #include <takt/event_t.hpp>
 #include <takt/image_input.hpp>
 #include <takt/lcm.hpp>
+#include <takt/motion_command_t.hpp>
+#include <takt/node_status_t.hpp>
 #include <vector>
 
 namespace takt {
@@ -81,8 +86,19 @@ class AxisGroup {
   /// enabled keep to their actual position. Returns false if LCM did not take the message.
   bool load_targets(const Eigen::Ref<const Eigen::VectorXd>& positions);
 
+  /// Sends the controlwords and modes of these axes without set-points, for axes whose motions
+  /// taktd runs. Returns false if LCM did not take the message.
+  bool send_controls(std::span<const AxisControl::Index> axes);
+  /// Sends a command for motions that taktd runs, in the name of this group and from its newest
+  /// image. The caller fills in `id`, `kind`, `synchronisation`, `timeout_ms` and `goals`; the call
+  /// fills in the rest. Returns false if LCM did not take the message. Axes (`<takt/motion.hpp>`)
+  /// calls this function.
+  bool send_motion(motion_command_t& command);
+
   /// Returns the axes, which wait() keeps up to date. There are none before the first layout.
   AxisControl& axes() noexcept;
+  /// Returns the axes, which wait() keeps up to date. There are none before the first layout.
+  const AxisControl& axes() const noexcept;
   /// Returns the layout and the newest image.
   const ImageInput& input() const noexcept;
   /// Returns the program that commands the node of this axis, by the newest status_t of taktd.
@@ -90,6 +106,12 @@ class AxisGroup {
   /// so each application decides for how many status_t another program may hold a node before it
   /// gives up.
   const NodeHolder& holder(AxisControl::Index axis) const;
+  /// Returns what taktd has reported last about the motion of this axis; its positions are in the
+  /// unit of the target position. Empty if this run of taktd has reported none: it does so from the
+  /// first command for motions on.
+  std::optional<axis_motion_t> motion(AxisControl::Index axis) const;
+  /// Returns the newest status of the node of this axis. Empty before the first status_t.
+  std::optional<node_status_t> node_status(AxisControl::Index axis) const;
   /// Returns the name of this sender in events and in status_t: the name of the options and eight
   /// hex digits of the instance. It tells two running programs of the same name apart.
   const std::string& sender() const noexcept;

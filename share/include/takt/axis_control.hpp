@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <takt/command_t.hpp>
 #include <takt/drive402.hpp>
@@ -73,6 +74,10 @@ class AxisControl {
   /// Returns the set-points of all axes, computed from the last image. The caller fills in `utime`,
   /// `instance`, `sender`, `time_to_live` and `release`. The next call overwrites the message.
   command_t& command();
+  /// Returns the controlwords and modes of these axes, without set-points, for axes whose motions
+  /// taktd runs. The caller fills in the same fields as for command(). The next call of this
+  /// function or of command() overwrites the message.
+  command_t& controls(std::span<const Index> axes);
 
   /// Returns the number of axes.
   Index size() const noexcept;
@@ -116,6 +121,8 @@ class AxisControl {
   void set_goal(Index axis, DriveGoal goal);
   /// Asks for one fault reset of each axis that has a fault. See DriveSequence::reset_fault().
   void reset_faults();
+  /// Asks for one fault reset of one axis if it has a fault.
+  void reset_fault(Index axis);
   /// Sets the mode of operation of all axes, at first DriveMode::cyclic_position. The commands
   /// carry it for each axis whose 0x6060 is mapped. Another mode than profile position ends the
   /// handshakes of begin_set_points().
@@ -124,6 +131,8 @@ class AxisControl {
   /// mapped, it is enough that the commands carry the mode (0x6060 is mapped). Returns false if
   /// neither object of an axis is mapped, for then its mode is unknown.
   bool in_mode() const noexcept;
+  /// Returns true if this axis shows the commanded mode. See in_mode().
+  bool in_mode(Index axis) const;
 
   /// Sets the target position (0x607A) of each axis. The call changes only axes that are in
   /// Operation enabled and in a position mode, both as commanded and as the image shows; all

@@ -1,4 +1,4 @@
-#include "apps/move/not_enabled.hpp"
+#include "apps/axis/not_ready.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,6 +61,21 @@ TEST(ModeHint, SaysThatTheModeHasNotCome) {
 TEST(ModeHint, IsSilentInTheMode) {
   EXPECT_THAT(hint_for(Mapped::display, 8), IsEmpty());
   EXPECT_THAT(hint_for(Mapped::both, 8), IsEmpty());
+}
+
+TEST(BlockingBits, AreThoseOfTheState) {
+  EXPECT_THAT(blocking_bits(0x0231),
+              HasSubstr("bit 1 (switched on) of its statusword 0x0231 is 0"));
+  EXPECT_THAT(blocking_bits(0x0233), HasSubstr("bit 2 (operation enabled)"));
+  EXPECT_THAT(blocking_bits(0x0217), HasSubstr("bit 5 (quick stop)"));
+  EXPECT_THAT(blocking_bits(0x021F), HasSubstr("bit 3 (fault)"));
+  EXPECT_THAT(blocking_bits(0x0237), IsEmpty());
+}
+
+TEST(BlockingBits, AreAlsoThoseOfTheSupplyAndOfTheOperator) {
+  EXPECT_THAT(blocking_bits(0x0250), Not(HasSubstr("bit 4")));
+  EXPECT_THAT(blocking_bits(0x0240), HasSubstr("bit 4 (voltage enabled) is 0"));
+  EXPECT_THAT(blocking_bits(0x0050), HasSubstr("bit 9 (remote) is 0"));
 }
 
 }  // namespace

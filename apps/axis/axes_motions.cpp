@@ -1,0 +1,210 @@
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "apps/axis/axes_state.hpp"
+#include "apps/axis/find_axes.hpp"
+#include "apps/axis/not_ready.hpp"
+
+namespace takt {
+namespace {
+
+using std::chrono::nanoseconds;
+
+/// Longest wait for the answer of taktd to a motion.
+constexpr std::chrono::seconds answer_time{2};
+/// Longest wait for the event with the reason of an end.
+constexpr std::chrono::milliseconds reason_time{100};
+/// Time between two stops, until the axes stand.
+constexpr std::chrono::milliseconds stop_pause{50};
+/// After a stop, a motion that taktd has not answered counts as never begun after so many cycles.
+constexpr std::int64_t unanswered_cycles = 100;
+/// Values of axis_motion_t::state and axis_motion_t::outcome.
+constexpr std::int8_t motion_moves = 2;
+constexpr std::int8_t motion_stops = 3;
+constexpr std::int8_t outcome_done = 1;
+constexpr std::int8_t outcome_stopped = 2;
+constexpr std::int8_t outcome_refused = 4;
+
+/// Returns the value for one axis: its own, the one for all, or 0.
+double value_of(const Eigen::VectorXd& values, Eigen::Index axis) {
+  if (values.size() == 0) return 0.0;
+  return values(values.size() == 1 ? 0 : axis);
+}
+
+}  // namespace
+
+/// Returns an obstacle if the number of values does not fit the axes.
+Done Axes::State::check(const Values& values, const MotionBounds& bounds) const {
+  if (values.size() != size()) {
+    return obstacle(Obstacle::Kind::wrong_use,
+                    fmt::format("{} values for {} axes", values.size(), size()));
+  }
+  for (const Eigen::VectorXd* bound :
+       {&bounds.velocity, &bounds.acceleration, &bounds.jerk, &bounds.following_error}) {
+    if (bound->size() <= 1 || bound->size() == size()) continue;
+    return obstacle(Obstacle::Kind::wrong_use,
+                    fmt::format("{} bounds for {} axes", bound->size(), size()));
+  }
+  return {};
+}
+
+Done Axes::State::begin(const std::string& kind, const Values& values, const MotionBounds& bounds) {
+  if (Done fits = check(values, bounds); !fits) return fits;
+  // taktd refuses a motion that comes from the image of a stop, or from an earlier one.
+  const auto newer =
+      wait_until([this] { return group.input().cycle() > stop_cycle_; }, options.longest);
+  if (!newer) return obstacle(Obstacle::Kind::time_over, "no newer image has come");
+  if (!*newer) return *newer;
+  if (!all_ready()) {
+    const std::string fallback = event_text("fallback_begun");
+    return obstacle(Obstacle::Kind::blocked,
+                    why_not_ready_text() + (fallback.empty() ? "" : "; ") + fallback);
+  }
+  motion_command_t command{};
+  command.kind = kind;
+  command.id = ++id_;
+  command.timeout_ms = static_cast<std::int32_t>(options.timeout.count());
+  for (Index i = 0; i < size(); ++i) {
+    const AxisSignals& signals = group.axes().signals(in_group(i));
+    const signal_t& controlword = group.input().signals()[*signals.controlword];
+    motion_goal_t goal{};
+    goal.node = controlword.node;
+    goal.axis = number_of_axis(controlword.index);
+    (kind == "jog" ? goal.velocity : goal.position) = values(i);
+    goal.max_velocity = value_of(bounds.velocity, i);
+    goal.max_acceleration = value_of(bounds.acceleration, i);
+    goal.max_jerk = value_of(bounds.jerk, i);
+    goal.max_following_error = value_of(bounds.following_error, i);
+    command.goals.push_back(std::move(goal));
+  }
+  events_.clear();
+  has_motion_ = true;
+  motion_begin_ = last_sent_ = Clock::now();
+  if (group.send_motion(command)) return {};
+  return obstacle(Obstacle::Kind::no_bus, "LCM did not take the command");
+}
+
+Done Axes::State::jog(const Values& velocities, const MotionBounds& bounds) {
+  if (Done begun = begin("jog", velocities, bounds); !begun) return begun;
+  const auto waited = wait_until([this] { return course() != Course::unanswered; }, answer_time);
+  if (waited && !*waited) return *waited;
+  return course() == Course::runs ? Done{} : ended();
+}
+
+Done Axes::State::wait(nanoseconds longest) {
+  const auto over = [this] {
+    const Course now = course();
+    const bool waits = now == Course::unanswered && Clock::now() - motion_begin_ < answer_time;
+    return !waits && now != Course::runs;
+  };
+  const auto waited = wait_until(over, longest);
+  if (!waited) return obstacle(Obstacle::Kind::time_over, "the axes still move");
+  return *waited ? ended() : *waited;
+}
+
+Axes::State::Course Axes::State::course_of(Index axis) const {
+  const auto motion = group.motion(axis);
+  if (!motion) return Course::unanswered;
+  if (motion->id == id_) return Course::runs;
+  if (motion->ended_id != id_) return Course::unanswered;
+  if (motion->state == motion_stops) return Course::runs;
+  if (motion->outcome == outcome_done) return Course::done;
+  if (motion->outcome == outcome_stopped) return Course::stopped;
+  return motion->outcome == outcome_refused ? Course::refused : Course::replaced;
+}
+
+/// How all axes stand: an answer that one of them waits for comes before the others.
+Axes::State::Course Axes::State::course() const {
+  if (!has_motion_) return Course::none;
+  const std::string refusal = fmt::format("motion {} of '{}'", id_, group.sender());
+  if (!event_text("motion_refused", refusal).empty()) return Course::refused;
+  Course worst = Course::done;
+  for (const Index axis : axes) {
+    const Course one = course_of(axis);
+    if (one == Course::unanswered) return one;
+    if (one == Course::runs || worst == Course::runs) {
+      worst = Course::runs;
+    } else {
+      worst = std::max(worst, one);
+    }
+  }
+  return worst;
+}
+
+/// Returns what the events and the drives say about the end of the newest motion.
+std::string Axes::State::reason(Course course) const {
+  const bool refused = course == Course::refused;
+  std::string text = refused
+                         ? event_text("motion_refused", fmt::format("motion {} ", id_))
+                         : event_text("motion_stopped", fmt::format("motion {} has stopped", id_));
+  if (text.empty()) text = event_text("command_refused", group.sender());
+  if (!all_ready()) text += (text.empty() ? "" : "; ") + why_not_ready_text();
+  return text;
+}
+
+Done Axes::State::ended() {
+  const Course end = course();
+  if (end == Course::none || end == Course::done) return {};
+  const auto told = [&] { return !reason(end).empty(); };
+  const auto waited = wait_until(told, reason_time, Interruption::ignored);
+  if (waited && !*waited) return *waited;
+  const std::string why = reason(end);
+  switch (end) {
+    case Course::refused:
+      return obstacle(Obstacle::Kind::refused, why.empty() ? "taktd has refused the motion" : why);
+    case Course::stopped:
+      return obstacle(Obstacle::Kind::stopped, why.empty() ? "the motion has stopped" : why);
+    case Course::replaced:
+      return obstacle(Obstacle::Kind::stopped, "a newer motion has replaced this one");
+    default:
+      return obstacle(Obstacle::Kind::refused,
+                      why.empty() ? "taktd has not answered the motion" : why);
+  }
+}
+
+bool Axes::State::moving() const {
+  return any([this](Index axis) {
+    const auto motion = group.motion(axis);
+    return motion && (motion->state == motion_moves || motion->state == motion_stops);
+  });
+}
+
+void Axes::State::send_stop() {
+  motion_command_t command{};
+  command.kind = "stop";
+  command.id = id_;
+  command.timeout_ms = static_cast<std::int32_t>(options.timeout.count());
+  for (const Index axis : axes) {
+    const signal_t& controlword = group.input().signals()[*group.axes().signals(axis).controlword];
+    motion_goal_t goal{};
+    goal.node = controlword.node;
+    goal.axis = number_of_axis(controlword.index);
+    command.goals.push_back(std::move(goal));
+  }
+  stop_cycle_ = group.input().cycle();
+  last_sent_ = Clock::now();
+  group.send_motion(command);
+}
+
+Done Axes::State::stop() {
+  const auto is_open = [this] {
+    const Course now = course();
+    return moving() || now == Course::runs || now == Course::unanswered;
+  };
+  if (sending_ == Sending::nothing || !is_open()) return {};
+  const std::int64_t begin = group.input().cycle();
+  const auto stands = [&] {
+    if (Clock::now() - last_sent_ >= stop_pause) send_stop();
+    const bool never = course() == Course::unanswered && !moving() &&
+                       group.input().cycle() - begin > unanswered_cycles;
+    return never || !is_open();
+  };
+  send_stop();
+  const auto waited = wait_until(stands, options.longest, Interruption::ignored);
+  if (waited && !*waited) return *waited;
+  if (!waited) return obstacle(Obstacle::Kind::time_over, "the axes still move");
+  has_motion_ = false;
+  return {};
+}
+
+}  // namespace takt

@@ -1,0 +1,128 @@
+#include "apps/axis/axes_state.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "master/lcm/random_number.hpp"
+
+namespace takt {
+namespace {
+
+using std::chrono::nanoseconds;
+
+/// Longest wait for a message before the time is looked at again.
+constexpr std::chrono::milliseconds axes_tick{5};
+/// Longest time between signs of life. A shorter timeout of the motions shortens it.
+constexpr std::chrono::milliseconds longest_silence{50};
+constexpr int signs_in_timeout = 4;
+/// The bus is silent if no image comes for so long, and for so many periods.
+constexpr std::chrono::seconds image_time{2};
+constexpr int image_periods = 20;
+constexpr std::size_t most_kept_events = 64;
+
+}  // namespace
+
+Axes::State::State(std::unique_ptr<Transport> lcm, AxesOptions given)
+    : group{std::move(lcm), {.bus = given.bus, .sender = given.sender}},
+      options{std::move(given)},
+      id_{static_cast<std::int32_t>(random_number() & 0x3FFF'FFFF)} {}
+
+bool Axes::State::all(const AxisCondition& is) const { return std::ranges::all_of(axes, is); }
+bool Axes::State::any(const AxisCondition& is) const { return std::ranges::any_of(axes, is); }
+
+Done Axes::State::find() {
+  const auto until = Clock::now() + options.longest;
+  while (group.wait(axes_tick) != Input::fresh) {
+    if (options.interrupted && options.interrupted()) {
+      return obstacle(Obstacle::Kind::interrupted, "interrupted");
+    }
+    if (Clock::now() < until) continue;
+    return obstacle(Obstacle::Kind::no_bus,
+                    fmt::format("no image of {} has come: is taktd running, with the same LCM URL?",
+                                group.bus().empty() ? "a bus" : "bus " + group.bus()));
+  }
+  last_image_ = Clock::now();
+  const AxisControl& known = group.axes();
+  std::string names;
+  for (Index i = 0; i < known.size(); ++i) {
+    names += (names.empty() ? "" : ", ") + known.name(i);
+    if (options.names.empty()) axes.push_back(i);
+  }
+  for (const std::string& name : options.names) {
+    Index i = 0;
+    while (i < known.size() && known.name(i) != name) ++i;
+    if (i < known.size() && std::ranges::find(axes, i) == axes.end()) {
+      axes.push_back(i);
+      continue;
+    }
+    return obstacle(Obstacle::Kind::wrong_use,
+                    fmt::format("bus {} has no axis '{}', or it is named twice; the axes are: {}",
+                                group.bus(), name, names.empty() ? "none" : names));
+  }
+  if (!axes.empty()) return {};
+  return obstacle(
+      Obstacle::Kind::wrong_use,
+      fmt::format("bus {} has no axis: no node has 6040 and 6041 in its PDOs", group.bus()));
+}
+
+Done Axes::State::step(Interruption interruption) {
+  const Input input = group.wait(axes_tick);
+  for (event_t& event : group.take_events()) {
+    if (event.severity == 0) continue;
+    if (events_.size() == most_kept_events) events_.erase(events_.begin());
+    events_.push_back(std::move(event));
+  }
+  if (input == Input::restarted) {
+    sending_ = Sending::nothing;
+    return obstacle(Obstacle::Kind::restarted, "taktd has restarted");
+  }
+  const auto now = Clock::now();
+  if (input == Input::fresh) {
+    last_image_ = now;
+    if (sending_ == Sending::controls) group.send_controls(axes);
+  }
+  keep_alive();
+  const auto silence = now - last_image_;
+  if (silence > std::max<nanoseconds>(image_time, image_periods * group.period())) {
+    return obstacle(Obstacle::Kind::no_bus,
+                    fmt::format("no image of bus {} has come for {:.1f} s", group.bus(),
+                                std::chrono::duration<double>(silence).count()));
+  }
+  const bool asks = interruption == Interruption::obeyed && options.interrupted;
+  if (asks && options.interrupted()) return obstacle(Obstacle::Kind::interrupted, "interrupted");
+  return {};
+}
+
+void Axes::State::keep_alive() {
+  const auto due = std::min<nanoseconds>(longest_silence, options.timeout / signs_in_timeout);
+  if (sending_ == Sending::nothing || Clock::now() - last_sent_ < due) return;
+  last_sent_ = Clock::now();
+  motion_command_t command{};
+  command.kind = "alive";
+  command.timeout_ms = static_cast<std::int32_t>(options.timeout.count());
+  group.send_motion(command);
+}
+
+std::optional<Done> Axes::State::wait_until(const Condition& reached, nanoseconds longest,
+                                            Interruption interruption) {
+  const auto begin = Clock::now();
+  while (true) {
+    const Done done = step(interruption);
+    if (!done) return done;
+    if (reached()) return Done{};
+    if (Clock::now() - begin >= longest) return std::nullopt;
+  }
+}
+
+Done Axes::State::run(nanoseconds time) {
+  return wait_until([] { return false; }, time).value_or(Done{});
+}
+
+std::string Axes::State::event_text(std::string_view kind, std::string_view part) const {
+  for (auto event = events_.rbegin(); event != events_.rend(); ++event) {
+    if (event->kind == kind && event->text.find(part) != std::string::npos) return event->text;
+  }
+  return {};
+}
+
+}  // namespace takt

@@ -1,0 +1,99 @@
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <takt/motion.hpp>
+#include <utility>
+#include <vector>
+
+namespace takt {
+
+inline std::unexpected<Obstacle> obstacle(Obstacle::Kind kind, std::string text) {
+  return std::unexpected{Obstacle{.kind = kind, .text = std::move(text)}};
+}
+
+/// What an Axes knows and does. Its code is in three files: waiting (axes_state.cpp), the states of
+/// the drives (axes_drives.cpp) and motions (axes_motions.cpp).
+class Axes::State {
+ public:
+  using Clock = std::chrono::steady_clock;
+  using Index = AxisControl::Index;
+  using Values = Eigen::Ref<const Eigen::VectorXd>;
+
+  State(std::unique_ptr<Transport> lcm, AxesOptions given);
+
+  /// Waits for the layout and the first image, and finds the axes in them.
+  Done find();
+  Done run(std::chrono::nanoseconds time);
+
+  Done enable();
+  Done disable();
+  Done reset();
+  Done set_mode(DriveMode wanted);
+
+  Done begin(const std::string& kind, const Values& values, const MotionBounds& bounds);
+  Done jog(const Values& velocities, const MotionBounds& bounds);
+  Done wait(std::chrono::nanoseconds longest);
+  Done stop();
+  bool moving() const;
+
+  Index size() const noexcept { return static_cast<Index>(axes.size()); }
+  /// Returns the index in the group of the axis with this index in an Axes.
+  Index in_group(Index axis) const { return axes[static_cast<std::size_t>(axis)]; }
+
+  AxisGroup group;
+  AxesOptions options;
+  std::vector<Index> axes;  // of the group
+
+ private:
+  /// What this program sends without being asked.
+  enum class Sending : std::uint8_t {
+    nothing,   ///< The program only listens.
+    controls,  ///< Controlwords with each image and signs of life: the drives change their states.
+    alive,     ///< Signs of life: the drives are enabled.
+  };
+  /// Whether AxesOptions::interrupted can end a wait.
+  enum class Interruption : std::uint8_t { obeyed, ignored };
+  /// How the newest motion stands.
+  enum class Course : std::uint8_t { none, unanswered, runs, done, refused, stopped, replaced };
+  using Condition = std::function<bool()>;
+  using AxisCondition = std::function<bool(Index)>;
+
+  /// Takes the messages that have come, and sends what is due.
+  Done step(Interruption interruption);
+  /// Waits until `reached` returns true. Returns std::nullopt if `longest` is over before.
+  std::optional<Done> wait_until(const Condition& reached, std::chrono::nanoseconds longest,
+                                 Interruption interruption = Interruption::obeyed);
+  void keep_alive();
+  bool all(const AxisCondition& is) const;
+  bool any(const AxisCondition& is) const;
+  /// Returns the newest event of this kind since the newest motion began whose text contains
+  /// `part`, or an empty text.
+  std::string event_text(std::string_view kind, std::string_view part = {}) const;
+
+  bool is_ready(Index axis) const;
+  bool all_ready() const;
+  std::string why_not_ready_text() const;
+
+  Done check(const Values& values, const MotionBounds& bounds) const;
+  Course course() const;
+  Course course_of(Index axis) const;
+  std::string reason(Course course) const;
+  Done ended();
+  void send_stop();
+
+  Sending sending_ = Sending::nothing;
+  DriveMode mode_ = DriveMode::cyclic_position;
+  std::int32_t id_ = 0;      // of the newest motion
+  bool has_motion_ = false;  // false before the first motion, and after a stop
+  Clock::time_point motion_begin_{};
+  std::int64_t stop_cycle_ = -1;   // of the image from which the newest stop was sent
+  Clock::time_point last_sent_{};  // the newest sign of life
+  Clock::time_point last_image_ = Clock::now();
+  std::vector<event_t> events_;  // since the newest motion began
+};
+
+}  // namespace takt

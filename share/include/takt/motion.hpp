@@ -1,0 +1,150 @@
+#pragma once
+/// @file
+/// Motions of CiA 402 axes that taktd runs (`taktd --motions`): enable, move, jog, stop. The bus
+/// thread of taktd gives the drives their set-points, so the program may be late.
+#include <Eigen/Core>
+#include <chrono>
+#include <cstdint>
+#include <expected>
+#include <functional>
+#include <memory>
+#include <string>
+#include <takt/axis.hpp>
+#include <takt/drive402.hpp>
+#include <takt/lcm.hpp>
+#include <vector>
+
+namespace takt {
+
+/// Why a call of Axes has not done what it was asked for.
+struct Obstacle {
+  /// Kinds of obstacles.
+  enum class Kind : std::uint8_t {
+    wrong_use,    ///< An axis is unknown, or the number of values does not fit.
+    no_bus,       ///< LCM can't be opened, or no image of the bus comes.
+    blocked,      ///< A drive, its device or another program stands in the way.
+    refused,      ///< taktd has refused the motion.
+    stopped,      ///< The motion has ended before its target.
+    time_over,    ///< The longest time of the call is over.
+    restarted,    ///< taktd has restarted. Only a new Axes can command its axes.
+    interrupted,  ///< AxesOptions::interrupted has returned true.
+  };
+  Kind kind = Kind::blocked;  ///< what kind of obstacle this is
+  std::string text;           ///< a sentence for the user, which names the axis and what blocks it
+};
+
+/// What a call of Axes returns: nothing, or the obstacle.
+using Done = std::expected<void, Obstacle>;
+
+/// Options of Axes.
+struct AxesOptions {
+  /// Name of the bus in the network file. Empty selects the first bus whose layout arrives.
+  std::string bus = {};
+  /// Names of the axes, in the order of all vectors: names of nodes, or "gantry.2" for the second
+  /// axis of a device. Empty selects all axes of the bus, in the order of their node-IDs.
+  std::vector<std::string> names = {};
+  /// Name of the program in events and in status_t.
+  std::string sender = "axes";
+  /// Address of LCM, as for open_lcm().
+  std::string lcm_url = {};
+  /// Longest time of each call, except for move(), move_by() and wait(), which last as long as
+  /// their motions.
+  std::chrono::nanoseconds longest = std::chrono::seconds{10};
+  /// The motions stop along their limits if this program is silent for so long, 1 ms to 10 s.
+  std::chrono::milliseconds timeout{500};
+  /// Calls that wait ask this function, and end with Obstacle::Kind::interrupted if it returns
+  /// true. stop() and disable() do not ask it. Empty: nothing interrupts them.
+  std::function<bool()> interrupted = {};
+};
+
+/// Limits of a motion, in the unit of each axis and in seconds. Each vector has one value for each
+/// axis, or one for all axes, or none. Where there is no value, or 0, `limits:` of the network file
+/// apply; a larger value than there is refused.
+struct MotionBounds {
+  Eigen::VectorXd velocity = {};         ///< unit/s
+  Eigen::VectorXd acceleration = {};     ///< unit/s^2
+  Eigen::VectorXd jerk = {};             ///< unit/s^3
+  Eigen::VectorXd following_error = {};  ///< unit; the axes stop above it. None or 0: not watched
+};
+
+/// Axes of one bus whose motions taktd runs. Each call returns when it has done its work, or says
+/// in words what blocks it.
+///
+/// The calls keep this program alive for taktd while they wait. Between calls, the motions and the
+/// drives outlive a silence of AxesOptions::timeout; after that they stop along their limits, and
+/// the drives take the fallback of `on_timeout` in the network file. A program that has nothing to
+/// do calls run() instead of sleeping.
+///
+/// The axes of one call begin in the same cycle, and a stop of one stops all of them. Vectors have
+/// one element for each axis, in its unit (rad, m, or raw counts if the layout states no unit). All
+/// calls come from one thread. After a move, an object may only be destroyed or assigned to.
+class Axes {
+ public:
+  /// Opens LCM, waits until the first image of the bus has come, and finds the axes.
+  static std::expected<Axes, Obstacle> open(AxesOptions options);
+  /// As above, with a transport that is open, and a key that is necessary if `keys` is configured
+  /// for taktd.
+  static std::expected<Axes, Obstacle> open(std::unique_ptr<Transport> lcm, AxesOptions options,
+                                            const EnvelopeKey* key = nullptr);
+  /// Calls disable() if enable() was called since the last disable().
+  ~Axes();
+  /// Moves the object.
+  Axes(Axes&& other) noexcept;
+  /// Moves the object.
+  Axes& operator=(Axes&& other) noexcept;
+
+  /// Leads all axes to Operation enabled and cyclic synchronous position mode, and waits until
+  /// taktd reports their motions. A fault is an obstacle: see reset().
+  Done enable();
+  /// Stops the axes, leads them to Switch on disabled, and gives their nodes up.
+  Done disable();
+  /// Resets the faults of all axes.
+  Done reset();
+  /// Sets another mode of operation for all axes, and waits until the drives show it. Motions need
+  /// cyclic synchronous position mode, which enable() sets again.
+  Done set_mode(DriveMode mode);
+
+  /// Moves the axes to these positions, and waits until they have come to rest there. Without an
+  /// obstacle, all of them are there.
+  Done move(const Eigen::Ref<const Eigen::VectorXd>& positions, const MotionBounds& bounds = {});
+  /// Like move(), by distances from the commanded positions.
+  Done move_by(const Eigen::Ref<const Eigen::VectorXd>& distances, const MotionBounds& bounds = {});
+  /// Begins a move and returns at once. A new target is possible during a motion. See wait().
+  Done begin_move(const Eigen::Ref<const Eigen::VectorXd>& positions,
+                  const MotionBounds& bounds = {});
+  /// Begins to keep these velocities, and returns when taktd has begun. The axes keep them until
+  /// stop(), until the end of their range, or until this program is silent.
+  Done jog(const Eigen::Ref<const Eigen::VectorXd>& velocities, const MotionBounds& bounds = {});
+  /// Stops the axes along their limits, and waits until they stand.
+  Done stop();
+  /// Waits until the newest motion has ended. Does not stop it if `longest` is over.
+  Done wait(std::chrono::nanoseconds longest = std::chrono::nanoseconds::max());
+  /// Waits for this time, in which motions go on.
+  Done run(std::chrono::nanoseconds time);
+
+  /// Returns the number of axes.
+  Eigen::Index size() const noexcept;
+  /// Returns the name of an axis, 0..size()-1.
+  const std::string& name(Eigen::Index axis) const;
+  /// Returns the unit of the positions of an axis. Empty stands for raw counts.
+  const std::string& unit(Eigen::Index axis) const;
+  /// Returns true if at least one axis moves or stops, as taktd has reported last.
+  bool moving() const;
+  /// Returns the actual positions (0x6064) of the newest image.
+  Eigen::VectorXd positions() const;
+  /// Returns the actual velocities (0x606C) of the newest image; 0 where no PDO carries it.
+  Eigen::VectorXd velocities() const;
+  /// Returns the commanded positions, as taktd has reported last; before that, the actual ones.
+  Eigen::VectorXd commanded_positions() const;
+  /// Returns the following errors, commanded minus actual position, as taktd has reported last.
+  Eigen::VectorXd following_errors() const;
+  /// Returns the group below: its image, its events, and the states of its drives.
+  AxisGroup& group() noexcept;
+
+ private:
+  class State;
+  explicit Axes(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace takt
