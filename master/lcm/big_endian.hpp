@@ -1,5 +1,7 @@
 #pragma once
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -21,9 +23,9 @@ T load_be(std::span<const std::byte> bytes) noexcept {
 /// Appends an integer, most significant byte first.
 template <class T>
 void append_be(std::vector<std::byte>& out, T value) {
-  for (std::size_t left = sizeof value; left-- > 0;) {
-    out.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(value) >> (8 * left)));
-  }
+  auto bytes = std::bit_cast<std::array<std::byte, sizeof value>>(value);
+  if constexpr (std::endian::native == std::endian::little) std::ranges::reverse(bytes);
+  out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
 }  // namespace takt

@@ -48,8 +48,17 @@ class ShapeWalk {
     return kind == 'i' || kind == 'f' ? 4 : 8;
   }
 
+  /// Returns the size of a part that consists of numbers only.
+  static std::optional<std::size_t> size_of(std::string_view shape) noexcept {
+    if (shape.find_first_of("sn(") != std::string_view::npos) return std::nullopt;
+    std::size_t size = 0;
+    for (const char kind : shape) size += fixed_size(kind);
+    return size;
+  }
+
   // Each round takes at least one byte, so a huge count ends with the message.
   bool repeat(std::string_view shape, std::uint32_t count) noexcept {
+    if (const auto size = size_of(shape)) return take(*size * count);
     for (std::uint32_t i = 0; i < count; ++i) {
       if (!walk(shape)) return false;
     }
