@@ -153,7 +153,7 @@ def run(bus, given):
             print("the motion does not begin", file=sys.stderr)
             return 1
         if time.monotonic() < end:
-            bus.command("alive")
+            bus.command("alive", goal)
         else:
             bus.command("stop", goal)
     outcome = OUTCOMES[bus.motion.outcome]

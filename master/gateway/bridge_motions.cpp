@@ -13,11 +13,12 @@ void Bridge::on_motion(Bytes data) {
   motions_.take(*command, context_at(now));
 }
 
-/// Plans what waits for the newest reports, and publishes them. The bus thread tells the end of an
-/// order before its report, so the reports are read first: their ends are known then.
+/// Plans what waits for the newest reports, and publishes them once a command has come. The bus
+/// thread tells the end of an order before its report, so the reports are read first: their ends
+/// are known then.
 void Bridge::serve_motions() {
-  if (options_.motions) motions_.watch();
-  if (!motions_.active()) return;
+  if (!options_.motions) return;
+  motions_.watch();
   const Time now = clocks_.now();
   const std::uint64_t published = motion_reports_.cycle;
   master_.motions(motion_reports_);
@@ -25,6 +26,7 @@ void Bridge::serve_motions() {
   motions_.serve(context_at(now));
   if (motion_reports_.cycle == published) return;
   motions_.observe(motion_reports_, context_at(now));
+  if (!motions_.active()) return;
   for (motion_t& part : motions_.messages()) publish(channels_.motion, part, now);
 }
 

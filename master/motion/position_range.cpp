@@ -21,6 +21,10 @@ std::array<double, 2> turning_times(const State& state, double jerk) noexcept {
 
 }  // namespace
 
+PositionRange widened(const PositionRange& range, double position) noexcept {
+  return {.min = std::min(range.min, position), .max = std::max(range.max, position)};
+}
+
 PositionRange positions_of(const Profile& profile, const State& from) noexcept {
   PositionRange seen{.min = from.position, .max = from.position};
   const auto look = [&](const State& state) {

@@ -33,9 +33,7 @@ bool is_between(double low, double value, double high) noexcept {
 /// most longer motions leave it too. The function therefore tries only a few longer durations.
 std::expected<double, Defect> possible(const AxisTask& task, Goal goal, double duration) noexcept {
   const AxisMotion motion = motion_of(task, goal);
-  // An axis that starts outside its range may come back.
-  const PositionRange range{.min = std::min(task.range.min, task.from.position),
-                            .max = std::max(task.range.max, task.from.position)};
+  const PositionRange range = widened(task.range, task.from.position);
   double time = motion.possible(duration);
   for (int i = 0; i < 50; ++i) {
     if (!std::isfinite(time)) return std::unexpected{Defect::not_finite};

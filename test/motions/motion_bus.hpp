@@ -1,6 +1,7 @@
 #pragma once
 #include <deque>
 #include <string>
+#include <takt/image_t.hpp>
 #include <takt/motion_command_t.hpp>
 #include <takt/motion_t.hpp>
 #include <utility>
@@ -12,12 +13,16 @@
 
 namespace takt::test {
 
-/// LCM in memory: keeps the newest motion_t and all events, and delivers what an application sends.
+/// LCM in memory: keeps the newest motion_t and the cycle of the newest image, and delivers what an
+/// application sends.
 class MotionLcm final : public Transport {
  public:
   bool publish(const std::string& channel, std::span<const std::byte> data) override {
     if (channel == "DEMO_MOTION") {
       if (const auto found = decode<motion_t>(data)) motion = *found;
+    }
+    if (channel == "DEMO_IMAGE") {
+      if (const auto found = decode<image_t>(data)) cycle = found->cycle;
     }
     return true;
   }
@@ -37,6 +42,7 @@ class MotionLcm final : public Transport {
   }
 
   motion_t motion{};
+  std::int64_t cycle = 0;  ///< of the newest image
   std::deque<std::pair<std::string, std::vector<std::byte>>> waiting;
 };
 
@@ -83,7 +89,7 @@ class MotionBus final : public AxesInVirtualTime {
     message.session = session;
     message.instance = instance;
     message.sender = "test";
-    message.cycle = static_cast<std::int64_t>(bridge.status().bus.cycle);
+    message.cycle = lcm.cycle;
     message.id = id;
     message.kind = kind;
     return message;
@@ -119,7 +125,7 @@ class MotionBus final : public AxesInVirtualTime {
     message.session = session;
     message.instance = 5;
     message.sender = "test";
-    message.cycle = static_cast<std::int64_t>(bridge.status().bus.cycle);
+    message.cycle = lcm.cycle;
     message.signals = {static_cast<std::int32_t>(*axes[axis].controlword)};
     message.values = {word};
     message.time_to_live = time_to_live;
@@ -133,7 +139,7 @@ class MotionBus final : public AxesInVirtualTime {
     message.session = session;
     message.instance = 5;
     message.sender = "test";
-    message.cycle = static_cast<std::int64_t>(bridge.status().bus.cycle);
+    message.cycle = lcm.cycle;
     message.release = 1;
     lcm.send(bridge.channels().command, message);
   }
@@ -175,7 +181,7 @@ class MotionBus final : public AxesInVirtualTime {
     message.session = session;
     message.instance = instance;
     message.sender = "test";
-    message.cycle = static_cast<std::int64_t>(bridge.status().bus.cycle);
+    message.cycle = lcm.cycle;
     const auto& signals = network.plan.layout.signals;
     for (std::size_t i = network.plan.layout.inputs; i < signals.size(); ++i) {
       for (std::size_t axis = 0; axis < axes.size(); ++axis) {

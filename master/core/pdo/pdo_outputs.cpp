@@ -291,7 +291,7 @@ void PdoOutputs::command_limited(SignalIndex signal, std::int64_t value, std::ui
 
 bool PdoOutputs::lead(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept {
   Output& output = outputs_[output_of(signal)];
-  if (stopping_ || output.forced) return false;
+  if (is_overruled(signal)) return false;
   output.led = true;
   if (!limits_.empty() && !within_limits(signal, value, moment)) return false;
   take(output, signal,

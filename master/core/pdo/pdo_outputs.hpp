@@ -93,9 +93,13 @@ class PdoOutputs {
 
   /// Commands an output from a motion of the bus thread. Until release_lead(), commands of others
   /// to this output are refused, and none of them takes effect later. Returns false if the value
-  /// was not taken: it is outside the limits, or an ordered stop or the loss of a node commands the
-  /// output.
+  /// was not taken: it is outside the limits, or the output is_overruled().
   bool lead(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
+  /// Returns true if lead() takes no value, whatever it is, because an ordered stop, an NMT command
+  /// or the loss of a node commands the output.
+  bool is_overruled(SignalIndex signal) const noexcept {
+    return stopping_ || outputs_[output_of(signal)].forced;
+  }
   /// Commands the value that the last lead() has commanded once more. It is not judged: the axis
   /// stands, although the limits would have it brake. Does nothing if another value is in force.
   void hold(SignalIndex signal, OutputMoment moment) noexcept;

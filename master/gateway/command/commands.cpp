@@ -295,13 +295,20 @@ bool Commands::admits(const command_t& header, const CommandContext& context) {
   return check_message(from) && check_cycle(from);
 }
 
-bool Commands::lease(const command_t& header, std::span<const std::size_t> nodes,
-                     std::uint32_t cycles, const CommandContext& context) {
+bool Commands::admits_lease(const command_t& header, std::span<const std::size_t> nodes,
+                            const CommandContext& context) {
   const Received from{header, context};
   for (const std::size_t node : nodes) {
     if (const auto found = objection_of_age(node, from)) return refuse_node(node, *found, from);
     if (const auto found = objection_to(node, from)) return refuse_node(node, *found, from);
   }
+  return true;
+}
+
+bool Commands::lease(const command_t& header, std::span<const std::size_t> nodes,
+                     std::uint32_t cycles, const CommandContext& context) {
+  if (!admits_lease(header, nodes, context)) return false;
+  const Received from{header, context};
   for (const std::size_t node : nodes) take_node(node, cycles, from);
   return true;
 }

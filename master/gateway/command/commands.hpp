@@ -70,8 +70,11 @@ class Commands {
   /// Checks the session, the sender and the cycle of a message that is no command of outputs, such
   /// as a motion. A refusal is reported.
   bool admits(const command_t& header, const CommandContext& context);
-  /// Gives these nodes to the sender of such a message for `cycles`, if it is not too old and
-  /// nobody else holds one of them; otherwise, it gets none of them. A refusal is reported.
+  /// Returns true if the sender of such a message can get these nodes: it is not too old, and
+  /// nobody else holds one of them. A refusal is reported.
+  bool admits_lease(const command_t& header, std::span<const std::size_t> nodes,
+                    const CommandContext& context);
+  /// Gives these nodes to the sender of such a message for `cycles`, if admits_lease().
   bool lease(const command_t& header, std::span<const std::size_t> nodes, std::uint32_t cycles,
              const CommandContext& context);
   /// Does the same for each of these nodes that it can give, and reports nothing.

@@ -25,11 +25,17 @@ void MotionAnswers::announce(const std::string& kind, const std::string& text,
                                     *kept_back)});
 }
 
-void MotionAnswers::refuse(const MotionName& motion, const MotionRefusal& refusal,
-                           const CommandContext& context) {
+void MotionAnswers::announce_refusal(const MotionName& motion, const MotionRefusal& refusal,
+                                     const CommandContext& context) {
   announce("motion_refused",
            fmt::format("motion {} of '{}' refused: {}", motion.id, motion.sender, refusal.why),
            refusal.axis, context);
+}
+
+void MotionAnswers::refuse(const MotionName& motion, std::span<const std::size_t> axes,
+                           const MotionRefusal& refusal, const CommandContext& context) {
+  for (const std::size_t axis : axes) ended(axis, motion.id, ShownMotion::Ended::refused);
+  announce_refusal(motion, refusal, context);
 }
 
 void MotionAnswers::refuse(const MotionJob& job, const MotionRefusal& refusal,
@@ -37,7 +43,7 @@ void MotionAnswers::refuse(const MotionJob& job, const MotionRefusal& refusal,
   for (const motion::AxisGoal& goal : job.goals) {
     ended(goal.axis, job.name.id, ShownMotion::Ended::refused);
   }
-  refuse(job.name, refusal, context);
+  announce_refusal(job.name, refusal, context);
 }
 
 void MotionAnswers::stopped(std::size_t axis, std::int32_t id, const motion::Stop& stop,

@@ -22,10 +22,9 @@ class MotionAnswers {
   MotionAnswers(const BusPlan& plan, const std::vector<MotionAxis>& axes, NoticeSink announce)
       : plan_{plan}, axes_{axes}, announce_{std::move(announce)}, shown_(axes.size()) {}
 
-  /// A message that names no axis that is known is refused.
-  void refuse(const MotionName& motion, const MotionRefusal& refusal,
-              const CommandContext& context);
-  /// A motion of these axes is refused.
+  /// A message about these axes is refused, which are positions in motion_axes().
+  void refuse(const MotionName& motion, std::span<const std::size_t> axes,
+              const MotionRefusal& refusal, const CommandContext& context);
   void refuse(const MotionJob& job, const MotionRefusal& refusal, const CommandContext& context);
   /// The motion with this id of the axis was stopped.
   void stopped(std::size_t axis, std::int32_t id, const motion::Stop& stop,
@@ -41,6 +40,8 @@ class MotionAnswers {
   const std::vector<ShownMotion>& shown() const noexcept { return shown_; }
 
  private:
+  void announce_refusal(const MotionName& motion, const MotionRefusal& refusal,
+                        const CommandContext& context);
   void announce(const std::string& kind, const std::string& text, std::optional<std::size_t> axis,
                 const CommandContext& context);
   std::string name_of(std::size_t axis) const;

@@ -21,6 +21,15 @@ command_t header_of(const motion_command_t& command) {
   return header;
 }
 
+/// Returns true if the message is a motion, and no stop or sign of life.
+bool is_motion(const motion_command_t& command) {
+  return command.kind == "move" || command.kind == "jog";
+}
+
+MotionName motion_name(const motion_command_t& command) {
+  return {.id = command.id, .sender = command.sender};
+}
+
 }  // namespace
 
 MotionCommands::MotionCommands(const BusPlan& plan, Commands& commands, SubmitMotion submit,
@@ -37,13 +46,21 @@ MotionCommands::MotionCommands(const BusPlan& plan, Commands& commands, SubmitMo
 
 void MotionCommands::refuse(const motion_command_t& command, const MotionRefusal& refusal,
                             const CommandContext& context) {
-  answers_.refuse(MotionName{.id = command.id, .sender = command.sender}, refusal, context);
+  answers_.refuse(motion_name(command), {}, refusal, context);
 }
 
-void MotionCommands::tell_heard(const motion_command_t& command, std::uint8_t sender) {
-  submit_({.kind = motion::MessageKind::heard,
-           .sender = sender,
-           .cycle = static_cast<motion::CycleNumber>(command.cycle)});
+/// A jog goes on only if its sender names its axes.
+void MotionCommands::tell_heard(const motion_command_t& command, std::span<const std::size_t> named,
+                                std::uint8_t sender) {
+  const auto cycle = static_cast<motion::CycleNumber>(command.cycle);
+  submit_({.kind = motion::MessageKind::heard, .sender = sender, .cycle = cycle});
+  if (command.kind != "jog" && command.kind != "alive") return;
+  for (const std::size_t axis : named) {
+    submit_({.kind = motion::MessageKind::renew,
+             .sender = sender,
+             .cycle = cycle,
+             .axis = static_cast<std::uint8_t>(axis)});
+  }
 }
 
 /// Returns the positions of the goals' axes. Empty if one of them is unknown; a stop is for the
@@ -99,12 +116,10 @@ std::vector<std::size_t> MotionCommands::nodes_of(const motion_command_t& comman
 }
 
 void MotionCommands::take(const motion_command_t& command, const CommandContext& context) {
-  const command_t header = header_of(command);
-  if (!commands_.admits(header, context)) return;
+  if (!commands_.admits(header_of(command), context)) return;
   const auto axes = axes_of(command, context);
   if (!axes) return;
-  const bool known = command.kind == "move" || command.kind == "jog" || command.kind == "stop" ||
-                     command.kind == "alive";
+  const bool known = is_motion(command) || command.kind == "stop" || command.kind == "alive";
   if (!known || (axes->empty() && command.kind != "alive")) {
     return refuse(command,
                   {.why = known ? "it names no axis"
@@ -112,24 +127,80 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
                   context);
   }
   if (command.kind == "stop") return take_stop(command, *axes, context);
-  if (!is_motion_timeout(command.timeout_ms)) {
-    return refuse(command,
-                  {.why = fmt::format("its timeout of {} ms is not one of 0 to 10,000 ms",
-                                      command.timeout_ms)},
-                  context);
+  if (!has_timeout(command, context) || !is_newest(command, *axes, context)) return;
+  std::optional<MotionJob> job;
+  if (is_motion(command)) {
+    auto made = motion_job(command, *axes, limits_, plan_.cycle.period);
+    if (!made) return answers_.refuse(motion_name(command), *axes, made.error(), context);
+    job = std::move(*made);
   }
-  if (!is_newest(command, *axes, context)) return;
-  const auto lease =
-      static_cast<std::uint32_t>(cycles_in(motion_timeout_of(command), plan_.cycle.period));
-  const std::vector<std::size_t> nodes = nodes_of(command, *axes, context);
-  if (nodes.empty() || !commands_.lease(header, nodes, lease, context)) return;
+  const auto claim = claim_of(command, *axes, context);
+  if (!claim) return;
+  active_ = true;
+  if (job) {
+    note_motion(*job, command, *axes, claim->sender, context);
+    if (!jobs_.prepare(*job, context)) return;
+  }
+  hold(command, *axes, *claim, context);
+  if (job) jobs_.start(std::move(*job));
+}
+
+bool MotionCommands::has_timeout(const motion_command_t& command, const CommandContext& context) {
+  if (is_motion_timeout(command.timeout_ms)) return true;
+  refuse(
+      command,
+      {.why = fmt::format("its timeout of {} ms is not one of 0 to 10,000 ms", command.timeout_ms)},
+      context);
+  return false;
+}
+
+/// Finds out whether the sender may have the nodes of the axes. Empty if not, which is reported.
+std::optional<MotionCommands::Claim> MotionCommands::claim_of(const motion_command_t& command,
+                                                              std::span<const std::size_t> axes,
+                                                              const CommandContext& context) {
+  Claim claim{.nodes = nodes_of(command, axes, context)};
+  if (claim.nodes.empty()) return std::nullopt;
+  if (!commands_.admits_lease(header_of(command), claim.nodes, context)) return std::nullopt;
+  const auto lease = lease_of(command, context);
+  if (!lease) {
+    refuse(command, {.why = "it is older than its timeout"}, context);
+    return std::nullopt;
+  }
   const auto sender = senders_.number_of(command.instance, context.now);
   if (!sender) {
-    return refuse(command, {.why = "too many programs command motions"}, context);
+    refuse(command, {.why = "too many programs command motions"}, context);
+    return std::nullopt;
   }
-  tell_heard(command, *sender);
-  active_ = true;
-  if (command.kind != "alive") begin(command, *axes, *sender, context);
+  claim.cycles = *lease;
+  claim.sender = *sender;
+  return claim;
+}
+
+/// Gives the nodes to the sender, and tells the bus thread that it is alive. A motion that is
+/// refused takes no node, and is no sign of life.
+void MotionCommands::hold(const motion_command_t& command, std::span<const std::size_t> axes,
+                          const Claim& claim, const CommandContext& context) {
+  commands_.lease(header_of(command), claim.nodes, claim.cycles, context);
+  tell_heard(command, axes, claim.sender);
+}
+
+void MotionCommands::note_motion(MotionJob& job, const motion_command_t& command,
+                                 std::span<const std::size_t> axes, std::uint8_t sender,
+                                 const CommandContext& context) {
+  job.group.sender = sender;
+  job.until = context.now + motion_timeout_of(command);
+  for (const std::size_t axis : axes) sequences_[axis].moved(command);
+}
+
+/// Cycles for which the message holds its nodes from now on. Its timeout counts from the cycle of
+/// the image that its sender has seen, and includes the last cycle. Empty if it is over.
+std::optional<std::uint32_t> MotionCommands::lease_of(const motion_command_t& command,
+                                                      const CommandContext& context) const {
+  const auto seen = static_cast<std::uint64_t>(command.cycle);
+  const std::uint64_t age = context.cycle - std::min(context.cycle, seen);
+  const std::uint64_t whole = cycles_in(motion_timeout_of(command), plan_.cycle.period) + 1;
+  if (age >= whole) return std::nullopt;
+  return static_cast<std::uint32_t>(whole - age);
 }
 
 /// Each axis stops whose node its sender holds, whatever the other nodes are.
@@ -144,19 +215,17 @@ void MotionCommands::take_stop(const motion_command_t& command, std::span<const 
     any = true;
   }
   const auto sender = any ? senders_.number_of(command.instance, context.now) : std::nullopt;
-  if (!sender) return;
-  commands_.renew(
-      header, nodes_of(command, axes, context),
-      static_cast<std::uint32_t>(cycles_in(motion_timeout_of(command), plan_.cycle.period)),
-      context);
-  tell_heard(command, *sender);
+  const auto lease = lease_of(command, context);
+  if (!sender || !lease) return;
+  commands_.renew(header, nodes_of(command, axes, context), *lease, context);
+  tell_heard(command, {}, *sender);
 }
 
 /// A move or jog that a later message has overtaken is refused, and so is a copy from before a
 /// stop.
 bool MotionCommands::is_newest(const motion_command_t& command, std::span<const std::size_t> axes,
                                const CommandContext& context) {
-  if (command.kind != "move" && command.kind != "jog") return true;
+  if (!is_motion(command)) return true;
   for (const std::size_t axis : axes) {
     const std::string_view why =
         sequences_[axis].objection(command, static_cast<std::int64_t>(context.cycle));
@@ -170,16 +239,6 @@ bool MotionCommands::is_newest(const motion_command_t& command, std::span<const 
 void MotionCommands::stop(std::size_t axis) {
   jobs_.drop(axis);
   stops_.stop(axis);
-}
-
-void MotionCommands::begin(const motion_command_t& command, std::span<const std::size_t> axes,
-                           std::uint8_t sender, const CommandContext& context) {
-  auto job = motion_job(command, axes, limits_, plan_.cycle.period);
-  if (!job) return refuse(command, job.error(), context);
-  job->group.sender = sender;
-  job->until = context.now + motion_timeout_of(command);
-  for (const std::size_t axis : axes) sequences_[axis].moved(command);
-  jobs_.start(std::move(*job), context);
 }
 
 void MotionCommands::observe(const MotionSnapshot& snapshot, const CommandContext& context) {
@@ -205,6 +264,9 @@ void MotionCommands::take(const motion::MotionEnd& end, const CommandContext& co
   if (end.axis >= axes_.size()) return;
   const motion::TaggedOrder* order = jobs_.order(end.axis, end.order.id);
   const std::int32_t id = order == nullptr ? 0 : order->tag.id;
+  if (order != nullptr && motion::has_begun(end.order.outcome)) {
+    stops_.began(end.axis, order->order.sender, order->tag.instance);
+  }
   switch (end.order.outcome) {
     case motion::Outcome::done:
       answers_.ended(end.axis, id, ShownMotion::Ended::done);

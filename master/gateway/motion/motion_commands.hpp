@@ -18,9 +18,9 @@
 
 namespace takt {
 
-/// Turns motion_command_t messages into orders for the bus thread. The checks of Commands hold for
-/// them: session, sender, age, and who holds the nodes. A command takes effect for all of its axes
-/// or for none. Front thread.
+/// Turns motion_command_t messages into orders for the bus thread. The checks
+/// of Commands hold for them: session, sender, age, and who holds the nodes. A command takes effect
+/// for all of its axes or for none. Front thread.
 class MotionCommands {
  public:
   MotionCommands(const BusPlan& plan, Commands& commands, SubmitMotion submit, NoticeSink announce);
@@ -45,6 +45,13 @@ class MotionCommands {
   }
 
  private:
+  /// What the sender of a message takes.
+  struct Claim {
+    std::vector<std::size_t> nodes{};
+    std::uint32_t cycles = 0;  ///< for which it holds them
+    std::uint8_t sender = 0;   ///< its number for the bus thread
+  };
+
   std::optional<std::vector<std::size_t>> axes_of(const motion_command_t& command,
                                                   const CommandContext& context);
   std::vector<std::size_t> nodes_of(const motion_command_t& command,
@@ -54,10 +61,19 @@ class MotionCommands {
                  const CommandContext& context);
   bool is_newest(const motion_command_t& command, std::span<const std::size_t> axes,
                  const CommandContext& context);
-  void begin(const motion_command_t& command, std::span<const std::size_t> axes,
-             std::uint8_t sender, const CommandContext& context);
+  bool has_timeout(const motion_command_t& command, const CommandContext& context);
+  std::optional<Claim> claim_of(const motion_command_t& command, std::span<const std::size_t> axes,
+                                const CommandContext& context);
+  void hold(const motion_command_t& command, std::span<const std::size_t> axes, const Claim& claim,
+            const CommandContext& context);
+  void note_motion(MotionJob& job, const motion_command_t& command,
+                   std::span<const std::size_t> axes, std::uint8_t sender,
+                   const CommandContext& context);
+  std::optional<std::uint32_t> lease_of(const motion_command_t& command,
+                                        const CommandContext& context) const;
   void stop(std::size_t axis);
-  void tell_heard(const motion_command_t& command, std::uint8_t sender);
+  void tell_heard(const motion_command_t& command, std::span<const std::size_t> named,
+                  std::uint8_t sender);
   void refuse(const motion_command_t& command, const MotionRefusal& refusal,
               const CommandContext& context);
 

@@ -15,8 +15,9 @@ Time motion_timeout_of(const motion_command_t& command) noexcept;
 /// Returns the number of periods that begin in this time, at least 1.
 std::uint64_t cycles_in(Time span, Time period) noexcept;
 
-/// Turns a move or jog into a job, of which the caller sets `until` and the number of the sender.
-/// `axes` are those of its goals, as positions in motion_axes(); `period` is that of the cycle.
+/// Turns a move or jog into a job, of which the caller sets `until` and the number of the
+/// sender. `axes` are those of its goals, as positions in motion_axes(); `period` is that of the
+/// cycle.
 std::expected<MotionJob, MotionRefusal> motion_job(const motion_command_t& command,
                                                    std::span<const std::size_t> axes,
                                                    const AxisMotionLimits& limits, Time period);

@@ -33,6 +33,7 @@ struct MotionJob {
   Time until{};               ///< it is refused if it has no orders by then
   motion::GroupGoal group{};
   std::vector<motion::AxisGoal> goals{};
+  std::vector<motion::MotionOrder> orders{};  ///< planned, and not sent yet
   unsigned tries = 0;
   std::uint32_t order = 0;        ///< id of its orders; 0 while it waits to be planned
   motion::CycleNumber begin = 0;  ///< of its orders

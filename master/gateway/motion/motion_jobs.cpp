@@ -31,9 +31,14 @@ MotionJobs::MotionJobs(const BusPlan& plan, const std::vector<MotionAxis>& axes,
       submit_{std::move(submit)},
       planner_{axes.size(), std::chrono::duration<double>{plan.cycle.period}.count()} {}
 
-void MotionJobs::start(MotionJob job, const CommandContext& context) {
+bool MotionJobs::prepare(MotionJob& job, const CommandContext& context) {
   drop_replaced(job);
-  if (!plan(job, context)) jobs_.push_back(std::move(job));
+  return plan(job, context);
+}
+
+void MotionJobs::start(MotionJob job) {
+  send(job);
+  jobs_.push_back(std::move(job));
 }
 
 void MotionJobs::drop(std::size_t axis) {
@@ -47,34 +52,57 @@ void MotionJobs::drop_replaced(const MotionJob& job) {
   for (const motion::AxisGoal& goal : job.goals) drop(goal.axis);
 }
 
-/// Plans the job and sends its orders. Returns false if it has to wait for the next report, or for
-/// the bus thread's answer.
-bool MotionJobs::plan(MotionJob& job, const CommandContext& context) {
-  if (!holds(job, context)) {
-    answers_.refuse(job, {.why = "its sender does not hold the nodes any longer"}, context);
-    return true;
-  }
+motion::CycleNumber MotionJobs::next_begin(const CommandContext& context) const noexcept {
   const std::uint64_t since = context.cycle - std::min(context.cycle, snapshot_.cycle);
-  const auto orders = planner_.plan(job.group, job.goals, planner_.cycle() + since + lead_cycles);
-  if (!orders) {
-    const motion::PlanRefusal& refusal = orders.error();
-    const bool waits =
-        refusal.fault == motion::PlanFault::no_report || refusal.fault == motion::PlanFault::busy;
-    if (waits && ++job.tries < most_tries) return false;
-    const bool of_axis = refusal.fault != motion::PlanFault::no_report;
-    answers_.refuse(job,
-                    {.why = std::string{text(refusal)},
-                     .axis = of_axis ? std::optional<std::size_t>{refusal.axis} : std::nullopt},
-                    context);
+  return planner_.cycle() + since + lead_cycles;
+}
+
+/// Returns false if the job is refused. It has no orders if it has to wait for the next report.
+bool MotionJobs::plan(MotionJob& job, const CommandContext& context) {
+  const auto orders = planner_.plan(job.group, job.goals, next_begin(context));
+  if (orders) {
+    take_orders(job, *orders);
     return true;
   }
-  job.order = orders->front().id;
-  job.begin = orders->front().begin;
+  const motion::PlanFault fault = orders.error().fault;
+  const bool waits = fault == motion::PlanFault::no_report || fault == motion::PlanFault::busy;
+  if (waits && ++job.tries < most_tries) return true;
+  refuse_plan(job, orders.error(), context);
+  return false;
+}
+
+void MotionJobs::take_orders(MotionJob& job, std::span<const motion::MotionOrder> orders) {
+  job.orders.assign(orders.begin(), orders.end());
+  job.order = orders.front().id;
+  job.begin = orders.front().begin;
   ++job.tries;
-  for (const motion::MotionOrder& order : *orders) {
+}
+
+void MotionJobs::refuse_plan(const MotionJob& job, const motion::PlanRefusal& refusal,
+                             const CommandContext& context) {
+  const bool of_axis = refusal.fault != motion::PlanFault::no_report;
+  answers_.refuse(job,
+                  {.why = std::string{text(refusal)},
+                   .axis = of_axis ? std::optional<std::size_t>{refusal.axis} : std::nullopt},
+                  context);
+}
+
+void MotionJobs::send(MotionJob& job) {
+  for (const motion::MotionOrder& order : job.orders) {
     submit_({.kind = motion::MessageKind::order, .order = order});
   }
-  return false;
+  job.orders.clear();
+}
+
+/// Plans a job that waits. Returns false if it is refused.
+bool MotionJobs::plan_again(MotionJob& job, const CommandContext& context) {
+  if (!holds(job, context)) {
+    answers_.refuse(job, {.why = "its sender does not hold the nodes any longer"}, context);
+    return false;
+  }
+  if (!plan(job, context)) return false;
+  send(job);
+  return true;
 }
 
 void MotionJobs::observe(const MotionSnapshot& snapshot, const CommandContext& context) {
@@ -83,14 +111,7 @@ void MotionJobs::observe(const MotionSnapshot& snapshot, const CommandContext& c
   std::erase_if(jobs_, [&](const MotionJob& job) {
     return job.order != 0 && snapshot.axes[job.goals.front().axis].running == job.order;
   });
-  for (std::size_t i = 0; i < jobs_.size();) {
-    const bool ended = jobs_[i].order == 0 && plan(jobs_[i], context);
-    if (ended) {
-      jobs_.erase(jobs_.begin() + static_cast<std::ptrdiff_t>(i));
-    } else {
-      ++i;
-    }
-  }
+  std::erase_if(jobs_, [&](MotionJob& job) { return job.order == 0 && !plan_again(job, context); });
 }
 
 bool MotionJobs::holds(const MotionJob& job, const CommandContext& context) const {

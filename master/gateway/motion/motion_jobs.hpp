@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "eds_parser/table/motion_axes.hpp"
@@ -20,9 +21,10 @@ class MotionJobs {
   MotionJobs(const BusPlan& plan, const std::vector<MotionAxis>& axes, const Commands& commands,
              MotionAnswers& answers, SubmitMotion submit);
 
-  /// Plans the job and sends its orders, or lets it wait for the next report. It replaces older
-  /// jobs of its axes.
-  void start(MotionJob job, const CommandContext& context);
+  /// Plans a new job, which replaces older ones of its axes. Returns false if it is refused.
+  bool prepare(MotionJob& job, const CommandContext& context);
+  /// Sends the orders of a job that was prepared, or lets it wait for the next report.
+  void start(MotionJob job);
   /// Forgets the job of the axis, because a stop replaces it.
   void drop(std::size_t axis);
   /// Takes the newest reports, and plans what waits for them.
@@ -46,7 +48,13 @@ class MotionJobs {
   const MotionSnapshot& snapshot() const noexcept { return snapshot_; }
 
  private:
+  motion::CycleNumber next_begin(const CommandContext& context) const noexcept;
   bool plan(MotionJob& job, const CommandContext& context);
+  void take_orders(MotionJob& job, std::span<const motion::MotionOrder> orders);
+  void refuse_plan(const MotionJob& job, const motion::PlanRefusal& refusal,
+                   const CommandContext& context);
+  void send(MotionJob& job);
+  bool plan_again(MotionJob& job, const CommandContext& context);
   bool holds(const MotionJob& job, const CommandContext& context) const;
   static bool has_begin_ahead(const MotionJob& job, const CommandContext& context);
   void drop_replaced(const MotionJob& job);

@@ -99,6 +99,8 @@ std::string_view text(motion::StopCause cause) noexcept {
       return "its set-points were not sent in several cycles";
     case ordered_stop:
       return "taktd stops";
+    case nmt_command:
+      return "an NMT command stops the drive";
     case application:
       return "its sender has stopped it";
   }

@@ -76,7 +76,8 @@ std::span<const AxisReport> AxisMotions::run(CycleNumber cycle,
 
 void AxisMotions::observe(CycleNumber cycle, std::span<const AxisInput> inputs) noexcept {
   for (std::size_t i = 0; i < runners_.size(); ++i) {
-    const CycleNumber silence = silence_of(runners_[i].sender(), cycle);
+    const Silence silence{.sender = silence_of(runners_[i].sender(), cycle),
+                          .jog = runners_[i].jog_silence(runners_[i].sender(), cycle)};
     const StopCause cause = runners_[i].observe(cycle, inputs[i], silence);
     if (cause != StopCause::none) add_stop(i, cause);
   }
@@ -126,7 +127,10 @@ void AxisMotions::begin_orders(CycleNumber cycle) noexcept {
 
 Outcome AxisMotions::objection_of(std::size_t axis, CycleNumber cycle) noexcept {
   const MotionOrder& order = *runners_[axis].due(cycle);
-  if (silence_of(order.sender, cycle) > order.timeout) return Outcome::sender_was_silent;
+  const CycleNumber silence = order.ending == Ending::cruise
+                                  ? runners_[axis].jog_silence(order.sender, cycle)
+                                  : silence_of(order.sender, cycle);
+  if (silence > order.timeout) return Outcome::sender_was_silent;
   return runners_[axis].objection(cycle);
 }
 

@@ -23,6 +23,11 @@ class AxisMotions {
   Outcome take(const MotionOrder& order) noexcept;
   /// The sender was alive in this cycle, which is not later than the present one.
   void sender_heard(std::uint8_t sender, CycleNumber cycle) noexcept;
+  /// The sender has named this axis in a message. A jog ends by the silence about its axes,
+  /// whatever else its sender says.
+  void renew_jog(std::uint8_t axis, const LifeSign& sign) noexcept {
+    if (axis < runners_.size()) runners_[axis].renew_jog(sign);
+  }
   /// The sender may not command this axis any longer. If it is that of the newest motion, it counts
   /// as silent from now on.
   void sender_left(std::uint8_t axis, std::uint8_t sender) noexcept;

@@ -45,6 +45,7 @@ enum class StopCause : std::uint8_t {
   no_sync,          ///< SYNC was missing in several periods
   not_sent,         ///< the set-points of an axis were not sent in several cycles
   ordered_stop,     ///< of the master
+  nmt_command,      ///< the master stops the axis, because NMT ends its PDO exchange
   application,      ///< it asked for the stop
 };
 
@@ -75,6 +76,12 @@ enum class Outcome : std::uint8_t {
   sender_was_silent,  ///< longer than the timeout, before its first cycle
   group_incomplete,   ///< an order of the group is missing, or was refused
 };
+
+/// Returns true if an order with this outcome may have begun: one that waited can end by a stop or
+/// a newer one, too.
+constexpr bool has_begun(Outcome outcome) noexcept {
+  return outcome == Outcome::done || outcome == Outcome::stopped || outcome == Outcome::replaced;
+}
 
 /// How an order ended.
 struct EndedOrder {

@@ -104,7 +104,7 @@ void AxisRunner::refuse(Outcome why) noexcept {
 }
 
 StopCause AxisRunner::observe(CycleNumber cycle, const AxisInput& input,
-                              CycleNumber silence) noexcept {
+                              const Silence& silence) noexcept {
   const bool followed = std::exchange(follows_, input.condition == AxisCondition::enabled);
   report_.actual = input.actual;
   report_.following_error = report_.commanded.position - input.actual.position;
@@ -123,7 +123,7 @@ StopCause AxisRunner::observe(CycleNumber cycle, const AxisInput& input,
     return cause_of(input.condition);
   }
   report_.kept_alive =
-      newest_ != 0 && (report_.state != AxisState::standing || silence <= timeout_);
+      newest_ != 0 && (report_.state != AxisState::standing || silence.sender <= timeout_);
   if (report_.state == AxisState::standing && input.set_point) {
     report_.commanded = {.position = *input.set_point};
   }
@@ -131,9 +131,13 @@ StopCause AxisRunner::observe(CycleNumber cycle, const AxisInput& input,
     abandon({.cause = StopCause::not_sent, .axis = axis_});
   }
   if (followed && !follows_) return cause_of(input.condition);
-  if (report_.state != AxisState::moving) return StopCause::none;
+  return report_.state == AxisState::moving ? cause_of_motion(cycle, silence) : StopCause::none;
+}
+
+StopCause AxisRunner::cause_of_motion(CycleNumber cycle, const Silence& silence) const noexcept {
   if (std::abs(report_.following_error) > max_following_error_) return StopCause::following_error;
-  if (silence > timeout_) return StopCause::sender_silent;
+  const bool is_jog = player_.ending() == Ending::cruise;
+  if ((is_jog ? silence.jog : silence.sender) > timeout_) return StopCause::sender_silent;
   if (cycle - began_ > latest_stop_) return StopCause::end_of_range;
   return StopCause::none;
 }
@@ -174,21 +178,27 @@ const AxisReport& AxisRunner::run(CycleNumber cycle) noexcept {
   }
   report_.commanded = commanded_at(cycle);
   if (report_.state == AxisState::standing) return report_;
+  end_or_count_down(cycle);
+  return report_;
+}
+
+void AxisRunner::end_or_count_down(CycleNumber cycle) noexcept {
+  const double left = player_.duration() - time_at(cycle);
   if (!player_.is_over()) {
-    const double left = player_.duration() - static_cast<double>(cycle - began_) * period_;
     constexpr double most = 1e15;
-    report_.cycles_left =
-        static_cast<CycleNumber>(std::min(std::ceil(std::max(left, 0.0) / period_), most));
+    constexpr double rounding = 1e-6;  // cycles
+    const double cycles = std::ceil(left / period_ - rounding);
+    report_.cycles_left = static_cast<CycleNumber>(std::clamp(cycles, 0.0, most));
   } else if (player_.ending() == Ending::rest) {
     if (report_.state == AxisState::moving) end(Outcome::done);
     report_.state = AxisState::standing;
+    report_.commanded = {.position = report_.commanded.position};
   }
-  return report_;
 }
 
 State AxisRunner::commanded_at(CycleNumber cycle) noexcept {
   if (report_.state == AxisState::standing) return report_.commanded;
-  return player_.at(static_cast<double>(cycle - began_) * period_);
+  return player_.at(time_at(cycle));
 }
 
 void AxisRunner::end(Outcome outcome) noexcept {

@@ -1,5 +1,7 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "master/motion/beat/axis_report.hpp"
@@ -7,6 +9,12 @@
 #include "master/motion/beat/profile_player.hpp"
 
 namespace takt::motion {
+
+/// Cycles since the sender of a motion was heard, and since it has named the axis.
+struct Silence {
+  CycleNumber sender = 0;
+  CycleNumber jog = 0;
+};
 
 /// Runs the motions of one axis, cycle by cycle. Its states:
 ///
@@ -44,9 +52,8 @@ class AxisRunner {
   void begin(CycleNumber cycle) noexcept;
   void refuse(Outcome why) noexcept;
 
-  /// Takes what the drive tells. Returns the cause if the axis makes its group stop. `silence` is
-  /// the number of cycles since the sender was heard.
-  StopCause observe(CycleNumber cycle, const AxisInput& input, CycleNumber silence) noexcept;
+  /// Takes what the drive tells. Returns the cause if the axis makes its group stop.
+  StopCause observe(CycleNumber cycle, const AxisInput& input, const Silence& silence) noexcept;
   /// Starts the shortest stop from the commanded state of the cycle before. It also ends an order
   /// that waits. An axis that doesn't move keeps its state.
   void stop(const Stop& stop) noexcept;
@@ -56,6 +63,16 @@ class AxisRunner {
   void leave_group() noexcept;
   /// The sender counts as silent from now on.
   void forget_sender() noexcept { sender_ = no_sender; }
+  /// The sender has named the axis.
+  void renew_jog(const LifeSign& sign) noexcept {
+    const bool is_older = named_.sender == sign.sender && named_.cycle > sign.cycle;
+    if (!is_older) named_ = sign;
+  }
+  /// Returns the number of cycles since this sender has named the axis.
+  CycleNumber jog_silence(std::uint8_t sender, CycleNumber cycle) const noexcept {
+    if (sender != named_.sender) return std::numeric_limits<CycleNumber>::max();
+    return cycle - std::min(named_.cycle, cycle);
+  }
   /// Gives the commanded state of the cycle.
   const AxisReport& run(CycleNumber cycle) noexcept;
   /// Forgets which orders have ended. Called before the orders of the next cycle are taken.
@@ -74,8 +91,8 @@ class AxisRunner {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(report_, player_, began_, stop_limits_, timeout_, latest_stop_, max_following_error_,
-          waiting_, newest_, last_run_, has_taken_, follows_);
+    state(report_, player_, named_, began_, stop_limits_, timeout_, latest_stop_,
+          max_following_error_, waiting_, newest_, last_run_, has_taken_, follows_);
     state.position(group_, max_axes);
     state.position(sender_, max_axes + 1);
   }
@@ -84,6 +101,11 @@ class AxisRunner {
   static constexpr std::uint8_t no_sender = max_axes;
 
   State commanded_at(CycleNumber cycle) noexcept;
+  double time_at(CycleNumber cycle) const noexcept {
+    return static_cast<double>(cycle - began_) * period_;
+  }
+  StopCause cause_of_motion(CycleNumber cycle, const Silence& silence) const noexcept;
+  void end_or_count_down(CycleNumber cycle) noexcept;
   void end(Outcome outcome) noexcept;
   void end(std::uint32_t id, Outcome outcome) noexcept {
     report_.ended.add({.id = id, .outcome = outcome});
@@ -93,6 +115,7 @@ class AxisRunner {
   std::uint8_t axis_;
   AxisReport report_;
   ProfilePlayer player_;
+  LifeSign named_;  ///< the newest message that has named the axis
   CycleNumber began_ = 0;
   CycleNumber last_run_ = 0;  ///< the cycle of the commanded state
   Limits stop_limits_;

@@ -13,14 +13,15 @@ enum class MessageKind : std::uint8_t {
   stop,   ///< the axis and its group stop along their limits
   left,   ///< this sender may not command the axis any longer
   watch,  ///< the axes are read from now on, although nobody moves them
+  renew,  ///< the sender has named the axis, so a jog of it may go on
 };
 
 /// A message of the front thread about motions. Plain data.
 struct MotionMessage {
   MessageKind kind = MessageKind::heard;
-  std::uint8_t sender = 0;  ///< of `heard` and `left`
-  CycleNumber cycle = 0;    ///< of `heard`: the cycle whose image the sender has seen
-  std::uint8_t axis = 0;    ///< of `stop` and `left`
+  std::uint8_t sender = 0;  ///< of `heard`, `left` and `renew`
+  CycleNumber cycle = 0;    ///< of `heard` and `renew`: the cycle whose image the sender has seen
+  std::uint8_t axis = 0;    ///< of `stop`, `left` and `renew`
   MotionOrder order{};      ///< of `order`
 
   template <class Archive>

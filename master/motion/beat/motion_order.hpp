@@ -22,6 +22,18 @@ enum class Ending : std::uint8_t {
   cruise,  ///< it keeps the velocity of the end until it is stopped (jog)
 };
 
+/// The newest message of a sender: the cycle whose image it had seen.
+struct LifeSign {
+  std::uint8_t sender = max_axes;  ///< max_axes: of nobody
+  CycleNumber cycle = 0;
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(cycle);
+    state.position(sender, max_axes + 1);
+  }
+};
+
 /// A planned motion of one axis, which the bus thread runs from one cycle on. All orders of a group
 /// that have the same id begin together, or none does. Plain data.
 struct MotionOrder {

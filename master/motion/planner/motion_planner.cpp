@@ -15,6 +15,11 @@ State state_of(const MotionOrder& order, CycleNumber cycle, double period) {
   return player.at(static_cast<double>(cycle - order.begin) * period);
 }
 
+/// Returns true if a jog of this velocity leads an axis from outside its range still farther out.
+bool leads_out(const PositionRange& range, double position, double velocity) noexcept {
+  return (position < range.min && velocity <= 0.0) || (position > range.max && velocity >= 0.0);
+}
+
 }  // namespace
 
 const MotionOrder* MotionPlanner::Axis::waiting(CycleNumber cycle) const noexcept {
@@ -125,8 +130,9 @@ std::expected<void, PlanRefusal> MotionPlanner::set_orders(const GroupGoal& grou
       if (jog_start > longest_jog_start) {
         return std::unexpected{PlanRefusal{.fault = PlanFault::too_long, .axis = goal.axis}};
       }
-      const auto latest = cycles_with_stop(order, goal.range, period_, order.latest_stop);
-      if (!latest) {
+      const PositionRange range = widened(goal.range, order.from.position);
+      const auto latest = cycles_with_stop(order, range, period_, order.latest_stop);
+      if (!latest || leads_out(goal.range, order.from.position, goal.to.velocity)) {
         return std::unexpected{PlanRefusal{
             .fault = PlanFault::impossible, .axis = goal.axis, .defect = Defect::position_range}};
       }
@@ -144,11 +150,16 @@ std::expected<std::span<const MotionOrder>, PlanRefusal> MotionPlanner::plan(
   if (!first) return std::unexpected{first.error()};
   if (const auto set = set_tasks(group, goals, *first); !set) return std::unexpected{set.error()};
   if (const auto set = set_orders(group, goals, *first); !set) return std::unexpected{set.error()};
+  return number_orders(group.tag);
+}
+
+/// Remembers the orders, which have the next id.
+std::span<const MotionOrder> MotionPlanner::number_orders(const MotionTag& tag) {
   ++id_;
   for (const MotionOrder& order : orders_) {
     std::vector<TaggedOrder>& sent = axes_[order.axis].sent;
     if (sent.size() == Axis::most_sent) sent.erase(sent.begin() + 1);  // the first one may run
-    sent.push_back({.order = order, .tag = group.tag});
+    sent.push_back({.order = order, .tag = tag});
   }
   return orders_;
 }

@@ -107,6 +107,7 @@ class MotionPlanner {
                                                    CycleNumber begin) const;
   std::expected<void, PlanRefusal> set_tasks(const GroupGoal& group,
                                              std::span<const AxisGoal> goals, CycleNumber begin);
+  std::span<const MotionOrder> number_orders(const MotionTag& tag);
   std::expected<void, PlanRefusal> set_orders(const GroupGoal& group,
                                               std::span<const AxisGoal> goals, CycleNumber begin);
 

@@ -25,6 +25,10 @@ class DrivenAxis {
   /// if a motion has commanded it last, or if nobody has, so that the drive does not jump when it
   /// is enabled. Returns false if a set-point was not taken, see PdoOutputs::lead().
   bool write(PdoOutputs& outputs, const motion::AxisReport& report, OutputMoment moment) noexcept;
+  /// Returns true if no set-point is taken at present, because the master stops the axis itself.
+  bool is_overruled(const PdoOutputs& outputs) const noexcept {
+    return outputs.is_overruled(axis_.target);
+  }
   /// Keeps the commands of all outputs of the node valid in this cycle.
   void keep_alive(PdoOutputs& outputs, OutputMoment moment) const noexcept {
     for (const SignalIndex output : node_outputs_) outputs.keep_alive(output, moment);

@@ -97,6 +97,9 @@ void MotionStage<L, S>::accept(const motion::MotionMessage& message,
       break;
     case motion::MessageKind::watch:
       break;
+    case motion::MessageKind::renew:
+      motions_.renew_jog(message.axis, {message.sender, std::min(message.cycle, cycle)});
+      break;
     case motion::MessageKind::order: {
       const motion::Outcome refusal = motions_.take(message.order);
       if (refusal == motion::Outcome::none) break;
@@ -120,7 +123,9 @@ void MotionStage<L, S>::run_beat(OutputMoment moment, bool stopping) noexcept {
   const auto reports = motions_.run(moment.cycle, inputs_);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (axes_[i].write(bus_.pdos.outputs(), reports[i], moment) || stopping) continue;
-    motions_.abandon(static_cast<std::uint8_t>(i), motion::StopCause::limit);
+    const bool overruled = axes_[i].is_overruled(bus_.pdos.outputs());
+    motions_.abandon(static_cast<std::uint8_t>(i),
+                     overruled ? motion::StopCause::nmt_command : motion::StopCause::limit);
   }
   tell_ends();
   front_.exchange().motion_board.write(moment.cycle, reports);

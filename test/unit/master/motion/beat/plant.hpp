@@ -62,6 +62,7 @@ class Plant {
   /// Takes the order and a sign of life of its sender.
   bool take(const MotionOrder& order) {
     motions.sender_heard(order.sender, cycle);
+    motions.renew_jog(order.axis, {order.sender, cycle});
     return motions.take(order) == Outcome::none;
   }
 

@@ -44,6 +44,7 @@ class Line {
     const auto orders = plan(goals, goal);
     if (!orders) return false;
     for (const MotionOrder& order : *orders) {
+      motions.renew_jog(order.axis, {order.sender, cycle});
       EXPECT_EQ(motions.take(order), Outcome::none);
     }
     return true;
@@ -152,6 +153,22 @@ TEST(MotionPlanner, AStoppingAxisIsRefused) {
   line.motions.stop_axis(0, StopCause::application);
   line.step();
   EXPECT_EQ(line.plan({to(0, 0.0)}).error().fault, PlanFault::stopping);
+}
+
+/// The axis was moved by hand, or its range was changed.
+TEST(MotionPlanner, AJogBringsAnAxisBackIntoItsRangeButNotFartherOut) {
+  Line line{1};
+  AxisGoal jog{
+      .axis = 0, .to = {.velocity = -0.2}, .limits = limits, .range = {.min = 0.5, .max = 2.0}};
+  const auto refused = line.plan({jog}, Goal::velocity);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().defect, Defect::position_range);
+  jog.to.velocity = 0.2;
+  ASSERT_TRUE(line.send({jog}, Goal::velocity));
+  line.steps(20'000);
+  EXPECT_EQ(line.axis(0).state, AxisState::standing);
+  EXPECT_LE(line.axis(0).commanded.position, 2.0);
+  EXPECT_NEAR(line.axis(0).commanded.position, 2.0, 1e-3);
 }
 
 }  // namespace
