@@ -387,6 +387,47 @@ TEST(MotionCommand, ReportsThatAnNmtCommandHasEndedAMotion) {
       << (bus.notices.empty() ? "nothing" : bus.notices.back().text);
 }
 
+/// Relative to the commanded position in the cycle in which the motion begins, also while the axis
+/// moves.
+TEST(MotionCommand, MovesByADistance) {
+  MotionBus bus;
+  bus.enable();
+  const auto move_by = [&](std::int32_t id, double shoulder, double elbow) {
+    motion_command_t message = bus.command("move_by", id);
+    message.goals = {MotionBus::goal("shoulder", shoulder), MotionBus::goal("elbow", elbow)};
+    bus.send(message);
+    return message;
+  };
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  move_by(1, 0.5, -0.25);
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).ended_id == 1; }));
+  const motion_command_t second = move_by(2, 0.5, 0.5);
+  bus.send(second);  // a copy
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).ended_id == 2 && bus.axis(0).id == 0; }));
+  EXPECT_TRUE(bus.said("motion_refused", "a copy must not move again"));
+  EXPECT_NEAR(bus.axis(0).position, 1.0, 1e-9);
+  EXPECT_NEAR(bus.axis(1).position, 0.25, 1e-9);
+  bus.move_one(3, 5.0);
+  bus.run(300);
+  ASSERT_EQ(bus.axis(0).state, moving);
+  motion_command_t back = bus.command("move_by", 4);
+  back.goals = {MotionBus::goal("shoulder", -0.5)};
+  bus.send(back);
+  double begin = 0.0;
+  ASSERT_TRUE(bus.run_until([&] {
+    begin = bus.axis(0).position;
+    return bus.axis(0).id == 4;
+  }));
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).ended_id == 4; }));
+  EXPECT_NEAR(bus.axis(0).position, begin - 0.5, 1e-9);
+  bus.notices.clear();
+  motion_command_t far = bus.command("move_by", 5);
+  far.goals = {MotionBus::goal("shoulder", 99.0)};
+  bus.send(far);
+  bus.run(5);
+  EXPECT_TRUE(bus.said("motion_refused", "would leave its range of positions"));
+}
+
 TEST(MotionCommand, StopEndsTheMotionOfTheWholeGroup) {
   MotionBus bus;
   bus.enable();

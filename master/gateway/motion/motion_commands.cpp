@@ -23,7 +23,7 @@ command_t header_of(const motion_command_t& command) {
 
 /// Returns true if the message is a motion, and no stop or sign of life.
 bool is_motion(const motion_command_t& command) {
-  return command.kind == "move" || command.kind == "jog";
+  return command.kind == "move" || command.kind == "move_by" || command.kind == "jog";
 }
 
 MotionName motion_name(const motion_command_t& command) {
@@ -121,10 +121,11 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
   if (!axes) return;
   const bool known = is_motion(command) || command.kind == "stop" || command.kind == "alive";
   if (!known || (axes->empty() && command.kind != "alive")) {
-    return refuse(command,
-                  {.why = known ? "it names no axis"
-                                : "its kind is none of \"move\", \"jog\", \"stop\", \"alive\""},
-                  context);
+    return refuse(
+        command,
+        {.why = known ? "it names no axis"
+                      : "its kind is none of \"move\", \"move_by\", \"jog\", \"stop\", \"alive\""},
+        context);
   }
   if (command.kind == "stop") return take_stop(command, *axes, context);
   if (!has_timeout(command, context) || !is_newest(command, *axes, context)) return;

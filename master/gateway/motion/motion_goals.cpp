@@ -72,6 +72,7 @@ std::expected<MotionJob, MotionRefusal> motion_job(const motion_command_t& comma
   MotionJob job{.name = {.id = command.id, .sender = command.sender}, .instance = command.instance};
   job.group.goal = command.kind == "jog" ? motion::Goal::velocity : motion::Goal::position;
   job.group.synchronisation = *synchronisation;
+  if (command.kind == "move_by") job.group.reference = motion::Reference::commanded;
   job.group.timeout = cycles_in(motion_timeout_of(command), period);
   job.group.tag = {.id = command.id, .instance = command.instance};
   for (std::size_t i = 0; i < axes.size(); ++i) {

@@ -17,7 +17,7 @@ class MotionSequence {
     stop_ = {.instance = stop.instance, .cycle = cycle, .utime = stop.utime};
   }
   void moved(const motion_command_t& move) noexcept {
-    move_ = {.instance = move.instance, .cycle = move.cycle, .utime = move.utime};
+    move_ = {.instance = move.instance, .cycle = move.cycle, .utime = move.utime, .id = move.id};
   }
 
   /// Returns why a move or jog is refused; empty if it is not. `now` is the present cycle: a later
@@ -30,14 +30,22 @@ class MotionSequence {
     if (move_.instance == move.instance && move_.cycle == move.cycle && move.utime < move_.utime) {
       return "a newer motion of its sender from the same image has overtaken it";
     }
+    if (move.kind == "move_by" && has_come(move)) return copy;
     return {};
   }
+  /// Returns true if this message was the newest motion before, or has all of its numbers.
+  bool has_come(const motion_command_t& move) const noexcept {
+    return move_.instance == move.instance && move_.cycle == move.cycle &&
+           move_.utime == move.utime && move_.id == move.id;
+  }
+  static constexpr std::string_view copy = "it has come before: a copy must not move again";
 
  private:
   struct Message {
     std::int64_t instance = 0;  ///< 0: none has come
     std::int64_t cycle = 0;
     std::int64_t utime = 0;
+    std::int32_t id = 0;
   };
   Message stop_;
   Message move_;

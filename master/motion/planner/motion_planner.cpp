@@ -89,7 +89,9 @@ std::expected<void, PlanRefusal> MotionPlanner::set_tasks(const GroupGoal& group
     if (!from) return std::unexpected{PlanRefusal{.fault = from.error(), .axis = goal.axis}};
     // A jog has no range here: it stops in time, see MotionOrder::latest_stop.
     const PositionRange range = group.goal == Goal::position ? goal.range : PositionRange{};
-    tasks_.push_back({.from = *from, .to = goal.to, .limits = goal.limits, .range = range});
+    State to = goal.to;
+    if (group.reference == Reference::commanded) to.position += from->position;
+    tasks_.push_back({.from = *from, .to = to, .limits = goal.limits, .range = range});
   }
   planned_.resize(tasks_.size());
   const TrajectoryOptions options{.goal = group.goal, .synchronisation = group.synchronisation};

@@ -29,10 +29,17 @@ struct MotionTag {
   std::int64_t instance = 0;
 };
 
+/// Where the target positions of a move count from.
+enum class Reference : std::uint8_t {
+  origin,
+  commanded,  ///< the position that the axis is commanded in the first cycle of the motion
+};
+
 /// What an application wants of a group of axes, which begin and stop together.
 struct GroupGoal {
   Goal goal = Goal::position;  ///< velocity: a jog
   Synchronisation synchronisation = Synchronisation::time;
+  Reference reference = Reference::origin;  ///< of the positions of a move
   std::uint8_t sender = 0;
   CycleNumber timeout = 0;  ///< periods for which the motion outlives the silence of its sender
   MotionTag tag{};
