@@ -30,10 +30,12 @@ namespace takt {
 /// The LCM channels of one bus.
 struct Channels {
   explicit Channels(const std::string& bus);
-  std::string image, layout, command, motion, motion_command, status, sync, pdos, timing, event,
-      request, reply, transfer, transfer_state;
+  std::string image, layout, command, motion, motion_command, motion_stream, status, sync, pdos,
+      timing, event, request, reply, transfer, transfer_state;
   /// Returns the channels that the daemon receives.
-  std::vector<std::string> heard() const { return {command, motion_command, request, transfer}; }
+  std::vector<std::string> heard() const {
+    return {command, motion_command, motion_stream, request, transfer};
+  }
 };
 
 struct BridgeOptions {
@@ -126,7 +128,9 @@ class Bridge {
   void on_command(Bytes data);
   void on_typed(std::string_view channel, Bytes data);
   void take_command(const command_t& command, std::optional<std::size_t> only_node = {});
-  void on_motion(Bytes data);
+  /// A message about motions: motion_command_t or motion_stream_t.
+  template <class T>
+  void on_motion(std::string_view channel, Bytes data);
   void serve_motions();
   CommandContext context_at(Time now, std::optional<std::size_t> only_node = {}) const noexcept;
   void on_request(Bytes data);

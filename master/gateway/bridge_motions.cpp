@@ -2,9 +2,10 @@
 
 namespace takt {
 
-void Bridge::on_motion(Bytes data) {
-  const auto command = decode<motion_command_t>(data);
-  if (!command) return report_damaged(channels_.motion_command, command.error());
+template <class T>
+void Bridge::on_motion(std::string_view channel, Bytes data) {
+  const auto command = decode<T>(data);
+  if (!command) return report_damaged(std::string{channel}, command.error());
   if (!options_.motions) {
     return warn("motion_refused", "taktd runs no motions: it was started without --motions");
   }
@@ -12,6 +13,9 @@ void Bridge::on_motion(Bytes data) {
   if (waited(command->cycle, now)) return commands_.discard();
   motions_.take(*command, context_at(now));
 }
+
+template void Bridge::on_motion<motion_command_t>(std::string_view channel, Bytes data);
+template void Bridge::on_motion<motion_stream_t>(std::string_view channel, Bytes data);
 
 /// Plans what waits for the newest reports, and publishes them once a command has come. The bus
 /// thread tells the end of an order before its report, so the reports are read first: their ends

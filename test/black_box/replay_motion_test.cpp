@@ -81,6 +81,21 @@ class RestlessFront {
                      .profile = planned[0].profile,
                      .stop = limits,
                      .timeout = 5};
+    if (id_ % 3 == 0) message.order.ending = motion::Ending::points;
+    run_.exchange->motions.push(message);
+    if (id_ % 3 == 0) stream(axis, from);
+  }
+  /// Points to the order that was sent last. The axis ends at rest, or moves at the last point.
+  void stream(std::uint8_t axis, const motion::State& from) {
+    motion::MotionMessage message{.kind = motion::MessageKind::points, .axis = axis};
+    message.points.order = id_;
+    message.points.size = 3;
+    for (std::size_t i = 0; i < 3; ++i) {
+      message.points.points[i] = {.time = 0.1 * static_cast<double>(i + 1),
+                                  .state = {.position = from.position + 0.01,
+                                            .velocity = i == 2 && id_ % 2 == 0 ? 0.05 : 0.0},
+                                  .curve = i == 1 ? motion::Curve::cubic : motion::Curve::quintic};
+    }
     run_.exchange->motions.push(message);
   }
 

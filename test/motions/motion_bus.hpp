@@ -3,6 +3,7 @@
 #include <string>
 #include <takt/image_t.hpp>
 #include <takt/motion_command_t.hpp>
+#include <takt/motion_stream_t.hpp>
 #include <takt/motion_t.hpp>
 #include <utility>
 #include <vector>
@@ -116,6 +117,28 @@ class MotionBus final : public AxesInVirtualTime {
     motion_command_t message = command("move", id);
     message.goals = {goal("shoulder", shoulder), goal("elbow", elbow)};
     send(message);
+  }
+  /// Points of these nodes, with the limits of goal().
+  void send_stream(std::int32_t id, const std::vector<std::string>& nodes, std::int64_t first,
+                   const std::vector<motion_point_t>& points) {
+    motion_stream_t message{};
+    message.schema = message_schema;
+    message.session = session;
+    message.instance = 5;
+    message.sender = "test";
+    message.cycle = lcm.cycle;
+    message.id = id;
+    for (const std::string& node : nodes) message.goals.push_back(goal(node, 0.0));
+    message.num_goals = static_cast<std::int32_t>(message.goals.size());
+    message.first_point = first;
+    message.points = points;
+    message.num_points = static_cast<std::int32_t>(points.size());
+    for (motion_point_t& point : message.points) {
+      point.num_axes = static_cast<std::int32_t>(point.position.size());
+      point.velocity.resize(point.position.size(), std::numeric_limits<double>::quiet_NaN());
+      point.num_accelerations = static_cast<std::int32_t>(point.acceleration.size());
+    }
+    lcm.send(bridge.channels().motion_stream, message);
   }
   void keep_alive() { send(command("alive", 0)); }
   /// A command_t of one controlword.

@@ -1,6 +1,7 @@
 #include "master/gateway/motion/motion_commands.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <fmt/format.h>
 #include <string_view>
 #include <utility>
@@ -42,6 +43,7 @@ MotionCommands::MotionCommands(const BusPlan& plan, Commands& commands, SubmitMo
       answers_{plan, axes_, std::move(announce)},
       jobs_{plan, axes_, commands, answers_, submit_},
       stops_{axes_, commands, submit_},
+      streams_{std::chrono::duration<double>{plan.cycle.period}.count(), submit_},
       sequences_(axes_.size()) {}
 
 void MotionCommands::refuse(const motion_command_t& command, const MotionRefusal& refusal,
@@ -146,6 +148,50 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
   if (job) jobs_.start(std::move(*job));
 }
 
+void MotionCommands::take(const motion_stream_t& stream, const CommandContext& context) {
+  const motion_command_t command = command_of(stream);
+  if (!commands_.admits(header_of(command), context)) return;
+  const auto axes = axes_of(command, context);
+  if (!axes) return;
+  if (axes->empty()) return refuse(command, {.why = "it names no axis"}, context);
+  if (!has_timeout(command, context) || !is_newest(command, *axes, context)) return;
+  const bool runs = streams_.runs(command.instance, command.id);
+  if (!runs && (stream.first_point != 0 || stream.points.empty())) {
+    return refuse(command, {.why = "its stream does not run, and a new one begins with point 0"},
+                  context);
+  }
+  if (runs && !streams_.has_axes(command.instance, command.id, *axes)) {
+    return refuse(command, {.why = "its axes are not those of its first message"}, context);
+  }
+  const auto is_copy = [&](std::size_t axis) { return sequences_[axis].has_come(command); };
+  if (!runs && std::ranges::any_of(*axes, is_copy)) {
+    return refuse(command, {.why = std::string{MotionSequence::copy}}, context);
+  }
+  const auto claim = claim_of(command, *axes, context);
+  if (!claim) return;
+  active_ = true;
+  if (!runs && !begin_stream(stream, command, *axes, claim->sender, context)) return;
+  hold(command, *axes, *claim, context);
+  const auto refused = streams_.add(stream, context.cycle);
+  if (refused) refuse(command, *refused, context);
+}
+
+/// Sends the orders of a stream, before its points. Returns false if it is refused.
+bool MotionCommands::begin_stream(const motion_stream_t& stream, const motion_command_t& command,
+                                  std::span<const std::size_t> axes, std::uint8_t sender,
+                                  const CommandContext& context) {
+  auto job = stream_job(stream, command, axes, limits_, plan_.cycle.period);
+  if (!job) {
+    answers_.refuse(motion_name(command), axes, job.error(), context);
+    return false;
+  }
+  note_motion(*job, command, axes, sender, context);
+  if (!jobs_.prepare_stream(*job, context)) return false;
+  streams_.begin(*job, stream.points.front().time);
+  jobs_.start(std::move(*job));
+  return true;
+}
+
 bool MotionCommands::has_timeout(const motion_command_t& command, const CommandContext& context) {
   if (is_motion_timeout(command.timeout_ms)) return true;
   refuse(
@@ -226,7 +272,7 @@ void MotionCommands::take_stop(const motion_command_t& command, std::span<const 
 /// stop.
 bool MotionCommands::is_newest(const motion_command_t& command, std::span<const std::size_t> axes,
                                const CommandContext& context) {
-  if (!is_motion(command)) return true;
+  if (!is_motion(command) && command.kind != "stream") return true;
   for (const std::size_t axis : axes) {
     const std::string_view why =
         sequences_[axis].objection(command, static_cast<std::int64_t>(context.cycle));
@@ -245,6 +291,7 @@ void MotionCommands::stop(std::size_t axis) {
 void MotionCommands::observe(const MotionSnapshot& snapshot, const CommandContext& context) {
   if (snapshot.cycle == 0) return;
   jobs_.observe(snapshot, context);
+  streams_.observe(snapshot);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const motion::TaggedOrder* running = jobs_.order(i, snapshot.axes[i].running);
     answers_.runs(i, running == nullptr ? 0 : running->tag.id);
@@ -254,6 +301,7 @@ void MotionCommands::observe(const MotionSnapshot& snapshot, const CommandContex
 
 void MotionCommands::serve(const CommandContext& context) {
   stops_.serve(context);
+  streams_.serve();
   while (const auto lost = jobs_.take_lost(context)) {
     answers_.refuse(*lost, {.why = "its sender does not hold the nodes any longer"}, context);
     for (const motion::AxisGoal& goal : lost->goals) stop(goal.axis);
@@ -263,6 +311,7 @@ void MotionCommands::serve(const CommandContext& context) {
 
 void MotionCommands::take(const motion::MotionEnd& end, const CommandContext& context) {
   if (end.axis >= axes_.size()) return;
+  streams_.on_end(end.order.id);
   const motion::TaggedOrder* order = jobs_.order(end.axis, end.order.id);
   const std::int32_t id = order == nullptr ? 0 : order->tag.id;
   if (order != nullptr && motion::has_begun(end.order.outcome)) {

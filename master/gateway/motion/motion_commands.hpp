@@ -15,10 +15,11 @@
 #include "master/gateway/motion/motion_senders.hpp"
 #include "master/gateway/motion/motion_sequence.hpp"
 #include "master/gateway/motion/motion_stops.hpp"
+#include "master/gateway/motion/motion_streams.hpp"
 
 namespace takt {
 
-/// Turns motion_command_t messages into orders for the bus thread. The checks
+/// Turns motion_command_t and motion_stream_t messages into orders for the bus thread. The checks
 /// of Commands hold for them: session, sender, age, and who holds the nodes. A command takes effect
 /// for all of its axes or for none. Front thread.
 class MotionCommands {
@@ -29,6 +30,7 @@ class MotionCommands {
   /// moved follows its actual position while its drive is not enabled.
   void watch() { watched_ = watched_ || submit_({.kind = motion::MessageKind::watch}); }
   void take(const motion_command_t& command, const CommandContext& context);
+  void take(const motion_stream_t& stream, const CommandContext& context);
   /// Takes the newest reports, and plans what waits for them.
   void observe(const MotionSnapshot& snapshot, const CommandContext& context);
   /// Does what waits for time and not for reports: stops that the bus thread could not take, jobs
@@ -61,6 +63,9 @@ class MotionCommands {
                  const CommandContext& context);
   bool is_newest(const motion_command_t& command, std::span<const std::size_t> axes,
                  const CommandContext& context);
+  bool begin_stream(const motion_stream_t& stream, const motion_command_t& command,
+                    std::span<const std::size_t> axes, std::uint8_t sender,
+                    const CommandContext& context);
   bool has_timeout(const motion_command_t& command, const CommandContext& context);
   std::optional<Claim> claim_of(const motion_command_t& command, std::span<const std::size_t> axes,
                                 const CommandContext& context);
@@ -86,6 +91,7 @@ class MotionCommands {
   MotionAnswers answers_;
   MotionJobs jobs_;
   MotionStops stops_;
+  MotionStreams streams_;
   std::vector<MotionSequence> sequences_;  ///< by axis
   bool watched_ = false;
   bool active_ = false;

@@ -61,6 +61,26 @@ std::uint64_t cycles_in(Time span, Time period) noexcept {
   return period <= Time{0} ? 1 : static_cast<std::uint64_t>((span + period - Time{1}) / period);
 }
 
+motion_command_t command_of(const motion_stream_t& stream) {
+  motion_command_t command{};
+  command.utime = stream.utime;
+  command.schema = stream.schema;
+  command.session = stream.session;
+  command.instance = stream.instance;
+  command.sender = stream.sender;
+  command.cycle = stream.cycle;
+  command.id = stream.id;
+  command.kind = "stream";
+  command.timeout_ms = stream.timeout_ms;
+  command.goals = stream.goals;
+  command.num_goals = stream.num_goals;
+  for (std::size_t i = 0; i < command.goals.size() && !stream.points.empty(); ++i) {
+    const auto& positions = stream.points.front().position;
+    command.goals[i].position = i < positions.size() ? positions[i] : 0.0;
+  }
+  return command;
+}
+
 std::expected<MotionJob, MotionRefusal> motion_job(const motion_command_t& command,
                                                    std::span<const std::size_t> axes,
                                                    const AxisMotionLimits& limits, Time period) {
@@ -79,6 +99,25 @@ std::expected<MotionJob, MotionRefusal> motion_job(const motion_command_t& comma
     const auto goal = axis_goal(command.goals[i], axes[i], job.group.goal, limits);
     if (!goal) return std::unexpected{goal.error()};
     job.goals.push_back(*goal);
+  }
+  return job;
+}
+
+std::expected<MotionJob, MotionRefusal> stream_job(const motion_stream_t& stream,
+                                                   const motion_command_t& command,
+                                                   std::span<const std::size_t> axes,
+                                                   const AxisMotionLimits& limits, Time period) {
+  auto job = motion_job(command, axes, limits, period);
+  if (!job) return job;
+  const motion_point_t& first = stream.points.front();
+  if (first.position.size() != axes.size() || first.velocity.size() != axes.size()) {
+    return std::unexpected{
+        MotionRefusal{.why = "its point 0 has not one position and one velocity for each axis"}};
+  }
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const double acceleration = i < first.acceleration.size() ? first.acceleration[i] : 0.0;
+    job->goals[i].to = {
+        .position = first.position[i], .velocity = first.velocity[i], .acceleration = acceleration};
   }
   return job;
 }

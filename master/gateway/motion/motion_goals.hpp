@@ -2,6 +2,7 @@
 #include <expected>
 #include <span>
 #include <takt/motion_command_t.hpp>
+#include <takt/motion_stream_t.hpp>
 
 #include "master/gateway/motion/axis_motion_limits.hpp"
 #include "master/gateway/motion/motion_job.hpp"
@@ -15,10 +16,20 @@ Time motion_timeout_of(const motion_command_t& command) noexcept;
 /// Returns the number of periods that begin in this time, at least 1.
 std::uint64_t cycles_in(Time span, Time period) noexcept;
 
-/// Turns a move or jog into a job, of which the caller sets `until` and the number of the
+/// Returns the command that a message of a stream is, without its points: it has the kind "stream",
+/// and its goals are at the first point.
+motion_command_t command_of(const motion_stream_t& stream);
+
+/// Turns a move, jog or stream into a job, of which the caller sets `until` and the number of the
 /// sender. `axes` are those of its goals, as positions in motion_axes(); `period` is that of the
 /// cycle.
 std::expected<MotionJob, MotionRefusal> motion_job(const motion_command_t& command,
+                                                   std::span<const std::size_t> axes,
+                                                   const AxisMotionLimits& limits, Time period);
+
+/// Turns the first message of a stream into a job in the same way. `command` is that of the stream.
+std::expected<MotionJob, MotionRefusal> stream_job(const motion_stream_t& stream,
+                                                   const motion_command_t& command,
                                                    std::span<const std::size_t> axes,
                                                    const AxisMotionLimits& limits, Time period);
 

@@ -52,6 +52,18 @@ void MotionJobs::drop_replaced(const MotionJob& job) {
   for (const motion::AxisGoal& goal : job.goals) drop(goal.axis);
 }
 
+bool MotionJobs::prepare_stream(MotionJob& job, const CommandContext& context) {
+  drop_replaced(job);
+  const auto orders = planner_.begin_stream(job.group, job.goals, next_begin(context));
+  if (!orders) {
+    refuse_plan(job, orders.error(), context);
+    return false;
+  }
+  take_orders(job, *orders);
+  job.tries = most_tries;
+  return true;
+}
+
 motion::CycleNumber MotionJobs::next_begin(const CommandContext& context) const noexcept {
   const std::uint64_t since = context.cycle - std::min(context.cycle, snapshot_.cycle);
   return planner_.cycle() + since + lead_cycles;

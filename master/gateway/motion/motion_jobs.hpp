@@ -23,6 +23,9 @@ class MotionJobs {
 
   /// Plans a new job, which replaces older ones of its axes. Returns false if it is refused.
   bool prepare(MotionJob& job, const CommandContext& context);
+  /// The same for a job that begins a stream. It is planned only once: its points belong to one
+  /// begin.
+  bool prepare_stream(MotionJob& job, const CommandContext& context);
   /// Sends the orders of a job that was prepared, or lets it wait for the next report.
   void start(MotionJob job);
   /// Forgets the job of the axis, because a stop replaces it.

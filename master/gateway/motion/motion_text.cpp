@@ -42,12 +42,41 @@ std::string_view text(const motion::PlanRefusal& refusal) noexcept {
       return "the axis is stopping, and must come to rest first";
     case foreign:
       return "the axis runs another motion";
+    case streaming:
+      return "the axis follows a stream: stop it first";
+    case moving:
+      return "the axis moves: a stream begins at rest";
+    case other_start:
+      return "the first point of the stream is not where the axis stands, at rest";
     case too_long:
       return "the motion, or the start of the jog, would take too long";
     case impossible:
       return text_of(refusal.defect);
   }
   return "the motion is impossible";
+}
+
+std::string_view text(motion::StreamDefect defect) noexcept {
+  using enum motion::StreamDefect;
+  switch (defect) {
+    case not_finite:
+      return "a number is infinite, NaN or too large";
+    case not_later:
+      return "its time is not later than that of the point before";
+    case position:
+      return "the axis would leave its range of positions";
+    case velocity:
+      return "the velocity would exceed its limit on the way to it";
+    case acceleration:
+      return "the acceleration would exceed its limit on the way to it";
+    case jerk:
+      return "the jerk would exceed its limit on the way to it";
+    case stop_position:
+      return "the axis could not stop inside its range of positions on the way to it";
+    case stop_velocity:
+      return "the velocity would exceed its limit in a stop on the way to it";
+  }
+  return "it is not valid";
 }
 
 std::string_view text(motion::Outcome outcome) noexcept {
@@ -89,6 +118,8 @@ std::string_view text(motion::StopCause cause) noexcept {
       return "the statusword of the drive is missing";
     case following_error:
       return "the following error is above its limit";
+    case points_ended:
+      return "the points of its stream have ended while it moved";
     case end_of_range:
       return "the end of the range of positions is near";
     case limit:

@@ -23,6 +23,11 @@ class AxisMotions {
   Outcome take(const MotionOrder& order) noexcept;
   /// The sender was alive in this cycle, which is not later than the present one.
   void sender_heard(std::uint8_t sender, CycleNumber cycle) noexcept;
+  /// Appends points to the stream that the axis follows or is about to follow. Points that do not
+  /// fit are dropped: the stream ends without them.
+  void add_points(std::uint8_t axis, const StreamPoints& points) noexcept {
+    if (axis < runners_.size()) runners_[axis].add_points(points);
+  }
   /// The sender has named this axis in a message. A jog ends by the silence about its axes,
   /// whatever else its sender says.
   void renew_jog(std::uint8_t axis, const LifeSign& sign) noexcept {

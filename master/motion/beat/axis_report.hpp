@@ -40,6 +40,7 @@ enum class StopCause : std::uint8_t {
   halted,           ///< the controlword of an axis has a Halt
   no_statusword,    ///< of an axis
   following_error,  ///< of an axis, above its limit
+  points_ended,     ///< the stream of an axis has no more points, and the axis is not at rest
   end_of_range,     ///< a later stop would leave the range of positions
   limit,            ///< a set-point of an axis was outside the limits of the network file
   no_sync,          ///< SYNC was missing in several periods

@@ -50,7 +50,9 @@ bool is_same(const State& a, const State& b, const Limits& limits) noexcept {
          has_same_motion(a, b, limits);
 }
 
+/// A stream ends with points that are not known yet.
 bool ends_as_it_says(const MotionOrder& order) noexcept {
+  if (order.ending == Ending::points) return true;
   const State end = order.profile.end(order.from);
   const double velocity = order.ending == Ending::cruise ? end.velocity : 0.0;
   return has_same_motion(end, {.velocity = velocity}, order.stop);
@@ -61,10 +63,19 @@ bool ends_as_it_says(const MotionOrder& order) noexcept {
 Outcome AxisRunner::wait(const MotionOrder& order) noexcept {
   if (!is_sound(order)) return Outcome::unsound;
   if (has_taken_) return Outcome::second_in_cycle;
+  if (order.ending == Ending::points && is_streaming()) return Outcome::is_stopping;
   has_taken_ = true;
   if (waiting_) refuse(Outcome::replaced);
   waiting_ = order;
+  if (order.ending == Ending::points) stream_.begin(order.id, order.from);
   return Outcome::none;
+}
+
+void AxisRunner::add_points(const StreamPoints& points) noexcept {
+  if (stream_.order() != points.order) return;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (!stream_.add(points.points[i])) return;
+  }
 }
 
 const MotionOrder* AxisRunner::due(CycleNumber cycle) const noexcept {
@@ -75,6 +86,8 @@ Outcome AxisRunner::objection(CycleNumber cycle) noexcept {
   if (waiting_->begin < cycle) return Outcome::too_late;
   if (report_.state == AxisState::unpowered || !follows_) return Outcome::not_powered;
   if (report_.state == AxisState::stopping) return Outcome::is_stopping;
+  const bool is_stream = waiting_->ending == Ending::points;
+  if (is_stream && report_.state != AxisState::standing) return Outcome::is_stopping;
   if (!ends_as_it_says(*waiting_)) return Outcome::no_rest;
   return is_same(waiting_->from, commanded_at(cycle), waiting_->stop) ? Outcome::none
                                                                       : Outcome::other_start;
@@ -83,6 +96,7 @@ Outcome AxisRunner::objection(CycleNumber cycle) noexcept {
 void AxisRunner::begin(CycleNumber cycle) noexcept {
   if (report_.state == AxisState::moving) end(Outcome::replaced);
   const MotionOrder& order = *waiting_;
+  source_ = order.ending == Ending::points ? Source::points : Source::profile;
   player_ = ProfilePlayer{order.profile, order.from, order.ending};
   began_ = cycle;
   stop_limits_ = order.stop;
@@ -136,8 +150,11 @@ StopCause AxisRunner::observe(CycleNumber cycle, const AxisInput& input,
 
 StopCause AxisRunner::cause_of_motion(CycleNumber cycle, const Silence& silence) const noexcept {
   if (std::abs(report_.following_error) > max_following_error_) return StopCause::following_error;
-  const bool is_jog = player_.ending() == Ending::cruise;
+  const bool is_jog = source_ == Source::profile && player_.ending() == Ending::cruise;
   if ((is_jog ? silence.jog : silence.sender) > timeout_) return StopCause::sender_silent;
+  if (source_ == Source::points && time_at(cycle) > stream_.last().time && !points_end_at_rest()) {
+    return StopCause::points_ended;
+  }
   if (cycle - began_ > latest_stop_) return StopCause::end_of_range;
   return StopCause::none;
 }
@@ -148,6 +165,7 @@ void AxisRunner::stop(const Stop& stop) noexcept {
   if (report_.state != AxisState::moving) return;
   end(Outcome::stopped);
   report_.state = AxisState::stopping;
+  source_ = Source::profile;
   player_ = {stop_profile(report_.commanded, stop_limits_), report_.commanded, Ending::rest};
   began_ = last_run_;
 }
@@ -183,22 +201,27 @@ const AxisReport& AxisRunner::run(CycleNumber cycle) noexcept {
 }
 
 void AxisRunner::end_or_count_down(CycleNumber cycle) noexcept {
-  const double left = player_.duration() - time_at(cycle);
-  if (!player_.is_over()) {
+  const bool streams = source_ == Source::points;
+  const double left = (streams ? stream_.last().time : player_.duration()) - time_at(cycle);
+  if (streams ? left > 0.0 : !player_.is_over()) {
     constexpr double most = 1e15;
     constexpr double rounding = 1e-6;  // cycles
     const double cycles = std::ceil(left / period_ - rounding);
     report_.cycles_left = static_cast<CycleNumber>(std::clamp(cycles, 0.0, most));
-  } else if (player_.ending() == Ending::rest) {
+  } else if (streams ? points_end_at_rest() : player_.ending() == Ending::rest) {
     if (report_.state == AxisState::moving) end(Outcome::done);
     report_.state = AxisState::standing;
     report_.commanded = {.position = report_.commanded.position};
   }
 }
 
+bool AxisRunner::points_end_at_rest() const noexcept {
+  return has_same_motion(stream_.last().state, {}, stop_limits_);
+}
+
 State AxisRunner::commanded_at(CycleNumber cycle) noexcept {
   if (report_.state == AxisState::standing) return report_.commanded;
-  return player_.at(time_at(cycle));
+  return source_ == Source::points ? stream_.at(time_at(cycle)) : player_.at(time_at(cycle));
 }
 
 void AxisRunner::end(Outcome outcome) noexcept {

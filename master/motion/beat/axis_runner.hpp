@@ -7,6 +7,7 @@
 #include "master/motion/beat/axis_report.hpp"
 #include "master/motion/beat/motion_order.hpp"
 #include "master/motion/beat/profile_player.hpp"
+#include "master/motion/beat/stream_player.hpp"
 
 namespace takt::motion {
 
@@ -22,7 +23,7 @@ struct Silence {
 /// |------------------|-----------|-----------------------------------------------------------|
 /// | unpowered        | standing  | the drive is enabled: it stands at its commanded position |
 /// | standing, moving | moving    | an order begins in its cycle                              |
-/// | moving           | standing  | the motion has ended at rest                              |
+/// | moving           | standing  | the profile or the points have ended at rest              |
 /// | moving           | stopping  | stop()                                                    |
 /// | stopping         | standing  | the axis is at rest                                       |
 /// | moving, stopping | standing  | abandon()                                                 |
@@ -51,6 +52,8 @@ class AxisRunner {
   Outcome objection(CycleNumber cycle) noexcept;
   void begin(CycleNumber cycle) noexcept;
   void refuse(Outcome why) noexcept;
+  /// Appends points to the stream of the order that waits or runs.
+  void add_points(const StreamPoints& points) noexcept;
 
   /// Takes what the drive tells. Returns the cause if the axis makes its group stop.
   StopCause observe(CycleNumber cycle, const AxisInput& input, const Silence& silence) noexcept;
@@ -91,7 +94,7 @@ class AxisRunner {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(report_, player_, named_, began_, stop_limits_, timeout_, latest_stop_,
+    state(report_, source_, player_, stream_, named_, began_, stop_limits_, timeout_, latest_stop_,
           max_following_error_, waiting_, newest_, last_run_, has_taken_, follows_);
     state.position(group_, max_axes);
     state.position(sender_, max_axes + 1);
@@ -99,11 +102,17 @@ class AxisRunner {
 
  private:
   static constexpr std::uint8_t no_sender = max_axes;
+  /// Where the states of a motion come from.
+  enum class Source : std::uint8_t { profile, points };
 
   State commanded_at(CycleNumber cycle) noexcept;
   double time_at(CycleNumber cycle) const noexcept {
     return static_cast<double>(cycle - began_) * period_;
   }
+  bool is_streaming() const noexcept {
+    return report_.state == AxisState::moving && source_ == Source::points;
+  }
+  bool points_end_at_rest() const noexcept;
   StopCause cause_of_motion(CycleNumber cycle, const Silence& silence) const noexcept;
   void end_or_count_down(CycleNumber cycle) noexcept;
   void end(Outcome outcome) noexcept;
@@ -114,8 +123,10 @@ class AxisRunner {
   double period_;
   std::uint8_t axis_;
   AxisReport report_;
+  Source source_ = Source::profile;
   ProfilePlayer player_;
-  LifeSign named_;  ///< the newest message that has named the axis
+  StreamPlayer stream_;  ///< of the motion that runs, or of an order that waits
+  LifeSign named_;       ///< the newest message that has named the axis
   CycleNumber began_ = 0;
   CycleNumber last_run_ = 0;  ///< the cycle of the commanded state
   Limits stop_limits_;

@@ -3,17 +3,19 @@
 
 #include "master/motion/beat/axis_report.hpp"
 #include "master/motion/beat/motion_order.hpp"
+#include "master/motion/beat/stream.hpp"
 
 namespace takt::motion {
 
 /// What a message of the front thread is about.
 enum class MessageKind : std::uint8_t {
-  heard,  ///< the sender is alive
-  order,  ///< `order` waits for its first cycle
-  stop,   ///< the axis and its group stop along their limits
-  left,   ///< this sender may not command the axis any longer
-  watch,  ///< the axes are read from now on, although nobody moves them
-  renew,  ///< the sender has named the axis, so a jog of it may go on
+  heard,   ///< the sender is alive
+  order,   ///< `order` waits for its first cycle
+  stop,    ///< the axis and its group stop along their limits
+  left,    ///< this sender may not command the axis any longer
+  watch,   ///< the axes are read from now on, although nobody moves them
+  renew,   ///< the sender has named the axis, so a jog of it may go on
+  points,  ///< more points of the stream that the axis follows, or is about to follow
 };
 
 /// A message of the front thread about motions. Plain data.
@@ -21,13 +23,15 @@ struct MotionMessage {
   MessageKind kind = MessageKind::heard;
   std::uint8_t sender = 0;  ///< of `heard`, `left` and `renew`
   CycleNumber cycle = 0;    ///< of `heard` and `renew`: the cycle whose image the sender has seen
-  std::uint8_t axis = 0;    ///< of `stop`, `left` and `renew`
+  std::uint8_t axis = 0;    ///< of `stop`, `left`, `renew` and `points`
   MotionOrder order{};      ///< of `order`
+  StreamPoints points{};    ///< of `points`
 
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(kind, sender, cycle, axis);
     if (kind == MessageKind::order) state(order);
+    if (kind == MessageKind::points) state(points);
   }
 };
 

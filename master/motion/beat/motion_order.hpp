@@ -20,6 +20,7 @@ inline constexpr std::size_t max_axes = 127;
 enum class Ending : std::uint8_t {
   rest,    ///< it stands at the end position
   cruise,  ///< it keeps the velocity of the end until it is stopped (jog)
+  points,  ///< it follows a stream of points instead of a profile, and ends with the last of them
 };
 
 /// The newest message of a sender: the cycle whose image it had seen.
@@ -46,7 +47,7 @@ struct MotionOrder {
   Ending ending = Ending::rest;
   CycleNumber begin = 0;    ///< the axis is at `from` in this cycle
   State from;               ///< must be what the axis is commanded in the cycle `begin`
-  Profile profile;          ///< of the motion that starts at `from`
+  Profile profile;          ///< of the motion that starts at `from`; not used with Ending::points
   Limits stop;              ///< of a stop
   CycleNumber timeout = 0;  ///< periods for which the motion outlives the silence of its sender
   /// The axis is stopped at the latest from the state that it has so many cycles after `begin`, see

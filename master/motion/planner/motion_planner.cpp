@@ -1,6 +1,7 @@
 #include "master/motion/planner/motion_planner.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "master/motion/beat/profile_player.hpp"
 #include "master/motion/beat/stop_profile.hpp"
@@ -13,6 +14,16 @@ std::uint32_t id_of(const TaggedOrder& sent) noexcept { return sent.order.id; }
 State state_of(const MotionOrder& order, CycleNumber cycle, double period) {
   ProfilePlayer player{order.profile, order.from, order.ending};
   return player.at(static_cast<double>(cycle - order.begin) * period);
+}
+
+/// Returns true if the first point of a stream is where the axis stands.
+bool is_start(const State& from, const AxisGoal& goal) noexcept {
+  constexpr double tolerance = MotionPlanner::start_tolerance;
+  const Limits& limits = goal.limits;
+  return std::abs(goal.to.position - from.position) <=
+             tolerance * std::max(1.0, std::abs(from.position)) &&
+         std::abs(goal.to.velocity) <= tolerance * limits.max_velocity &&
+         std::abs(goal.to.acceleration) <= tolerance * limits.max_acceleration;
 }
 
 /// Returns true if a jog of this velocity leads an axis from outside its range still farther out.
@@ -57,6 +68,7 @@ std::expected<State, PlanFault> MotionPlanner::state_at(const Axis& axis, CycleN
   }
   const TaggedOrder* running = axis.find(axis.report.running);
   if (running == nullptr) return std::unexpected{PlanFault::foreign};
+  if (running->order.ending == Ending::points) return std::unexpected{PlanFault::streaming};
   return state_of(running->order, cycle, period_);
 }
 
@@ -152,6 +164,37 @@ std::expected<std::span<const MotionOrder>, PlanRefusal> MotionPlanner::plan(
   if (!first) return std::unexpected{first.error()};
   if (const auto set = set_tasks(group, goals, *first); !set) return std::unexpected{set.error()};
   if (const auto set = set_orders(group, goals, *first); !set) return std::unexpected{set.error()};
+  return number_orders(group.tag);
+}
+
+std::expected<std::span<const MotionOrder>, PlanRefusal> MotionPlanner::begin_stream(
+    const GroupGoal& group, std::span<const AxisGoal> goals, CycleNumber begin) {
+  const auto refused = [](PlanFault fault, std::uint8_t axis) {
+    return std::unexpected{PlanRefusal{.fault = fault, .axis = axis}};
+  };
+  if (cycle_ == 0) return refused(PlanFault::no_report, 0);
+  orders_.clear();
+  for (const AxisGoal& goal : goals) {
+    if (goal.axis >= axes_.size()) return refused(PlanFault::no_axis, goal.axis);
+    const Axis& axis = axes_[goal.axis];
+    if (axis.waiting(cycle_) != nullptr) return refused(PlanFault::busy, goal.axis);
+    const auto from = state_at(axis, begin);
+    if (!from) return refused(from.error(), goal.axis);
+    if (axis.report.state != AxisState::standing) return refused(PlanFault::moving, goal.axis);
+    if (!is_start(*from, goal)) return refused(PlanFault::other_start, goal.axis);
+    orders_.push_back({.id = id_ + 1,
+                       .axis = goal.axis,
+                       .group = goals.front().axis,
+                       .axes = static_cast<std::uint8_t>(goals.size()),
+                       .sender = group.sender,
+                       .ending = Ending::points,
+                       .begin = begin,
+                       .from = *from,
+                       .profile = {},
+                       .stop = goal.limits,
+                       .timeout = group.timeout,
+                       .max_following_error = goal.max_following_error});
+  }
   return number_orders(group.tag);
 }
 

@@ -15,7 +15,7 @@ namespace takt::motion {
 /// What an application wants of one axis.
 struct AxisGoal {
   std::uint8_t axis = 0;
-  /// The position of a move. Of a jog, only the velocity counts.
+  /// The position of a move. Of a jog, only the velocity counts. Of a stream, where it begins.
   State to;
   Limits limits;
   PositionRange range{};
@@ -59,6 +59,9 @@ enum class PlanFault : std::uint8_t {
   not_enabled,  ///< the drive does not follow set-points
   stopping,     ///< the axis must come to rest first
   foreign,      ///< the axis runs a motion that this planner does not know
+  streaming,    ///< the axis follows a stream, and must be stopped first
+  moving,       ///< the axis must be at rest before it follows a stream
+  other_start,  ///< the stream does not begin where the axis stands, or not at rest
   impossible,   ///< see `defect`
   too_long,     ///< the motion, or the start of a jog, takes too many cycles
 };
@@ -77,6 +80,9 @@ class MotionPlanner {
   /// time that plan() takes.
   static constexpr double longest_jog_start = 20'000;
   static constexpr double longest_motion = 1e9;  ///< in cycles
+  /// Difference of the first point of a stream from the state of the axis that counts as rounding,
+  /// as a part of the position, or of 1 where it is smaller, and of the limits.
+  static constexpr double start_tolerance = 1e-6;
 
   /// `period` is that of the cycle in s.
   MotionPlanner(std::size_t axes, double period) : period_{period}, axes_(axes) {}
@@ -96,6 +102,10 @@ class MotionPlanner {
   std::expected<std::span<const MotionOrder>, PlanRefusal> plan(const GroupGoal& group,
                                                                 std::span<const AxisGoal> goals,
                                                                 CycleNumber begin);
+  /// Makes the orders of a stream of points, which begins in `begin` where the axes stand. They
+  /// have no motion yet: the points follow.
+  std::expected<std::span<const MotionOrder>, PlanRefusal> begin_stream(
+      const GroupGoal& group, std::span<const AxisGoal> goals, CycleNumber begin);
 
  private:
   struct Axis {

@@ -25,7 +25,7 @@ bool get_motion(std::span<const std::uint64_t> words, motion::MotionMessage& mes
   message = {};
   StateReader reader{words};
   message.keep(reader);
-  return message.kind <= motion::MessageKind::renew && words.size() == words_of(message);
+  return message.kind <= motion::MessageKind::points && words.size() == words_of(message);
 }
 
 }  // namespace takt

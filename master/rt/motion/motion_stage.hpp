@@ -100,6 +100,9 @@ void MotionStage<L, S>::accept(const motion::MotionMessage& message,
     case motion::MessageKind::renew:
       motions_.renew_jog(message.axis, {message.sender, std::min(message.cycle, cycle)});
       break;
+    case motion::MessageKind::points:
+      motions_.add_points(message.axis, message.points);
+      break;
     case motion::MessageKind::order: {
       const motion::Outcome refusal = motions_.take(message.order);
       if (refusal == motion::Outcome::none) break;

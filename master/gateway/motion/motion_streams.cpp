@@ -1,0 +1,150 @@
+#include "master/gateway/motion/motion_streams.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <utility>
+
+#include "master/gateway/motion/motion_text.hpp"
+#include "master/motion/planner/stream_check.hpp"
+
+namespace takt {
+namespace {
+
+bool has_axis(const std::vector<motion::AxisGoal>& goals, std::uint8_t axis) {
+  return std::ranges::find(goals, axis, &motion::AxisGoal::axis) != goals.end();
+}
+
+motion::StreamPoint stream_point(const motion_point_t& point, std::size_t axis, double time) {
+  const bool quintic = !point.acceleration.empty();
+  return {.time = time,
+          .state = {.position = point.position[axis],
+                    .velocity = point.velocity[axis],
+                    .acceleration = quintic ? point.acceleration[axis] : 0.0},
+          .curve = quintic ? motion::Curve::quintic : motion::Curve::cubic};
+}
+
+}  // namespace
+
+void MotionStreams::begin(const MotionJob& job, double first_time) {
+  std::erase_if(streams_, [&](const Stream& older) {
+    return std::ranges::any_of(
+        job.goals, [&](const motion::AxisGoal& goal) { return has_axis(older.goals, goal.axis); });
+  });
+  Stream stream{.id = job.name.id,
+                .instance = job.instance,
+                .order = job.order,
+                .begin = job.begin,
+                .first_time = first_time,
+                .goals = job.goals};
+  for (const motion::MotionOrder& order : job.orders) {
+    stream.last.push_back({.time = 0.0, .state = order.from});
+    motion::MotionMessage message{.kind = motion::MessageKind::points, .axis = order.axis};
+    message.points.order = order.id;
+    stream.filling.push_back(message);
+  }
+  streams_.push_back(std::move(stream));
+}
+
+const MotionStreams::Stream* MotionStreams::find(std::int64_t instance,
+                                                 std::int32_t id) const noexcept {
+  const auto found = std::ranges::find_if(streams_, [&](const Stream& stream) {
+    return stream.instance == instance && stream.id == id;
+  });
+  return found == streams_.end() ? nullptr : &*found;
+}
+
+bool MotionStreams::has_axes(std::int64_t instance, std::int32_t id,
+                             std::span<const std::size_t> axes) const noexcept {
+  const Stream* stream = find(instance, id);
+  return stream != nullptr && std::ranges::equal(stream->goals, axes, {}, &motion::AxisGoal::axis);
+}
+
+/// An order begins exactly in its cycle, or never.
+void MotionStreams::observe(const MotionSnapshot& snapshot) {
+  std::erase_if(streams_, [&](const Stream& stream) {
+    const std::uint32_t running = snapshot.axes[stream.goals.front().axis].running;
+    return snapshot.cycle >= stream.begin && running != stream.order;
+  });
+}
+
+std::optional<MotionRefusal> MotionStreams::add(const motion_stream_t& message,
+                                                std::uint64_t cycle) {
+  const auto found = std::ranges::find_if(streams_, [&](const Stream& stream) {
+    return stream.instance == message.instance && stream.id == message.id;
+  });
+  if (found == streams_.end()) return std::nullopt;
+  Stream& stream = *found;
+  const std::uint64_t passed = cycle - std::min(cycle, stream.begin);
+  const double now = static_cast<double>(passed) * period_;
+  while (!stream.times.empty() && stream.times.front() <= now) stream.times.pop_front();
+  if (message.first_point > stream.next) {
+    return MotionRefusal{.why = fmt::format("its point {} is missing: the message begins with {}",
+                                            stream.next, message.first_point)};
+  }
+  std::optional<MotionRefusal> refused;
+  for (std::size_t i = 0; i < message.points.size() && !refused; ++i) {
+    if (message.first_point + static_cast<std::int64_t>(i) < stream.next) continue;
+    refused = add_point(stream, message.points[i], now);
+    if (refused) refused->why = fmt::format("its point {}: {}", stream.next, refused->why);
+    if (!refused) ++stream.next;
+  }
+  close(stream);
+  hand_over(stream);
+  return refused;
+}
+
+std::optional<MotionRefusal> MotionStreams::add_point(Stream& stream, const motion_point_t& point,
+                                                      double now) {
+  const std::size_t axes = stream.goals.size();
+  const auto fits = [&](const auto& numbers) { return numbers.size() == axes; };
+  if (!fits(point.position) || !fits(point.velocity) ||
+      !(fits(point.acceleration) || point.acceleration.empty())) {
+    return MotionRefusal{.why = "it has not one position and one velocity for each axis"};
+  }
+  if (stream.times.size() == motion::StreamPlayer::capacity) {
+    return MotionRefusal{.why = fmt::format("{} points wait already", stream.times.size())};
+  }
+  const double time = point.time - stream.first_time;
+  if (time > now + longest_ahead) {
+    return MotionRefusal{.why = fmt::format("it is more than {} s in the future", longest_ahead)};
+  }
+  if (stream.last.front().time < now) {
+    return MotionRefusal{.why = "it is too late: the points before have ended"};
+  }
+  std::vector<motion::StreamPoint> reached;
+  for (std::size_t i = 0; i < axes; ++i) {
+    const motion::AxisGoal& goal = stream.goals[i];
+    const motion::StreamPoint next = stream_point(point, i, time);
+    const auto defect = defect_of(stream.last[i], next,
+                                  {.limits = goal.limits, .range = goal.range, .period = period_});
+    if (defect) return MotionRefusal{.why = std::string{text(*defect)}, .axis = goal.axis};
+    reached.push_back(motion::reached(stream.last[i], next));
+  }
+  if (stream.filling.front().points.size == motion::StreamPoints::capacity) close(stream);
+  for (std::size_t i = 0; i < axes; ++i) {
+    motion::StreamPoints& points = stream.filling[i].points;
+    points.points[points.size++] = reached[i];
+  }
+  stream.last = std::move(reached);
+  stream.times.push_back(time);
+  return std::nullopt;
+}
+
+/// Puts the messages that are being filled behind those that wait.
+void MotionStreams::close(Stream& stream) {
+  for (motion::MotionMessage& message : stream.filling) {
+    if (message.points.size != 0) stream.waiting.push_back(message);
+    message.points.size = 0;
+  }
+}
+
+void MotionStreams::hand_over(Stream& stream) {
+  while (!stream.waiting.empty() && submit_(stream.waiting.front())) stream.waiting.pop_front();
+}
+
+void MotionStreams::serve() {
+  for (Stream& stream : streams_) hand_over(stream);
+}
+
+}  // namespace takt

@@ -1,0 +1,73 @@
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <takt/motion_stream_t.hpp>
+#include <utility>
+#include <vector>
+
+#include "master/gateway/motion/motion_job.hpp"
+#include "master/motion/beat/stream_player.hpp"
+#include "master/rt/exchange/motion_board.hpp"
+
+namespace takt {
+
+/// The streams that run or are about to begin: checks their points, and hands them to the bus
+/// thread as fast as it takes them. Front thread.
+class MotionStreams {
+ public:
+  /// Points may be at most this far in the future, in s. It bounds the time that a check takes.
+  static constexpr double longest_ahead = 5.0;
+
+  /// `period` is that of the cycle in s.
+  MotionStreams(double period, SubmitMotion submit) : period_{period}, submit_{std::move(submit)} {}
+
+  /// A stream whose orders are on their way, which `job` describes. It begins at its first point.
+  void begin(const MotionJob& job, double first_time);
+  /// Returns true if the stream with this id of this sender runs, or is about to begin.
+  bool runs(std::int64_t instance, std::int32_t id) const noexcept {
+    return find(instance, id) != nullptr;
+  }
+  /// Returns true if this stream has these axes, in this order.
+  bool has_axes(std::int64_t instance, std::int32_t id,
+                std::span<const std::size_t> axes) const noexcept;
+  /// Takes the points of a message for a stream that runs. Points that it has already are skipped.
+  /// Returns why a point and all later ones are refused; those before it are taken.
+  std::optional<MotionRefusal> add(const motion_stream_t& message, std::uint64_t cycle);
+  /// Forgets the streams that have ended, or have not begun in their cycle.
+  void observe(const MotionSnapshot& snapshot);
+  /// An order has ended or was refused.
+  void on_end(std::uint32_t order) {
+    std::erase_if(streams_, [&](const Stream& stream) { return stream.order == order; });
+  }
+  /// Hands over what the bus thread could not take before.
+  void serve();
+
+ private:
+  struct Stream {
+    std::int32_t id = 0;
+    std::int64_t instance = 0;
+    std::uint32_t order = 0;
+    std::uint64_t begin = 0;                  ///< cycle
+    double first_time = 0.0;                  ///< time of its first point in its messages, in s
+    std::vector<motion::AxisGoal> goals{};    ///< its axes and their limits
+    std::vector<motion::StreamPoint> last{};  ///< newest point of each of them
+    std::int64_t next = 1;                    ///< number of the next point
+    std::deque<double> times{};               ///< of the points that the bus thread may hold
+    std::vector<motion::MotionMessage> filling{};  ///< of each axis, for the next points
+    std::deque<motion::MotionMessage> waiting{};   ///< for the bus thread
+  };
+
+  const Stream* find(std::int64_t instance, std::int32_t id) const noexcept;
+  std::optional<MotionRefusal> add_point(Stream& stream, const motion_point_t& point, double now);
+  static void close(Stream& stream);
+  void hand_over(Stream& stream);
+
+  double period_;
+  SubmitMotion submit_;
+  std::vector<Stream> streams_;  ///< at most one for each axis
+};
+
+}  // namespace takt

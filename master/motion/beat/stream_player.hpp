@@ -1,0 +1,49 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "master/motion/beat/stream.hpp"
+
+namespace takt::motion {
+
+/// Leads an axis from point to point of a stream, at times that only rise. It holds a bounded
+/// number of points, and allocates nothing.
+class StreamPlayer {
+ public:
+  /// Points that it holds, besides the one that was passed last.
+  static constexpr std::size_t capacity = 64;
+
+  /// Begins another stream, which is known by the id of its order.
+  void begin(std::uint32_t order, const State& from) noexcept {
+    order_ = order;
+    passed_ = last_ = {.time = 0.0, .state = from};
+    first_ = size_ = 0;
+  }
+  std::uint32_t order() const noexcept { return order_; }
+  /// Appends a point. Returns false if it is not later than the last one, if a number of it is not
+  /// finite, or if there is no room.
+  bool add(const StreamPoint& point) noexcept;
+  /// Returns the state at a time; after the last point, the state at that point.
+  State at(double time) noexcept;
+  /// The last point.
+  const StreamPoint& last() const noexcept { return last_; }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(order_, passed_, last_, segment_, points_);
+    state.position(first_, capacity);
+    state.position(size_, capacity + 1);
+  }
+
+ private:
+  std::uint32_t order_ = 0;  ///< 0 before the first stream
+  StreamPoint passed_;       ///< the newest point that was passed
+  StreamPoint last_;
+  StreamSegment segment_;  ///< from the point that was passed to the first that waits
+  std::array<StreamPoint, capacity> points_{};
+  std::size_t first_ = 0;  ///< of the points that wait, in a ring
+  std::size_t size_ = 0;
+};
+
+}  // namespace takt::motion

@@ -1,0 +1,36 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "master/motion/beat/stream.hpp"
+#include "master/motion/limits.hpp"
+#include "master/motion/position_range.hpp"
+
+namespace takt::motion {
+
+/// Why an axis may not follow a stream to a point.
+enum class StreamDefect : std::uint8_t {
+  not_finite,     ///< a number of the point is infinite or NaN
+  not_later,      ///< its time is not later than that of the point before
+  position,       ///< the axis would leave its range of positions
+  velocity,       ///< on the way, the velocity would be outside the limits
+  acceleration,   ///< the same for the acceleration
+  jerk,           ///< the same for the jerk
+  stop_position,  ///< a stop on the way would leave the range of positions
+  stop_velocity,  ///< the velocity would be outside the limits during a stop on the way
+};
+
+/// What a stream of one axis has to keep.
+struct StreamRules {
+  Limits limits;
+  PositionRange range{};
+  double period = 0.0;  ///< of the cycle in s
+};
+
+/// Checks the way from one point to the next. The first defect is returned; empty if there is none.
+/// All extremes of the curve count. A stop is checked from the state of each cycle in which the bus
+/// thread can begin one. Takes a time in proportion to the number of cycles between the points.
+std::optional<StreamDefect> defect_of(const StreamPoint& from, const StreamPoint& to,
+                                      const StreamRules& rules) noexcept;
+
+}  // namespace takt::motion
