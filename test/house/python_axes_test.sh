@@ -1,5 +1,5 @@
 #!/bin/sh
-# python_axes_test.sh BIN BUILD - the Python example of the README moves both axes of the demo, and ends where things go wrong.
+# python_axes_test.sh BIN BUILD - the Python examples move axes of the demo, and end where things go wrong.
 set -eu
 here=$(cd "$(dirname "$0")/../.." && pwd)
 bin=$1 build=$2
@@ -32,4 +32,7 @@ refuses() { ! motion shoulder 150 --velocity 3 --acceleration 20 && grep -q 'wou
 one_of_three moves
 one_of_three jogs
 one_of_three refuses
+first() { PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/first_motion.py" >"$tmp/said" 2>&1; }
+one_of_three first
+timeout 240 "$python" "$here/test/house/python_motions_test.py" "$tmp"
 timeout 240 "$python" "$here/test/house/python_axes_faults.py" "$tmp"

@@ -1,0 +1,507 @@
+"""Axes of a bus whose motions taktd runs: enable, move, jog, stop. This program may be late.
+
+    from takt_axes import Axes
+
+    with Axes("demo", "shoulder", "elbow") as axes:
+        axes.enable()
+        axes.move(1.5, 0.5, velocity=3, acceleration=20)
+        print(axes.positions)
+
+Each call returns when it is done, or raises Obstacle, which says in words what blocks which axis.
+While a call waits, it keeps the program alive for taktd. Between calls, motions and drives outlive a
+silence of `timeout`; then the axes stop along their limits, and the drives take the fallback of
+`on_timeout` in the network file. A program that has nothing to do calls run() instead of time.sleep().
+
+How to try it on the simulated bus of share/demo/two_axes.yaml:
+
+    python3 -m venv venv && venv/bin/pip install lcm
+    lcm-gen -p --ppath venv/lib/python3*/site-packages share/lcm/*.lcm    # makes the module takt
+    taktd share/demo/two_axes.yaml --bus sim --motions &
+    venv/bin/python apps/python/first_motion.py
+
+share/doc/motion.md has the rules of motions. A bus with keys (share/doc/security.md) refuses this
+module, because it sends no envelopes.
+"""
+from __future__ import annotations
+
+import os
+import random
+import sys
+import time
+from collections.abc import Callable
+
+import lcm
+from takt import command_t, event_t, image_t, layout_t, motion_command_t, motion_goal_t, motion_t, status_t
+
+SCHEMA = 2  # of the LCM messages that this module knows
+CONTROLWORD, STATUSWORD, MODE, MODE_DISPLAY, POSITION, VELOCITY = 0x6040, 0x6041, 0x6060, 0x6061, 0x6064, 0x606C
+OBJECTS = {(CONTROLWORD, True), (MODE, True)} | {(index, False) for index in (STATUSWORD, MODE_DISPLAY, POSITION, VELOCITY)}
+FIRST_OBJECT, LAST_OBJECT, AXIS_STEP = 0x6000, 0x9FFF, 0x800  # the objects of each further axis of a device are 0x800 higher
+CYCLIC_SYNCHRONOUS_POSITION = 8  # mode of operation (0x6060)
+# The states of CiA 402: mask and pattern of the statusword, name, and the bit that shows why the drive is not enabled.
+STATES = ((0x4F, 0x00, "not ready to switch on", "bit 0 (ready to switch on)", 0),
+          (0x4F, 0x40, "switch on disabled", "bit 6 (switch on disabled)", 1),
+          (0x6F, 0x21, "ready to switch on", "bit 1 (switched on)", 0),
+          (0x6F, 0x23, "switched on", "bit 2 (operation enabled)", 0),
+          (0x6F, 0x27, "operation enabled", "", 0),
+          (0x6F, 0x07, "quick stop active", "bit 5 (quick stop)", 0),
+          (0x4F, 0x0F, "fault reaction active", "bit 3 (fault)", 1),
+          (0x4F, 0x08, "fault", "bit 3 (fault)", 1))
+# The controlword for each state on the way to Operation enabled, and back. Disable voltage is 0.
+ENABLING = {"switch on disabled": 0x06, "ready to switch on": 0x07, "switched on": 0x0F, "operation enabled": 0x0F}
+DISABLING = {"operation enabled": 0x07, "switched on": 0x06}
+DISABLED = ("switch on disabled", "not ready to switch on", "fault")
+FAULT_RESET = 0x80
+FAULTS = ("fault", "fault reaction active")
+NOT_ENABLED, MOVES, STOPS = 0, 2, 3  # axis_motion_t::state
+DONE, STOPPED, REPLACED, REFUSED = 1, 2, 3, 4  # axis_motion_t::outcome
+ANSWER_TIME, REASON_TIME, IMAGE_TIME = 2.0, 0.1, 2.0  # seconds
+STOP_PAUSE, SILENCE = 0.05, 0.05  # seconds between two stops, and between two signs of life
+UNANSWERED_CYCLES = 100  # after a stop, a motion that taktd has not answered then counts as never begun
+HELD_STATUSES = 20  # status_t (10 in a second) in sequence in which another program holds an axis before enable() gives up
+BOOT_READY = 2  # node_status_t::boot_state
+
+
+class Obstacle(Exception):
+    """What blocks a call, in words. `kind` is "wrong use", "no bus", "blocked", "refused", "stopped", "time over" or
+    "restarted"."""
+
+    def __init__(self, kind: str, text: str):
+        super().__init__(text)
+        self.kind = kind
+
+
+class _Axis:
+    """What the messages say about one axis."""
+
+    def __init__(self, name: str, node: str, node_id: int, number: int):
+        self.name, self.node, self.node_id, self.number = name, node, node_id, number
+        self.places, self.signals = {}, {}  # of the objects of the first axis of a device
+        self.statusword, self.motion, self.held = None, None, 0
+
+    @property
+    def state(self) -> str:
+        if self.statusword is None:
+            return "unknown"
+        return next((name for mask, bits, name, _, _ in STATES if self.statusword & mask == bits), "unknown")
+
+    def bits(self) -> str:
+        """Names the bits of the statusword that show why the drive is not in Operation enabled."""
+        if self.statusword is None:
+            return "its statusword has not arrived"
+        word = f"its statusword 0x{self.statusword:04X}"
+        bit, value = next(((bit, value) for _, _, name, bit, value in STATES if name == self.state), ("", 0))
+        text = f"{bit} of {word} is {value}" if bit else f"{word} shows no state of CiA 402"
+        if not self.statusword & 0x0010:
+            text += "; bit 4 (voltage enabled) is 0: is its power supply on?"
+        if not self.statusword & 0x0200:
+            text += "; bit 9 (remote) is 0: the drive does not obey the controlword from the bus"
+        return text
+
+
+class Axes:
+    """Axes of one bus. All positions, velocities and limits are in the unit of each axis (rad, m; raw counts without one)."""
+
+    def __init__(self, bus: str, *names: str, timeout: float = 0.5, longest: float = 10.0):
+        """Waits until the bus is heard. Without names: all axes, in the order of their node-IDs. The second axis of a device
+        is "gantry.2". `longest`: seconds that a call waits at most, except for move(), move_by() and wait()."""
+        self.bus, self.timeout, self.longest = bus.upper(), timeout, longest
+        self.sender = f"{os.path.basename(sys.argv[0]) or 'python'} {os.getpid()}"
+        self.instance = random.SystemRandom().randrange(1, 2**63)  # tells two senders apart
+        self._number = random.randrange(1, 2**30)  # of the newest motion
+        self._has_motion, self._begun, self._stop_cycle = False, 0.0, -1
+        self._axes, self._values, self._events, self._nodes = [], {}, [], {}
+        self._session, self._hash, self._cycle, self._parts = None, None, -1, set()
+        self._restarted, self._commanding, self._last_sent = False, False, 0.0
+        self._mode, self._words = CYCLIC_SYNCHRONOUS_POSITION, None  # _words: the controlword for each state, while it changes
+        self._link = lcm.LCM()  # LCM_DEFAULT_URL, else LCM's default
+        for channel, handler in (("LAYOUT", self._on_layout), ("IMAGE", self._on_image), ("MOTION", self._on_motion),
+                                 ("EVENT", self._on_event), ("STATUS", self._on_status)):
+            self._link.subscribe(f"{self.bus}_{channel}", handler)
+        self._found, self._layout_parts, self._image_time = {}, set(), time.monotonic()
+        end = time.monotonic() + longest
+        while self._cycle < 0:
+            self._serve(0.05)
+            if time.monotonic() > end:
+                raise Obstacle("no bus", f"no image of bus {bus} has come: is taktd running, with the same LCM URL?")
+        known = {axis.name: axis for axis in self._axes}
+        for name in names:
+            if name not in known or names.count(name) > 1:
+                raise Obstacle("wrong use", f"bus {bus} has no axis '{name}', or it is named twice; the axes are: "
+                                            f"{', '.join(known) or 'none'}")
+        if names:
+            self._axes = [known[name] for name in names]
+        if not self._axes:
+            raise Obstacle("wrong use", f"bus {bus} has no axis: no node has 6040 and 6041 in its PDOs")
+
+    def __enter__(self) -> Axes:
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.disable()
+
+    # What the newest messages say.
+
+    @property
+    def names(self) -> list[str]:
+        return [axis.name for axis in self._axes]
+
+    @property
+    def positions(self) -> list[float]:
+        """Actual positions."""
+        return [self._read(axis, POSITION) for axis in self._axes]
+
+    @property
+    def velocities(self) -> list[float]:
+        """Actual velocities; 0 where no PDO carries them."""
+        return [self._read(axis, VELOCITY) for axis in self._axes]
+
+    @property
+    def commanded_positions(self) -> list[float]:
+        """Commanded positions; the actual ones before taktd reports motions."""
+        return [axis.motion.position if axis.motion else self._read(axis, POSITION) for axis in self._axes]
+
+    @property
+    def following_errors(self) -> list[float]:
+        """Commanded minus actual positions, as taktd has reported last."""
+        return [axis.motion.following_error if axis.motion else 0.0 for axis in self._axes]
+
+    @property
+    def moving(self) -> bool:
+        """At least one axis moves or stops."""
+        return any(axis.motion and axis.motion.state in (MOVES, STOPS) for axis in self._axes)
+
+    # What the drives do.
+
+    def enable(self) -> None:
+        """Leads all axes to Operation enabled. A fault is an obstacle: see reset()."""
+        self._mode, self._words = CYCLIC_SYNCHRONOUS_POSITION, ENABLING
+        self._commanding = True
+        blocked = lambda axis: axis.state in FAULTS or axis.held >= HELD_STATUSES
+        self._wait(lambda: self._ready() or any(map(blocked, self._axes)), self.longest)
+        self._words = None
+        if not self._ready():
+            why = self._why_not_ready()
+            self.disable()
+            raise Obstacle("blocked", why)
+
+    def disable(self) -> None:
+        """Stops the axes, leads them to Switch on disabled, and gives their nodes up."""
+        if not self._commanding:
+            return
+        try:
+            self.stop()
+        finally:
+            self._words = DISABLING
+            over = lambda axis: axis.state in DISABLED or axis.held > 0
+            try:
+                good = self._wait(lambda: all(map(over, self._axes)), self.longest)
+            finally:
+                self._words, self._commanding = None, False
+                self._command(release=True)
+        if not good:
+            raise Obstacle("time over", "; ".join(f"{axis.name} does not confirm that it is disabled: {axis.bits()}"
+                                                  for axis in self._axes if not over(axis)))
+
+    def reset(self) -> None:
+        """Resets the faults of all axes."""
+        in_fault = lambda: any(axis.state in FAULTS for axis in self._axes)
+        if not in_fault():
+            return
+        self._commanding, self._words = True, {}  # bit 7 is low before its rising edge
+        self._wait(lambda: all(axis.state != "fault reaction active" for axis in self._axes), self.longest)
+        self._wait(lambda: False, 0.1)
+        self._words = {"fault": FAULT_RESET}
+        good = self._wait(lambda: not in_fault(), self.longest)
+        self._words = None
+        if not good:
+            raise Obstacle("blocked", self._why_not_ready())
+
+    def set_mode(self, mode: int) -> None:
+        """Sets another mode of operation (0x6060), and waits until the drives show it. enable() sets cyclic synchronous
+        position again."""
+        self.stop()
+        self._mode, self._words, self._commanding = mode, self._words_now(), True
+        shown = lambda axis: self._raw(axis, MODE_DISPLAY if MODE_DISPLAY in axis.places else MODE) == mode
+        good = self._wait(lambda: all(map(shown, self._axes)), self.longest)
+        self._words = None
+        if not good:
+            raise Obstacle("blocked", "; ".join(f"{axis.name}: 0x6061 does not show mode {mode}" for axis in self._axes
+                                                if not shown(axis)))
+
+    # Motions.
+
+    def move(self, *positions: float, **limits: float | list[float]) -> None:
+        """Moves the axes to these positions, and returns when they have come to rest there. Limits: `velocity`,
+        `acceleration`, `jerk` and `following_error`, one for all axes or a list; where they are 0 or not given, those of
+        the network file apply."""
+        self.begin_move(*positions, **limits)
+        self.wait()
+
+    def move_by(self, *distances: float, **limits: float | list[float]) -> None:
+        """Like move(), by distances from the commanded positions."""
+        self._check(distances)
+        self.move(*(start + way for start, way in zip(self.commanded_positions, distances)), **limits)
+
+    def begin_move(self, *positions: float, **limits: float | list[float]) -> None:
+        """Begins a move and returns at once. A new target is possible during a motion. See wait()."""
+        self._begin("move", positions, limits)
+
+    def jog(self, *velocities: float, **limits: float | list[float]) -> None:
+        """Begins to keep these velocities, until stop() or the end of the range of positions."""
+        self._begin("jog", velocities, limits)
+        self._wait(lambda: self._course() != "unanswered", ANSWER_TIME)
+        if self._course() != "runs":
+            self._raise_end()
+
+    def wait(self, seconds: float = float("inf")) -> None:
+        """Waits until the newest motion has ended."""
+        def over():
+            course = self._course()
+            return course != "runs" and (course != "unanswered" or time.monotonic() > self._begun + ANSWER_TIME)
+        if not self._wait(over, seconds):
+            raise Obstacle("time over", "the axes still move")
+        self._raise_end()
+
+    def run(self, seconds: float) -> None:
+        """Waits for this time, in which motions go on."""
+        self._wait(lambda: False, seconds)
+
+    def stop(self) -> None:
+        """Stops the axes along their limits, and returns when they stand."""
+        is_open = lambda: self.moving or self._course() in ("runs", "unanswered")
+        if not self._commanding or not is_open():
+            return
+        begin = self._cycle
+
+        def stands():
+            if time.monotonic() - self._last_sent > STOP_PAUSE:
+                self._stop_now()
+            never = self._course() == "unanswered" and not self.moving and self._cycle > begin + UNANSWERED_CYCLES
+            return never or not is_open()
+        self._stop_now()
+        if not self._wait(stands, self.longest):
+            raise Obstacle("time over", "the axes still move")
+        self._has_motion = False
+
+    # Below here: messages.
+
+    def _begin(self, kind: str, values: tuple[float, ...], limits: dict) -> None:
+        self._check(values)
+        if not self._wait(lambda: self._cycle > self._stop_cycle, self.longest):  # taktd refuses motions from before a stop
+            raise Obstacle("time over", "no newer image has come")
+        if not self._ready():
+            texts = [self._why_not_ready()] + [event.text for event in self._events if event.kind == "fallback_begun"][-1:]
+            raise Obstacle("blocked", "; ".join(texts))
+        goals = self._goals()
+        for place, (goal, value) in enumerate(zip(goals, values)):
+            setattr(goal, "velocity" if kind == "jog" else "position", float(value))
+            for name, limit in limits.items():
+                if not hasattr(goal, f"max_{name}"):
+                    raise TypeError(f"unknown limit {name}")
+                setattr(goal, f"max_{name}", float(limit[place] if isinstance(limit, (list, tuple)) else limit))
+        self._events.clear()
+        self._number += 1
+        self._has_motion, self._begun = True, time.monotonic()
+        self._send(kind, goals)
+
+    def _check(self, values) -> None:
+        if len(values) != len(self._axes):
+            raise Obstacle("wrong use", f"{len(values)} values for {len(self._axes)} axes")
+
+    def _goals(self) -> list[motion_goal_t]:
+        goals = []
+        for axis in self._axes:
+            goal = motion_goal_t()
+            goal.node, goal.axis = axis.node, axis.number
+            goals.append(goal)
+        return goals
+
+    def _course(self) -> str:
+        """How the newest motion stands."""
+        if not self._has_motion:
+            return "none"
+        if self._event("motion_refused", f"motion {self._number} of '{self.sender}'"):
+            return "refused"
+        courses = {self._course_of(axis.motion) for axis in self._axes}
+        order = ("unanswered", "runs", "refused", "replaced", "stopped", "done")
+        return next(course for course in order if course in courses)
+
+    def _course_of(self, motion) -> str:
+        if motion is None or self._number not in (motion.id, motion.ended_id):
+            return "unanswered"
+        if motion.id == self._number or motion.state == STOPS:
+            return "runs"
+        return {DONE: "done", STOPPED: "stopped", REFUSED: "refused"}.get(motion.outcome, "replaced")
+
+    def _raise_end(self) -> None:
+        """Raises the reason if the newest motion has not come to its target."""
+        course = self._course()
+        if course in ("none", "done"):
+            return
+
+        def reason():
+            told = self._event("motion_refused" if course == "refused" else "motion_stopped", f"motion {self._number} ")
+            told = told or self._event("command_refused", self.sender)
+            return "; ".join(filter(None, (told, "" if self._ready() else self._why_not_ready())))
+        self._wait(lambda: reason() != "", REASON_TIME)
+        usual = {"refused": "taktd has refused the motion", "stopped": "the motion has stopped",
+                 "replaced": "a newer motion has replaced this one"}.get(course, "taktd has not answered the motion")
+        raise Obstacle("refused" if course in ("refused", "unanswered") else "stopped", reason() or usual)
+
+    def _event(self, kind: str, part: str = "") -> str:
+        return next((event.text for event in reversed(self._events) if event.kind == kind and part in event.text), "")
+
+    def _ready(self) -> bool:
+        return all(axis.state == "operation enabled" and axis.motion and axis.motion.state != NOT_ENABLED
+                   for axis in self._axes)
+
+    def _why_not_ready(self) -> str:
+        return "; ".join(filter(None, map(self._why, self._axes)))
+
+    def _why(self, axis: _Axis) -> str:
+        node = self._nodes.get(axis.node_id)
+        if axis.held:
+            return f"{axis.name} belongs to '{node.holder}', and the commands of this program are refused"
+        if node and node.boot_state != BOOT_READY:
+            return f"{axis.name}: its device has not booted"
+        if axis.state != "operation enabled":
+            text = f"{axis.name}: not enabled, {axis.state}: {axis.bits()}"
+            if axis.state in FAULTS and node and node.num_emcys:
+                told = next((event.text for event in reversed(self._events)
+                             if event.kind == "emcy" and event.node_id == axis.node_id), "")
+                text += "; " + (told or f"its newest error is 0x{node.emcys[0] & 0xFFFF:04X}")
+            return text
+        if axis.motion is None:
+            return (f"{axis.name}: taktd reports no motion of it: was taktd started with --motions, and are 6041 and 6064 in "
+                    "TPDOs and 607A in an RPDO of the drive?")
+        return "" if axis.motion.state != NOT_ENABLED else (
+            f"{axis.name}: taktd does not count it as enabled: is its mode of operation 8, and is its target position sent?")
+
+    def _raw(self, axis: _Axis, index: int) -> int | None:
+        return self._values.get(axis.places.get(index))
+
+    def _read(self, axis: _Axis, index: int) -> float:
+        raw, signal = self._raw(axis, index), axis.signals.get(index)
+        return 0.0 if raw is None else raw * signal.scale + signal.offset
+
+    def _wait(self, reached: Callable[[], bool], seconds: float) -> bool:
+        """Takes messages and sends what is due until `reached()`. False: the time is over before."""
+        end = time.monotonic() + seconds
+        while True:
+            before = time.monotonic()
+            self._serve(0.005)
+            now = time.monotonic()
+            if self._restarted:
+                self._commanding = False
+                raise Obstacle("restarted", "taktd has restarted")
+            if before - self._image_time > IMAGE_TIME:
+                raise Obstacle("no bus", f"no image of bus {self.bus} has come for {before - self._image_time:.1f} s")
+            if self._commanding and now - self._last_sent > min(SILENCE, self.timeout / 4):
+                self._send("alive", [])
+            if reached():
+                return True
+            if now >= end:
+                return False
+
+    def _serve(self, seconds: float) -> None:
+        """Handles all messages that have come; waits for the first one at most for this time."""
+        cycle = self._cycle
+        if self._link.handle_timeout(max(1, int(seconds * 1000))):
+            for _ in range(100):  # a flood of messages does not hold the program
+                if not self._link.handle_timeout(0):
+                    break
+        if self._words is not None and self._cycle != cycle:
+            self._command()
+
+    def _words_now(self) -> dict[str, int]:
+        return ENABLING if all(axis.state == "operation enabled" for axis in self._axes) else {}
+
+    def _fill(self, message) -> None:
+        message.utime, message.schema = int(time.time() * 1e6), SCHEMA
+        message.session, message.cycle = self._session, self._cycle
+        message.instance, message.sender = self.instance, self.sender
+
+    def _command(self, release: bool = False) -> None:
+        command = command_t()
+        self._fill(command)
+        command.release = release
+        for axis in () if release else self._axes:
+            for index, value in ((CONTROLWORD, self._words.get(axis.state, 0)), (MODE, self._mode)):
+                if index in axis.places:
+                    command.signals.append(axis.places[index])
+                    command.values.append(value)
+        command.num_values = len(command.values)
+        self._link.publish(f"{self.bus}_COMMAND", command.encode())
+
+    def _send(self, kind: str, goals: list[motion_goal_t]) -> None:
+        command = motion_command_t()
+        self._fill(command)
+        command.kind, command.id, command.timeout_ms = kind, self._number, round(self.timeout * 1000)
+        command.goals, command.num_goals = goals, len(goals)
+        self._last_sent = time.monotonic()
+        self._link.publish(f"{self.bus}_MOTION_COMMAND", command.encode())
+
+    def _stop_now(self) -> None:
+        self._stop_cycle = self._cycle
+        self._send("stop", self._goals())
+
+    def _on_layout(self, channel: str, data: bytes) -> None:
+        layout = layout_t.decode(data)
+        if layout.schema != SCHEMA:
+            raise Obstacle("wrong use", f"taktd speaks schema {layout.schema} of the messages, this program {SCHEMA}")
+        if self._session is not None:
+            self._restarted |= (layout.session, layout.hash) != (self._session, self._hash)
+            return
+        self._layout_parts.add(layout.part)
+        for place, signal in enumerate(layout.signals, layout.first_signal):
+            self._add(place, signal)
+        if len(self._layout_parts) == layout.parts:
+            self._session, self._hash = layout.session, layout.hash
+            self._axes = [axis for _, axis in sorted(self._found.items())
+                          if CONTROLWORD in axis.places and STATUSWORD in axis.places]
+
+    def _add(self, place: int, signal) -> None:
+        index = FIRST_OBJECT + signal.index % AXIS_STEP
+        if not FIRST_OBJECT <= signal.index <= LAST_OBJECT or signal.sub or (index, bool(signal.output)) not in OBJECTS:
+            return
+        number = (signal.index - FIRST_OBJECT) // AXIS_STEP + 1
+        name = signal.node if number == 1 else f"{signal.node}.{number}"
+        axis = self._found.setdefault((signal.node_id, number), _Axis(name, signal.node, signal.node_id, number))
+        axis.places[index], axis.signals[index] = place, signal
+
+    def _on_image(self, channel: str, data: bytes) -> None:
+        image = image_t.decode(data)
+        if self._session is None or (image.session, image.layout_hash) != (self._session, self._hash):
+            return
+        self._values.update(enumerate(image.values, image.first_signal))
+        if image.part == 0:
+            self._parts = set()
+        self._parts.add(image.part)
+        if len(self._parts) < image.parts:
+            return
+        self._cycle, self._image_time = image.cycle, time.monotonic()
+        for axis in self._axes:
+            axis.statusword = self._values[axis.places[STATUSWORD]] & 0xFFFF
+
+    def _on_motion(self, channel: str, data: bytes) -> None:
+        motion = motion_t.decode(data)
+        reported = {(axis.node_id, axis.axis): axis for axis in motion.axes if motion.session == self._session}
+        for axis in self._axes:
+            axis.motion = reported.get((axis.node_id, axis.number), axis.motion)
+
+    def _on_event(self, channel: str, data: bytes) -> None:
+        event = event_t.decode(data)
+        if event.session == self._session and event.severity > 0:
+            self._events = self._events[-63:] + [event]
+
+    def _on_status(self, channel: str, data: bytes) -> None:
+        status = status_t.decode(data)
+        if status.session != self._session:
+            return
+        self._nodes.update((node.node_id, node) for node in status.nodes)
+        shown = {node.node_id for node in status.nodes}
+        for axis in self._axes:
+            if axis.node_id in shown:
+                other = self._nodes[axis.node_id].holder not in ("", self.sender)
+                axis.held = axis.held + 1 if other else 0
