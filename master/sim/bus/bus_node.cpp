@@ -53,19 +53,21 @@ std::size_t BusNode::erase_expired(Time now) noexcept {
   return dropped;
 }
 
-std::size_t BusNode::lowest_rank(Time now) const noexcept {
-  std::size_t best = none;
+std::size_t BusNode::lowest_ready(Time now) const noexcept {
+  std::size_t best = queue_.size();
   for (std::size_t i = 0; i < queue_.size(); ++i) {
     if (queue_[i].ready > now) continue;
-    if (best == none || queue_[i].rank < queue_[best].rank) best = i;
+    if (best == queue_.size() || queue_[i].rank < queue_[best].rank) best = i;
   }
   return best;
 }
 
+std::uint32_t BusNode::lowest_rank() const noexcept {
+  return std::ranges::min_element(queue_, {}, &QueuedFrame::rank)->rank;
+}
+
 Time BusNode::first_ready() const noexcept {
-  Time first = never;
-  for (const QueuedFrame& frame : queue_) first = std::min(first, frame.ready);
-  return first;
+  return std::ranges::min_element(queue_, {}, &QueuedFrame::ready)->ready;
 }
 
 }  // namespace takt::sim

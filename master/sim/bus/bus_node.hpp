@@ -47,11 +47,10 @@ class BusNode {
  public:
   explicit BusNode(BusNodeOptions options);
 
-  static constexpr std::size_t none = static_cast<std::size_t>(-1);
-
   /// Returns false if the queue is full.
   bool push(const Frame& frame, Time ready, Time expires) noexcept;
-  QueuedFrame take(std::size_t position) noexcept { return queue_.take(position); }
+  /// Takes the frame that the node offers to the bus at `now`. Requires that it offers one.
+  QueuedFrame take(Time now) noexcept { return queue_.take(offers_any() ? lowest_ready(now) : 0); }
   /// Puts a frame that was destroyed on the wire back at the front of the queue.
   void put_back(const QueuedFrame& frame) noexcept;
   void clear() noexcept { queue_.clear(); }
@@ -67,19 +66,17 @@ class BusNode {
   bool offers_any() const noexcept {
     return options.order == QueueOrder::priority && queue_.size() > 1;
   }
-  /// Returns the position of the frame that the node offers to the bus at `now`, or `none`.
-  std::size_t offered(Time now) const noexcept {
-    if (offers_any()) return lowest_rank(now);
-    return !empty() && queue_[0].ready <= now ? 0 : none;
+  /// Returns the frame that the node offers to the bus at `now`. Requires that it offers one.
+  const QueuedFrame& offered(Time now) const noexcept {
+    return queue_[offers_any() ? lowest_ready(now) : 0];
   }
   const QueuedFrame& at(std::size_t position) const noexcept { return queue_[position]; }
   std::size_t queued() const noexcept { return queue_.size(); }
-  /// Returns the earliest time at which the node may offer a queued frame; `never` if the queue is
-  /// empty.
-  Time earliest() const noexcept {
-    if (empty()) return never;
-    return std::max(offers_any() ? first_ready() : queue_[0].ready, suspended_until);
-  }
+  /// Of the queued frames, returns the earliest time at which one is ready. Requires that there is
+  /// one.
+  Time first_ready() const noexcept;
+  /// Returns the lowest rank of the queued frames. Requires that there is one.
+  std::uint32_t lowest_rank() const noexcept;
 
   bool on_bus() const noexcept { return powered && !bus_off; }
   bool error_passive(std::uint64_t frames) const noexcept {
@@ -109,8 +106,7 @@ class BusNode {
   Time suspended_until{};  ///< end of the pause of an error-passive node after its own frame
 
  private:
-  std::size_t lowest_rank(Time now) const noexcept;
-  Time first_ready() const noexcept;
+  std::size_t lowest_ready(Time now) const noexcept;
   std::size_t erase_expired(Time now) noexcept;
 
   FrameQueue queue_;           ///< has room for `capacity` frames and one that was put back

@@ -29,8 +29,7 @@ void VirtualBus::set_bitrate(std::uint32_t bitrate) noexcept {
 BusNodeIndex VirtualBus::attach(BusNodeOptions options) {
   const auto index = static_cast<BusNodeIndex>(nodes_.size());
   nodes_.emplace_back(options);
-  offers_.emplace_back();
-  waiting_.resize(nodes_.size() / 64 + 1);
+  offers_.reserve(nodes_.size());
   changes_.reserve(nodes_.size() + 8);
   ++on_bus_;
   return index;
@@ -49,21 +48,28 @@ bool VirtualBus::queue(BusNodeIndex from, const Frame& frame, Time ready, Time e
   }
   first_expiry_ = std::min(first_expiry_, expires);
   // Behind another frame, a frame of a fifo queue changes nothing in what the node offers.
-  if (node.options.order != QueueOrder::fifo || node.queued() == 1) renew_offer(from);
+  if (node.queued() == 1) {
+    offers_.add(offer_of(from));
+  } else if (node.options.order == QueueOrder::priority) {
+    renew_offer(from);
+  }
   if (!busy_) next_ = std::min(next_, std::max({idle_from_, ready, node.suspended_until}));
   return true;
 }
 
 void VirtualBus::renew_offer(BusNodeIndex index) noexcept {
+  offers_.remove(index);
+  if (!nodes_[index].empty()) offers_.add(offer_of(index));
+}
+
+Offer VirtualBus::offer_of(BusNodeIndex index) const noexcept {
   const BusNode& node = nodes_[index];
-  const std::uint64_t bit = std::uint64_t{1} << (index % 64);
-  if (node.empty()) {
-    waiting_[index / 64] &= ~bit;
-    return;
-  }
-  waiting_[index / 64] |= bit;
-  offers_[index] = {
-      .from = node.earliest(), .rank = node.at(0).rank, .by_priority = node.offers_any()};
+  const bool several = node.offers_any();
+  const Time ready = several ? node.first_ready() : node.at(0).ready;
+  return {.from = std::max(ready, node.suspended_until),
+          .rank = several ? node.lowest_rank() : node.at(0).rank,
+          .node = index,
+          .by_priority = several};
 }
 
 void VirtualBus::set_powered(BusNodeIndex index, bool on, Time now) noexcept {
@@ -113,12 +119,9 @@ void VirtualBus::find_next_event() noexcept {
     next_ = std::min(next_, wire_.end);
     return;
   }
-  for (std::size_t word = 0; word < waiting_.size(); ++word) {
-    for (std::uint64_t bits = waiting_[word]; bits != 0; bits &= bits - 1) {
-      const auto bit = static_cast<std::size_t>(std::countr_zero(bits));
-      next_ = std::min(next_, std::max(idle_from_, offers_[word * 64 + bit].from));
-      if (next_ <= idle_from_) return;
-    }
+  for (const Offer& offer : offers_.all()) {
+    next_ = std::min(next_, std::max(idle_from_, offer.from));
+    if (next_ <= idle_from_) return;
   }
 }
 
@@ -128,30 +131,38 @@ void VirtualBus::arbitrate(Time now) noexcept {
   sender_ = rival_ = nobody;
   if (first_expiry_ < now) drop_expired(now);
   std::uint32_t best = 0;
-  for (std::size_t word = 0; word < waiting_.size(); ++word) {
-    for (std::uint64_t bits = waiting_[word]; bits != 0; bits &= bits - 1) {
-      const auto index =
-          static_cast<BusNodeIndex>(word * 64 + static_cast<std::size_t>(std::countr_zero(bits)));
-      if (offers_[index].from > now) continue;
-      const std::uint32_t rank = rank_at(index, now);
-      if (sender_ == nobody || rank < best) {
-        best = rank;
-        sender_ = index;
-        rival_ = nobody;
-      } else if (rank == best && !relays(index) && !relays(sender_)) {
-        rival_ = index;
-      }
+  bool equal = false;  // several nodes offer the lowest rank
+  for (const Offer& offer : offers_.all()) {
+    if (sender_ != nobody && offer.rank > best) break;
+    if (offer.from > now) continue;
+    const std::uint32_t rank = rank_at(offer, now);
+    if (sender_ == nobody || rank < best) {
+      best = rank;
+      sender_ = offer.node;
+      equal = false;
+    } else if (rank == best) {
+      sender_ = std::min(sender_, offer.node);
+      equal = true;
     }
   }
+  if (equal) find_rival(best, now);
   if (sender_ != nobody) begin(now);
   schedule();
 }
 
-std::uint32_t VirtualBus::rank_at(BusNodeIndex index, Time now) const noexcept {
-  const Offer& offer = offers_[index];
-  if (!offer.by_priority) return offer.rank;
-  const BusNode& node = nodes_[index];
-  return node.at(node.offered(now)).rank;
+/// Finds a node that sends a frame of the rank of the sender at the same time.
+void VirtualBus::find_rival(std::uint32_t rank, Time now) noexcept {
+  if (relays(sender_)) return;
+  for (const Offer& offer : offers_.all()) {
+    const BusNodeIndex index = offer.node;
+    if (index == sender_ || relays(index) || offer.from > now) continue;
+    if (rank_at(offer, now) != rank) continue;
+    rival_ = rival_ == nobody ? index : std::max(rival_, index);
+  }
+}
+
+std::uint32_t VirtualBus::rank_at(const Offer& offer, Time now) const noexcept {
+  return offer.by_priority ? nodes_[offer.node].offered(now).rank : offer.rank;
 }
 
 void VirtualBus::drop_expired(Time now) noexcept {
@@ -166,36 +177,38 @@ void VirtualBus::drop_expired(Time now) noexcept {
 
 /// Takes the frame that the node offers.
 QueuedFrame VirtualBus::take(BusNodeIndex index, Time now) noexcept {
-  BusNode& node = nodes_[index];
-  const QueuedFrame frame = node.take(node.offered(now));
+  const QueuedFrame frame = nodes_[index].take(now);
   renew_offer(index);
   return frame;
 }
 
 void VirtualBus::begin(Time now) noexcept {
   current_ = take(sender_, now);
-  const std::uint32_t length = current_.bits;
   wire_.frame = current_.frame;
   wire_.start = now;
   wire_.sender = sender_;
   wire_.result = WireResult::sent;
-  if (rival_ != nobody) {
-    const BusNode& rival = nodes_[rival_];
-    const bool same = rival.at(rival.offered(now)).frame == current_.frame;
-    if (same) {
-      take(rival_, now);
-    } else {
-      wire_.result = WireResult::destroyed;
-    }
-  }
+  wire_.bits = current_.bits;
+  if (rival_ != nobody) [[unlikely]]
+    meet_rival(now);
   if (random_.chance(nodes_[sender_].faults.error)) wire_.result = WireResult::destroyed;
-  if (wire_.result == WireResult::sent && !acknowledged(sender_)) {
+  if (wire_.result == WireResult::sent && !acknowledged()) {
     wire_.result = WireResult::unacknowledged;
   }
-  const std::uint32_t bits = wire_.result == WireResult::sent ? length : bits_until_error(length);
-  wire_.bits = static_cast<std::uint16_t>(bits);
-  wire_.end = now + bit_time(bits);
+  if (wire_.result != WireResult::sent) [[unlikely]] {
+    wire_.bits = static_cast<std::uint16_t>(bits_until_error(current_.bits));
+  }
+  wire_.end = now + bit_time(wire_.bits);
   busy_ = true;
+}
+
+/// Two nodes send the same identifier. Equal frames go unnoticed, others destroy each other.
+void VirtualBus::meet_rival(Time now) noexcept {
+  if (nodes_[rival_].offered(now).frame == current_.frame) {
+    take(rival_, now);
+  } else {
+    wire_.result = WireResult::destroyed;
+  }
 }
 
 /// Returns the number of bits of the frame until it is destroyed, plus those of the error frame.
@@ -207,10 +220,6 @@ std::uint32_t VirtualBus::bits_until_error(std::uint32_t frame_length) noexcept 
   return first + random_.below(frame_length - first) + echoes + error_frame;
 }
 
-bool VirtualBus::acknowledged(BusNodeIndex sender) const noexcept {
-  return analyser_ || on_bus_ > (nodes_[sender].on_bus() ? 1u : 0u);
-}
-
 void VirtualBus::finish(Time now) noexcept {
   busy_ = false;
   counters_.bits += wire_.bits + interframe_bits;
@@ -220,13 +229,11 @@ void VirtualBus::finish(Time now) noexcept {
   } else {
     finish_bad(now);
   }
-  suspend(sender_);
-  if (rival_ != nobody) suspend(rival_);
+  pause(sender_);
+  if (rival_ != nobody) pause(rival_);
 }
 
-/// An error-passive node pauses after its own frame.
 void VirtualBus::suspend(BusNodeIndex index) noexcept {
-  if (!nodes_[index].error_passive(counters_.frames)) return;
   nodes_[index].suspended_until = idle_from_ + bit_time(suspend_bits);
   renew_offer(index);
 }
@@ -235,16 +242,18 @@ void VirtualBus::finish_good() noexcept {
   ++counters_.frames;
   BusNode& sender = nodes_[sender_];
   if (sender.transmit_errors != 0) --sender.transmit_errors;
-  if (!current_.repetition && random_.chance(sender.faults.duplicate)) {
-    ++counters_.duplicated;
-    QueuedFrame again = current_;
-    again.repetition = true;
-    repeat(sender_, again);
-  }
+  if (!current_.repetition && random_.chance(sender.faults.duplicate)) duplicate();
   if (random_.chance(sender.faults.loss)) {
     ++counters_.lost;
     wire_.result = WireResult::lost;
   }
+}
+
+void VirtualBus::duplicate() noexcept {
+  ++counters_.duplicated;
+  QueuedFrame again = current_;
+  again.repetition = true;
+  repeat(sender_, again);
 }
 
 void VirtualBus::finish_bad(Time now) noexcept {

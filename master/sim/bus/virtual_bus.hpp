@@ -5,6 +5,7 @@
 
 #include "eds_parser/table/time.hpp"
 #include "master/sim/bus/bus_node.hpp"
+#include "master/sim/bus/offer_list.hpp"
 #include "master/sim/bus/wire_frame.hpp"
 #include "master/sim/random.hpp"
 #include "master/wire/frame.hpp"
@@ -68,47 +69,54 @@ class VirtualBus {
   static constexpr BusNodeIndex nobody = 0xFFFF;
 
  private:
-  /// What a node offers to the bus. Each change of its queue renews it.
-  struct Offer {
-    Time from = never;         ///< the node offers nothing earlier
-    std::uint32_t rank = 0;    ///< rank of the frame that is offered
-    bool by_priority = false;  ///< several frames compete, so that the time decides which one
-  };
-
   void schedule() noexcept {
-    if (busy_ && recovering_ == 0) [[likely]] {
+    if (recovering_ != 0) [[unlikely]] {
+      return find_next_event();
+    }
+    if (busy_) {
       next_ = wire_.end;
+    } else if (!offers_.empty() && offers_.first().from <= idle_from_) {
+      next_ = idle_from_;
     } else {
       find_next_event();
     }
   }
-  void find_next_event() noexcept;
+  [[gnu::noinline]] void find_next_event() noexcept;
   void arbitrate(Time now) noexcept;
   void begin(Time now) noexcept;
-  std::uint32_t bits_until_error(std::uint32_t frame_length) noexcept;
+  [[gnu::cold, gnu::noinline]] void meet_rival(Time now) noexcept;
+  [[gnu::cold, gnu::noinline]] std::uint32_t bits_until_error(std::uint32_t frame_length) noexcept;
   void finish(Time now) noexcept;
-  void suspend(BusNodeIndex index) noexcept;
+  /// An error-passive node pauses after its own frame.
+  void pause(BusNodeIndex index) noexcept {
+    if (nodes_[index].error_passive(counters_.frames)) [[unlikely]]
+      suspend(index);
+  }
+  [[gnu::cold, gnu::noinline]] void suspend(BusNodeIndex index) noexcept;
   void finish_good() noexcept;
-  void finish_bad(Time now) noexcept;
+  [[gnu::cold, gnu::noinline]] void finish_bad(Time now) noexcept;
   void punish(BusNodeIndex index, Time now) noexcept;
   void go_bus_off(BusNodeIndex index, Time now) noexcept;
+  [[gnu::cold, gnu::noinline]] void duplicate() noexcept;
   void repeat(BusNodeIndex index, const QueuedFrame& frame) noexcept;
-  void recover(Time now) noexcept;
+  [[gnu::cold, gnu::noinline]] void recover(Time now) noexcept;
   QueuedFrame take(BusNodeIndex index, Time now) noexcept;
-  void drop_expired(Time now) noexcept;
+  [[gnu::noinline]] void drop_expired(Time now) noexcept;
   void renew_offer(BusNodeIndex index) noexcept;
-  std::uint32_t rank_at(BusNodeIndex index, Time now) const noexcept;
+  Offer offer_of(BusNodeIndex index) const noexcept;
+  std::uint32_t rank_at(const Offer& offer, Time now) const noexcept;
+  [[gnu::cold, gnu::noinline]] void find_rival(std::uint32_t rank, Time now) noexcept;
   bool relays(BusNodeIndex index) const noexcept { return nodes_[index].options.relays; }
-  bool acknowledged(BusNodeIndex sender) const noexcept;
+  /// Returns true if there is another node than the sender, which is on the bus.
+  bool acknowledged() const noexcept { return analyser_ || on_bus_ > 1; }
 
   std::uint32_t bitrate_ = 1'000'000;
   std::uint64_t bit_ns_ = 1'000;  ///< whole nanoseconds of a bit
   std::uint64_t bit_rest_ = 0;    ///< rest of that division; 0 at the usual bit rates
   Random random_;
   std::vector<BusNode> nodes_;
-  std::vector<Offer> offers_;           ///< by node
-  std::vector<std::uint64_t> waiting_;  ///< set of nodes with queued frames, one bit a node
-  Time first_expiry_ = never;           ///< no queued frame expires earlier
+  OfferList offers_;           ///< each change of the queue of a node renews its offer
+  Time first_expiry_ = never;  ///< no queued frame expires earlier
   std::vector<BusNodeIndex> changes_;
   BusCounters counters_;
   bool analyser_ = false;

@@ -109,6 +109,32 @@ TEST_F(Bus, TakesTheOldestOfAFifoEvenIfItsIdentifierIsHigh) {
   EXPECT_EQ(wire.frame.id, CobId::base(0x600));
 }
 
+TEST_F(Bus, LetsNoFrameWaitForALowerOneThatIsNotReady) {
+  bus_.queue(2, frame(0x100), 1ms);
+  bus_.queue(2, frame(0x300), 0ns);
+  bus_.queue(3, frame(0x200), 0ns);
+
+  const auto sent = run(2ms);
+
+  ASSERT_EQ(sent.size(), 3u);
+  EXPECT_EQ(sent[0].frame.id, CobId::base(0x200));
+  EXPECT_EQ(sent[1].frame.id, CobId::base(0x300));
+  EXPECT_EQ(sent[2].frame.id, CobId::base(0x100));
+}
+
+TEST_F(Bus, MergesEqualFramesAlsoOfANodeThatWaitsWithALowerOne) {
+  bus_.queue(2, frame(0x100), 1ms);
+  bus_.queue(2, frame(0x200), 0ns);
+  bus_.queue(1, frame(0x200), 0ns);
+
+  const auto sent = run(2ms);
+
+  ASSERT_EQ(sent.size(), 2u);
+  EXPECT_EQ(sent[0].frame.id, CobId::base(0x200));
+  EXPECT_EQ(sent[0].sender, 1);
+  EXPECT_EQ(sent[1].frame.id, CobId::base(0x100));
+}
+
 TEST_F(Bus, StretchesTimeWithTheBitRate) {
   VirtualBus bus{125'000, Random{1}};
   bus.attach({});
