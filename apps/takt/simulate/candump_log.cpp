@@ -16,7 +16,10 @@ CandumpLog::CandumpLog(const BusPlan& plan, const std::string& path)
 
 void CandumpLog::on_wire(const sim::WireFrame& wire) noexcept {
   statistics_.on_wire(wire);
-  if (!writes_ || wire.result != sim::WireResult::sent) return;
+  if (writes_ && wire.result == sim::WireResult::sent) write(wire);
+}
+
+void CandumpLog::write(const sim::WireFrame& wire) noexcept {
   std::array<char, 96> text{};
   const long long us = wire.end.count() / 1000;
   const Frame& frame = wire.frame;

@@ -17,6 +17,8 @@ class CandumpLog final : public sim::BusObserver {
   const WireStatistics& statistics() const noexcept { return statistics_; }
 
  private:
+  [[gnu::noinline]] void write(const sim::WireFrame& wire) noexcept;
+
   WireStatistics statistics_;
   std::string bus_;
   std::ofstream file_;

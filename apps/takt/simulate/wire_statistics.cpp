@@ -38,8 +38,7 @@ void WireStatistics::list(Content::Kind kind, const std::vector<PdoRow>& pdos) {
   }
 }
 
-WireStatistics::Content WireStatistics::content_of(CobId id) const noexcept {
-  if (!id.is_extended()) return base_ids_[id.id()];
+WireStatistics::Content WireStatistics::extended_content(CobId id) const noexcept {
   const auto found = extended_ids_.find(id);
   return found == extended_ids_.end() ? Content{} : found->second;
 }

@@ -53,7 +53,10 @@ class WireStatistics final : public sim::BusObserver {
   };
 
   void list(Content::Kind kind, const std::vector<PdoRow>& pdos);
-  Content content_of(CobId id) const noexcept;
+  Content content_of(CobId id) const noexcept {
+    return id.is_extended() ? extended_content(id) : base_ids_[id.id()];
+  }
+  Content extended_content(CobId id) const noexcept;
   void on_sync(Time start) noexcept;
   void on_tpdo(PdoOnWire& pdo, const PdoRow& row, Time end) noexcept;
   void count_service(CobId id) noexcept;
