@@ -45,6 +45,8 @@ Device::Device(const DeviceTable& table, Random random, DeviceTimes times)
       rpdos_.emplace_back(PdoRecord{store_, PdoDirection::receive, n});
     }
   }
+  live_tpdos_.reserve(tpdos_.size());
+  live_rpdos_.reserve(rpdos_.size());
   const auto has_quirk = [&table](std::string_view quirk) {
     return std::ranges::find(table.quirks, quirk) != table.quirks.end();
   };
@@ -261,7 +263,7 @@ void Device::on_time(Time now) noexcept {
     }
   }
   if (state_ == DeviceState::operational) {
-    for (Rpdo& rpdo : rpdos_) rpdo.on_time(now, emcy_);
+    for (Rpdo* const rpdo : live_rpdos_) rpdo->on_time(now, emcy_);
     run_tpdos(now);
   }
   finish_call(now);
@@ -328,8 +330,8 @@ void Device::finish_exchange(Time now) noexcept {
   plan_tick();
   deadline_ = std::min({deadline_, tick_, sync_.deadline(), emcy_.deadline()});
   if (state_ != DeviceState::operational) return;
-  for (const Rpdo& rpdo : rpdos_) deadline_ = std::min(deadline_, rpdo.deadline());
-  for (const Tpdo& tpdo : tpdos_) deadline_ = std::min(deadline_, tpdo.deadline());
+  for (const Rpdo* const rpdo : live_rpdos_) deadline_ = std::min(deadline_, rpdo->deadline());
+  for (const Tpdo* const tpdo : live_tpdos_) deadline_ = std::min(deadline_, tpdo->deadline());
 }
 
 void Device::plan_tick() noexcept {
@@ -339,7 +341,7 @@ void Device::plan_tick() noexcept {
     return;
   }
   const bool events =
-      multiplexed_.wants_events() || std::ranges::any_of(tpdos_, &Tpdo::wants_events);
+      multiplexed_.wants_events() || std::ranges::any_of(live_tpdos_, &Tpdo::wants_events);
   tick_ = std::max(change, last_look_ + (events ? fast_tick : slow_tick));
 }
 

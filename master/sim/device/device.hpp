@@ -83,6 +83,7 @@ class Device final : private Dictionary {
   /// Must be called when objects were changed without a write by SDO.
   void look_at_records() noexcept {
     for (Tpdo& tpdo : tpdos_) tpdo.look_at_record();
+    list_live_pdos();
   }
 
   void on_bus_off(Time now) noexcept;
@@ -136,7 +137,8 @@ class Device final : private Dictionary {
   void start_pdos(Time now) noexcept;
   void run_tpdos(Time now) noexcept;
   void stop_pdos() noexcept;
-  void list_multiplexed() noexcept;
+  void list_pdos() noexcept;
+  void list_live_pdos() noexcept;
   Abort check_write(const Object& object, std::uint64_t raw) const noexcept;
   Abort check_sdo_server(const Object& object, std::uint64_t raw) const noexcept;
   void written(const Object& object, Time now) noexcept;
@@ -174,6 +176,8 @@ class Device final : private Dictionary {
   std::optional<LssSlave> lss_;  ///< present with the quirk "lss" or "no_node_id"
   std::vector<Tpdo> tpdos_;
   std::vector<Rpdo> rpdos_;
+  std::vector<Tpdo*> live_tpdos_;  ///< those that can act in OPERATIONAL, by number
+  std::vector<Rpdo*> live_rpdos_;  ///< likewise
   MultiplexedPdos multiplexed_;
   std::unique_ptr<Model> model_;
   Routes routes_;

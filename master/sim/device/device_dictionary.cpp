@@ -140,7 +140,7 @@ void Device::pdo_written(ObjectKey key, Time now) noexcept {
   for (Tpdo& tpdo : tpdos_) {
     if (tpdo.record().owns(key)) tpdo.reconfigure(now);
   }
-  if (state_ == DeviceState::operational) list_multiplexed();
+  if (state_ == DeviceState::operational) list_pdos();
 }
 
 }  // namespace takt::sim

@@ -6,22 +6,35 @@ void Device::start_pdos(Time now) noexcept {
   model_->advance(now);
   for (Rpdo& rpdo : rpdos_) rpdo.start();
   for (Tpdo& tpdo : tpdos_) tpdo.start(now);
-  list_multiplexed();
+  list_pdos();
   run_tpdos(now);
   if (!faults_.mute_pdo) multiplexed_.notice(now, out_);
 }
 
-void Device::list_multiplexed() noexcept {
+void Device::list_pdos() noexcept {
   multiplexed_.clear();
   for (const Tpdo& tpdo : tpdos_) multiplexed_.add(tpdo.record());
+  list_live_pdos();
+}
+
+/// Most devices have many more PDOs than they use, and each SYNC visits those of these lists.
+void Device::list_live_pdos() noexcept {
+  live_tpdos_.clear();
+  live_rpdos_.clear();
+  for (Tpdo& tpdo : tpdos_) {
+    if (tpdo.live()) live_tpdos_.push_back(&tpdo);
+  }
+  for (Rpdo& rpdo : rpdos_) {
+    if (rpdo.live()) live_rpdos_.push_back(&rpdo);
+  }
 }
 
 void Device::run_tpdos(Time now) noexcept {
   const std::size_t before = out_.pending().size();
-  for (Tpdo& tpdo : tpdos_) {
-    if (now < tpdo.deadline()) continue;
+  for (Tpdo* const tpdo : live_tpdos_) {
+    if (now < tpdo->deadline()) continue;
     model_->advance(now);
-    tpdo.on_time(now, out_);
+    tpdo->on_time(now, out_);
   }
   if (faults_.mute_pdo) out_.shrink(before);
 }
@@ -29,6 +42,8 @@ void Device::run_tpdos(Time now) noexcept {
 void Device::stop_pdos() noexcept {
   for (Rpdo& rpdo : rpdos_) rpdo.stop();
   for (Tpdo& tpdo : tpdos_) tpdo.stop();
+  live_tpdos_.clear();
+  live_rpdos_.clear();
   multiplexed_.clear();
 }
 
@@ -39,13 +54,15 @@ void Device::on_sync(const Frame& frame, Time now) noexcept {
   last_look_ = now;
   if (state_ != DeviceState::operational) return;
   if (!faults_.mute_pdo) {
-    for (Tpdo& tpdo : tpdos_) tpdo.on_sync(counter, now + times_.pdo, sync_.window_end(), out_);
+    for (Tpdo* const tpdo : live_tpdos_) {
+      tpdo->on_sync(counter, now + times_.pdo, sync_.window_end(), out_);
+    }
   }
   bool fresh = false;
-  for (Rpdo& rpdo : rpdos_) {
-    if (!rpdo.waits()) continue;
-    rpdo.apply();
-    model_->received(rpdo.record().number(), now);
+  for (Rpdo* const rpdo : live_rpdos_) {
+    if (!rpdo->waits()) continue;
+    rpdo->apply();
+    model_->received(rpdo->record().number(), now);
     fresh = true;
   }
   if (fresh) model_->outputs(now);
@@ -103,7 +120,7 @@ void Device::look_at_inputs(Time now) noexcept {
   model_->advance(now);
   last_look_ = now;
   if (state_ != DeviceState::operational || faults_.mute_pdo) return;
-  for (Tpdo& tpdo : tpdos_) tpdo.notice(now, out_);
+  for (Tpdo* const tpdo : live_tpdos_) tpdo->notice(now, out_);
   multiplexed_.notice(now, out_);
 }
 

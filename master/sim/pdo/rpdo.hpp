@@ -33,6 +33,8 @@ class Rpdo {
   void apply() noexcept;
   void on_time(Time now, EmcyProducer& emcy) noexcept;
   Time deadline() const noexcept { return deadline_; }
+  /// False if no frame waits and none can be received, until start() or a change of the record.
+  bool live() const noexcept { return record_.valid() || full_ || deadline_ != never; }
 
  private:
   bool length_is_good(const Frame& frame, EmcyProducer& emcy) noexcept;

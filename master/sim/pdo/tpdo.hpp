@@ -39,6 +39,9 @@ class Tpdo {
   }
   void on_time(Time now, Transmitter& out) noexcept;
   Time deadline() const noexcept { return deadline_; }
+  /// False if neither SYNC nor time nor changes of values have an effect until start(),
+  /// reconfigure() or look_at_record().
+  bool live() const noexcept { return active_ || deadline_ != never; }
   /// True if changes of mapped values are events.
   bool wants_events() const noexcept {
     return active_ && (type_ == 0 || type_ >= 254) && has_events();
