@@ -1,5 +1,5 @@
-// Nanoseconds of processor time that the motions of 120 axes take in one beat: while all move, and
-// in the beat in which all stop.
+// Nanoseconds of processor time that the motions of 120 axes take in one beat: while all move,
+// while all follow streams, and in the beat in which all stop.
 #include <array>
 #include <benchmark/benchmark.h>
 #include <vector>
@@ -59,6 +59,54 @@ void moving(benchmark::State& state) {
   }
 }
 BENCHMARK(moving)->Unit(benchmark::kMicrosecond);
+
+/// All axes follow streams, which get a point in each 20th beat.
+struct StreamingAxes {
+  static constexpr CycleNumber step = 20;
+
+  StreamingAxes() : motions{axes, period}, inputs(axes) {
+    for (AxisInput& input : inputs) input.condition = AxisCondition::enabled;
+    motions.run(++cycle, inputs);
+    for (std::size_t i = 0; i < axes; ++i) {
+      MotionOrder order;
+      order.id = 1;
+      order.axis = static_cast<std::uint8_t>(i);
+      order.axes = axes;
+      order.ending = Ending::points;
+      order.begin = cycle + 1;
+      order.stop = limits;
+      order.timeout = 1'000'000'000;
+      motions.take(order);
+    }
+    for (int i = 0; i < 10; ++i) add();
+  }
+
+  /// The next point of all axes, each of which moves at the same velocity.
+  void add() {
+    StreamPoints next{.order = 1, .size = 1};
+    const double time = static_cast<double>(++points * step) * period;
+    next.points[0] = {.time = time, .state = {.position = 0.1 * time, .velocity = 0.1}};
+    for (std::size_t i = 0; i < axes; ++i) motions.add_points(static_cast<std::uint8_t>(i), next);
+  }
+  std::span<const AxisReport> run() {
+    if (++cycle % step == 0) add();
+    return motions.run(cycle, inputs);
+  }
+
+  AxisMotions motions;
+  std::vector<AxisInput> inputs;
+  CycleNumber cycle = 0;
+  CycleNumber points = 0;
+};
+
+void streaming(benchmark::State& state) {
+  StreamingAxes streaming;
+  for (auto _ : state) {
+    const auto reports = streaming.run();
+    for (std::size_t i = 0; i < axes; ++i) streaming.inputs[i].actual = reports[i].commanded;
+  }
+}
+BENCHMARK(streaming)->Unit(benchmark::kMicrosecond);
 
 void all_stop(benchmark::State& state) {
   const MovingAxes moving;

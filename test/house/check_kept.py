@@ -34,7 +34,7 @@ NOT_KEPT = {
     "Network": {PLAN: "plan_ observe_ nmt_stop_ stops_drives_ index_ emcy_ids_ answers_ dictionary_", SHARED: "events_",
                 IDLE: "stopping_ boots_given_up_ broadcasts_ streams_ streaming_ awaits_ awaited_ server_ command_ awaits_axes_ axes_at_rest_ "
                       "rest_"},
-    "MotionStage": {SHARED: "front_ bus_", ANEW: "inputs_"},
+    "MotionStage": {SHARED: "front_ bus_", ANEW: "inputs_ message_"},
     "NetworkStart": {PLAN: "plan_"},
     "NmtGate": {PLAN: "inhibit_"},
     "NodeGuard": {PLAN: "plan_"},

@@ -14,6 +14,14 @@
 
 namespace takt::test {
 
+// States and outcomes of axis_motion_t.
+inline constexpr std::int8_t standing = 1;
+inline constexpr std::int8_t moving = 2;
+inline constexpr std::int8_t stopping = 3;
+inline constexpr std::int8_t done = 1;
+inline constexpr std::int8_t stopped = 2;
+inline constexpr std::int8_t refused = 4;
+
 /// LCM in memory: keeps the newest motion_t and the cycle of the newest image, and delivers what an
 /// application sends.
 class MotionLcm final : public Transport {

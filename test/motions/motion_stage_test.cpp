@@ -298,6 +298,43 @@ TEST(MotionStage, TheBusThreadAllocatesNothingWhileAxesBeginMoveAndStop) {
   EXPECT_EQ(made, 0U);
 }
 
+TEST(MotionStage, TheBusThreadAllocatesNothingWhileAnAxisFollowsAStream) {
+  MovedAxes bus;
+  bus.enable();
+  motion::MotionMessage message{.kind = motion::MessageKind::order};
+  message.order = {.id = 1,
+                   .ending = motion::Ending::points,
+                   .begin = bus.now.cycle + 3,
+                   .from = bus.now.axes[0].commanded,
+                   .profile = {},
+                   .stop = MovedAxes::limits,
+                   .timeout = 250};
+  ASSERT_TRUE(bus.master.submit(message));
+  message = {.kind = motion::MessageKind::points, .axis = 0};
+  message.points.order = 1;
+  message.points.size = 4;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double step = static_cast<double>(i + 1);
+    message.points.points[i] = {.time = 0.1 * step,
+                                .state = {.position = 0.02 * step, .velocity = 0.1}};
+  }
+  ASSERT_TRUE(bus.master.submit(message));
+  std::uint64_t made = 0;
+  for (int i = 0; i < 400; ++i) {
+    ++bus.last_cycle;
+    bus.keep_alive();
+    const std::uint64_t before = allocations();
+    bus.master.cycle();
+    made += allocations() - before;
+    bus.master.motions(bus.now);
+    if (i == 150) {
+      EXPECT_EQ(bus.now.axes[0].state, AxisState::moving);
+    }
+  }
+  EXPECT_EQ(bus.now.axes[0].stop.cause, StopCause::points_ended);
+  EXPECT_EQ(made, 0U);
+}
+
 TEST(MotionStage, AStopOfTheApplicationActsInTheNextBeat) {
   MovedAxes bus;
   bus.enable();

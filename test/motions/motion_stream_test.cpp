@@ -110,19 +110,19 @@ TEST(MotionStream, AnApplicationThatDiesLeavesItsPointsAndThenAStopAlongTheLimit
   EXPECT_NEAR(left, 0.4, 0.03);
   const auto cycles = static_cast<int>(left / period);
   bus.run(cycles - 2);
-  EXPECT_EQ(bus.axis(0).state, 2);
+  EXPECT_EQ(bus.axis(0).state, test::moving);
   bus.run(4);
-  EXPECT_EQ(bus.axis(0).state, 3);
-  EXPECT_EQ(bus.axis(1).state, 3);
+  EXPECT_EQ(bus.axis(0).state, test::stopping);
+  EXPECT_EQ(bus.axis(1).state, test::stopping);
   EXPECT_TRUE(bus.said("motion_stopped", "the points of its stream have ended"));
   double before = bus.axis(0).velocity;
-  while (bus.axis(0).state == 3) {
+  while (bus.axis(0).state == test::stopping) {
     bus.cycle();
     ASSERT_LE(std::abs(bus.axis(0).velocity - before), 20.0 * period + 1e-9);
     before = bus.axis(0).velocity;
   }
-  EXPECT_EQ(bus.axis(0).state, 1);
-  EXPECT_EQ(bus.axis(0).outcome, 2);
+  EXPECT_EQ(bus.axis(0).state, test::standing);
+  EXPECT_EQ(bus.axis(0).outcome, test::stopped);
 }
 
 TEST(MotionStream, AllAxesBeginInTheSameCycleAndEndAtRest) {
@@ -139,8 +139,8 @@ TEST(MotionStream, AllAxesBeginInTheSameCycleAndEndAtRest) {
   EXPECT_NEAR(bus.axis(0).time_left, 1.0, 1e-9);
   bus.each_cycle = [&] { bus.keep_alive(); };
   ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).ended_id == 4; }, 510));
-  EXPECT_EQ(bus.axis(0).outcome, 1);
-  EXPECT_EQ(bus.axis(1).outcome, 1);
+  EXPECT_EQ(bus.axis(0).outcome, test::done);
+  EXPECT_EQ(bus.axis(1).outcome, test::done);
   bus.run(10);
   EXPECT_NEAR(bus.position(1), -0.25, 1e-3);
 }
@@ -177,9 +177,9 @@ TEST(MotionStream, RefusesAStreamThatDoesNotBeginWhereTheAxisStands) {
     bus.run(10);
     EXPECT_TRUE(bus.said("motion_refused", words))
         << words << ": " << (bus.notices.empty() ? "nothing" : bus.notices.back().text);
-    EXPECT_EQ(bus.axis(0).state, 1) << words;
+    EXPECT_EQ(bus.axis(0).state, test::standing) << words;
     EXPECT_EQ(bus.axis(0).ended_id, id);
-    EXPECT_EQ(bus.axis(0).outcome, 4);
+    EXPECT_EQ(bus.axis(0).outcome, test::refused);
   };
   motion_point_t first = wave(0.0, {1.0});
   first.position[0] = 0.001;
@@ -205,7 +205,7 @@ TEST(MotionStream, RefusesAPointWithTheReasonAndFollowsThoseBefore) {
   std::int32_t id = 10;
   const auto refusal = [&](auto change, const std::string& words) {
     bus.run(600);
-    ASSERT_EQ(bus.axis(0).state, 1) << words;
+    ASSERT_EQ(bus.axis(0).state, test::standing) << words;
     bus.notices.clear();
     const double stands = bus.axis(0).position;
     const auto at = [&](double time, double way) {
@@ -223,7 +223,7 @@ TEST(MotionStream, RefusesAPointWithTheReasonAndFollowsThoseBefore) {
         << words << ": " << (bus.notices.empty() ? "nothing" : bus.notices.back().text);
     bus.run(200);
     EXPECT_EQ(bus.axis(0).ended_id, id) << words;
-    EXPECT_EQ(bus.axis(0).outcome, 1) << words;
+    EXPECT_EQ(bus.axis(0).outcome, test::done) << words;
     EXPECT_NEAR(bus.axis(0).position, stands + 0.1, 1e-9) << words;
   };
   bus.each_cycle = [&] { bus.keep_alive(); };
@@ -257,11 +257,11 @@ TEST(MotionStream, AMoveDuringAStreamIsRefusedAndAStopEndsIt) {
   motion_command_t stop = bus.command("stop", 0);
   stop.goals = {MotionBus::goal("shoulder", 0.0)};
   bus.send(stop);
-  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == 3; }, 5));
-  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == 1; }, 500));
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == test::stopping; }, 5));
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == test::standing; }, 500));
   bus.run(50);
   EXPECT_TRUE(bus.said("motion_refused", "its stream does not run"));
-  EXPECT_EQ(bus.axis(0).state, 1);
+  EXPECT_EQ(bus.axis(0).state, test::standing);
 }
 
 TEST(MotionStream, MorePointsThanTheBufferHoldsAreRefused) {

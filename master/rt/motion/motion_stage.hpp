@@ -62,10 +62,9 @@ class MotionStage {
     return last_run_ != 0 && moment.cycle - last_run_ > most_missed + 1;
   }
   void take_messages(motion::CycleNumber cycle) noexcept {
-    motion::MotionMessage message;
-    for (std::size_t i = 0; i < most_messages && front_.take_motion(message); ++i) {
+    for (std::size_t i = 0; i < most_messages && front_.take_motion(message_); ++i) {
       active_ = true;
-      accept(message, cycle);
+      accept(message_, cycle);
     }
   }
   void accept(const motion::MotionMessage& message, motion::CycleNumber cycle) noexcept;
@@ -77,6 +76,7 @@ class MotionStage {
   std::vector<DrivenAxis> axes_;
   motion::AxisMotions motions_;
   std::vector<motion::AxisInput> inputs_;
+  motion::MotionMessage message_;     ///< the one that is taken
   std::uint64_t beats_ = 0;           ///< BusStatus::beats when a beat was run last
   motion::CycleNumber last_run_ = 0;  ///< the cycle in which a beat was run last
   bool active_ = false;               ///< a message has come
