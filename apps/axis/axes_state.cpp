@@ -15,7 +15,7 @@ constexpr std::chrono::milliseconds axes_tick{5};
 /// Longest time between signs of life. A shorter timeout of the motions shortens it.
 constexpr std::chrono::milliseconds longest_silence{50};
 constexpr int signs_in_timeout = 4;
-/// The bus is silent if no image comes for so long, and for so many periods.
+/// The bus is silent if no image comes for so long, for so many periods, and for the timeout.
 constexpr std::chrono::seconds image_time{2};
 constexpr int image_periods = 20;
 constexpr std::size_t most_kept_events = 64;
@@ -83,7 +83,8 @@ Done Axes::State::step(Interruption interruption) {
   }
   keep_alive();
   const auto silence = now - last_image_;
-  if (silence > std::max<nanoseconds>(image_time, image_periods * group.period())) {
+  if (silence >
+      std::max<nanoseconds>({image_time, options.timeout, image_periods * group.period()})) {
     return obstacle(Obstacle::Kind::no_bus,
                     fmt::format("no image of bus {} has come for {:.1f} s", group.bus(),
                                 std::chrono::duration<double>(silence).count()));

@@ -1,17 +1,15 @@
 #include <csignal>
 #include <fmt/format.h>
-#include <memory>
 #include <sched.h>
 #include <takt/axis.hpp>
 #include <takt/lcm.hpp>
 #include <unistd.h>
 #include <utility>
 
+#include "apps/axis/lcm_access.hpp"
 #include "apps/command_line/failure.hpp"
 #include "apps/move/move_options.hpp"
 #include "apps/move/move_run.hpp"
-#include "master/lcm/envelope/checked_transport.hpp"
-#include "master/lcm/envelope/key_file.hpp"
 
 namespace {
 
@@ -32,20 +30,14 @@ void ask_for_real_time() {
   ::sched_setscheduler(0, SCHED_FIFO, &parameters);
 }
 
-/// Opens LCM. If the options require it, the connection accepts only messages that the daemon has
-/// signed.
-std::unique_ptr<takt::Transport> open_lcm(const takt::MoveOptions& options) {
-  auto lcm = takt::value_or_fail(takt::open_lcm(options.lcm_url), 3);
-  if (!options.check_images) return lcm;
-  if (options.keys.empty()) {
-    throw takt::Failure{"--check-images needs a key file: --keys FILE", 2};
-  }
-  auto keys = takt::value_or_fail(takt::WatchedKeyFile::open(options.keys), 2);
-  return std::make_unique<takt::CheckedTransport>(std::move(lcm), std::move(keys));
-}
-
 int run(const takt::MoveOptions& options) {
-  takt::AxisGroup group{open_lcm(options),
+  auto lcm = takt::open_lcm(takt::LcmAccess{
+      .url = options.lcm_url, .keys = options.keys, .check_images = options.check_images});
+  if (!lcm) {
+    const bool wrong = lcm.error().kind == takt::Obstacle::Kind::wrong_use;
+    throw takt::Failure{lcm.error().text, wrong ? 2 : 3};
+  }
+  takt::AxisGroup group{std::move(*lcm),
                         {.bus = options.bus,
                          .sender = fmt::format("takt-move {}", ::getpid()),
                          .stale_cycles = options.stale_cycles}};

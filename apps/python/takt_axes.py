@@ -395,7 +395,7 @@ class Axes:
             if self._restarted:
                 self._commanding = False
                 raise Obstacle("restarted", "taktd has restarted")
-            if before - self._image_time > IMAGE_TIME:
+            if before - self._image_time > max(IMAGE_TIME, self.timeout):
                 raise Obstacle("no bus", f"no image of bus {self.bus} has come for {before - self._image_time:.1f} s")
             if self._commanding and now - self._last_sent > min(SILENCE, self.timeout / 4):
                 self._send("alive", [])

@@ -139,7 +139,8 @@ ROOMS = {
     "apps/master": ("the library for programs that contain a master; its bus and its thread are also those of taktd",
                     "eds_parser/report eds_parser/network_file master master/units master/wire master/core master/explain "
                     "master/rt master/rt/exchange master/rt/journal " + LINUX + " " + SIM),
-    "apps/move": ("takt-move", "apps/axis apps/command_line master/motion master/lcm master/lcm/envelope"),
+    "apps/move": ("takt-move", "apps/axis apps/command_line master/motion master/lcm"),
+    "apps/jog": ("takt-jog", "apps/axis apps/command_line master/lcm"),
     "apps/takt/live": ("commands for a running daemon: status, top, timing, EMCY, record",
                        "apps/command_line master/core master/explain master/gateway/message master/gateway/notice "
                        "master/rt/exchange master/linux " + LCM),

@@ -1,0 +1,41 @@
+#pragma once
+#include <cstdint>
+
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+/// Tells from the characters of a terminal for how long a key is held. A terminal does not report
+/// that a key is released. It repeats the key while it is held: for the first time after a delay
+/// (usually 250 to 660 ms), and then every 20 to 50 ms.
+///
+///     released --press--> pressed --press--> held
+///        ^                   | nothing for     | nothing for
+///        +-------------------+ `first`  -------+ `next`, or another key
+class DeadMan {
+ public:
+  /// How long a key counts as held without a further character.
+  struct Times {
+    Time first;  ///< after the first character; longer than the delay of the terminal
+    Time next;   ///< after each further one; longer than the time between repetitions
+  };
+
+  explicit DeadMan(Times times) : times_{times} {}
+
+  /// A character of this direction has come: 1 or -1.
+  void press(int direction, Time now) noexcept;
+  /// Another key was pressed, or the program has stood still.
+  void release() noexcept { state_ = State::released; }
+  /// Returns 1 or -1 while the key of this direction is held, else 0.
+  int direction(Time now) noexcept;
+
+ private:
+  enum class State : std::uint8_t { released, pressed, held };
+
+  Times times_;
+  State state_ = State::released;
+  int direction_ = 0;
+  Time newest_{};
+};
+
+}  // namespace takt

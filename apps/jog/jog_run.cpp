@@ -1,0 +1,104 @@
+#include "apps/jog/jog_run.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <fmt/format.h>
+
+#include "master/lcm/printable_text.hpp"
+
+namespace takt {
+namespace {
+
+/// Time to the full velocity without --acceleration, seconds.
+constexpr double usual_ramp = 0.25;
+/// Time between two looks at the keyboard.
+constexpr std::chrono::milliseconds look{10};
+/// Keys that have waited for longer say nothing about what the user holds now.
+constexpr std::chrono::milliseconds oldest_key{100};
+
+Time now() { return std::chrono::steady_clock::now().time_since_epoch(); }
+
+Eigen::VectorXd one(double value) { return Eigen::VectorXd::Constant(1, value); }
+
+}  // namespace
+
+JogRun::JogRun(Axes& axes, const JogOptions& options)
+    : axes_{axes},
+      options_{options},
+      bounds_{.velocity = one(std::abs(options.velocity)),
+              .acceleration =
+                  one(options.acceleration.value_or(std::abs(options.velocity) / usual_ramp)),
+              .jerk = one(options.jerk)},
+      dead_man_{{.first = options.first, .next = options.dead_man}} {}
+
+Done JogRun::run() {
+  if (Done enabled = axes_.enable(); !enabled) return enabled;
+  Done jogged = options_.seconds ? jog_for(*options_.seconds) : jog_by_keys();
+  const Done disabled = axes_.disable();
+  show("is disabled");
+  std::puts("");
+  const bool asked = !jogged && jogged.error().kind == Obstacle::Kind::interrupted;
+  return jogged || asked ? disabled : jogged;
+}
+
+Done JogRun::jog_for(Time time) {
+  Done done = turn_to(1);
+  if (done) done = axes_.run(time);
+  if (done && !axes_.moving()) done = axes_.wait();  // it has stopped by itself: says why
+  return done ? axes_.stop() : done;
+}
+
+Done JogRun::jog_by_keys() {
+  Keyboard keyboard;
+  last_look_ = now();
+  while (!ends_ && keyboard.open()) {
+    take_keys(keyboard);
+    const int wanted = dead_man_.direction(now());
+    Done done = axes_.run(look);
+    if (done && direction_ != 0 && !axes_.moving()) done = axes_.wait();
+    if (done && wanted != direction_) {
+      done = turn_to(wanted);
+      keyboard.forget();  // what has come meanwhile may be older than the release of the key
+      last_look_ = now();
+    }
+    show(direction_ == 0 ? "stands" : "moves");
+    if (done) continue;
+    const bool goes_on = done.error().kind == Obstacle::Kind::refused ||
+                         done.error().kind == Obstacle::Kind::stopped;
+    if (!goes_on) return done;
+    fmt::print("\n{}\n", printable_text(done.error().text));
+    direction_ = 0;
+    dead_man_.release();
+  }
+  return axes_.stop();
+}
+
+Done JogRun::turn_to(int direction) {
+  direction_ = direction;
+  return direction == 0 ? axes_.stop() : axes_.jog(one(direction * options_.velocity), bounds_);
+}
+
+void JogRun::take_keys(Keyboard& keyboard) {
+  const Time looked = now();
+  if (looked - last_look_ > oldest_key) keyboard.forget();
+  last_look_ = looked;
+  for (JogKey key = keyboard.next(); key != JogKey::none; key = keyboard.next()) {
+    if (key == JogKey::forward || key == JogKey::backward) {
+      dead_man_.press(key == JogKey::forward ? 1 : -1, looked);
+    } else {
+      dead_man_.release();
+      ends_ |= key == JogKey::end;
+    }
+  }
+}
+
+/// Writes the state of the axis over the same line of the terminal.
+void JogRun::show(std::string_view what) const {
+  const std::string& unit = axes_.unit(0);
+  const std::string line = fmt::format("{} {} at {:.4f} {}", axes_.name(0), what,
+                                       axes_.positions()(0), unit.empty() ? "counts" : unit);
+  std::fputs(fmt::format("\r{:<70}", printable_text(line)).c_str(), stdout);
+  std::fflush(stdout);
+}
+
+}  // namespace takt

@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <termios.h>
+
+namespace takt {
+
+/// Keys that takt-jog knows.
+enum class JogKey : std::uint8_t { none, forward, backward, end, other };
+
+/// The keys of the terminal, which does not echo them meanwhile. The destructor puts the terminal
+/// back. stdin must be a terminal.
+class Keyboard {
+ public:
+  Keyboard();
+  ~Keyboard();
+  Keyboard(const Keyboard&) = delete;
+  Keyboard& operator=(const Keyboard&) = delete;
+
+  /// Returns true if stdin is a terminal.
+  static bool exists() noexcept;
+  /// Returns the next key that has come, or JogKey::none.
+  JogKey next();
+  /// Forgets the keys that have come.
+  void forget();
+  /// Returns false if the terminal is closed.
+  bool open() const noexcept { return open_; }
+
+ private:
+  int byte();
+
+  termios before_{};
+  bool open_ = true;
+};
+
+}  // namespace takt
