@@ -75,6 +75,14 @@ Object* ObjectStore::find(ObjectKey key) noexcept {
   }
 }
 
+Object& ObjectStore::number_or(ObjectKey key, std::int64_t constant) {
+  Object* const object = find(key);
+  if (object != nullptr && !object->is_bytes()) return *object;
+  Object& other = constants_.emplace_back();
+  other.value = static_cast<std::uint64_t>(constant);
+  return other;
+}
+
 bool ObjectStore::has_index(std::uint16_t index) const noexcept {
   const auto at = std::ranges::lower_bound(objects_, ObjectKey{index, 0}, {}, &Object::key);
   return at != objects_.end() && at->key.index == index;

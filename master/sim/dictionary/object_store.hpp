@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -55,6 +56,9 @@ class ObjectStore {
   const Object* find(ObjectKey key) const noexcept {
     return const_cast<ObjectStore*>(this)->find(key);
   }
+  /// Returns a numeric object. If there is none with this key, returns an object outside the
+  /// dictionary that holds `constant`: its mask is empty, and its width is 0. Allocates.
+  Object& number_or(ObjectKey key, std::int64_t constant);
   bool has_index(std::uint16_t index) const noexcept;
   /// Returns the number in an object, or `missing` if the object does not exist.
   std::int64_t number(ObjectKey key, std::int64_t missing = 0) const noexcept;
@@ -74,6 +78,7 @@ class ObjectStore {
 
  private:
   std::vector<Object> objects_;       ///< sorted by ascending key
+  std::deque<Object> constants_;      ///< see number_or()
   std::vector<std::uint32_t> slots_;  ///< hash table of positions + 1; the size is a power of two
 };
 

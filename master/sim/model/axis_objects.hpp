@@ -1,32 +1,32 @@
 #pragma once
+#include <cassert>
 #include <cstdint>
 
 #include "master/sim/dictionary/object_store.hpp"
 
 namespace takt::sim {
 
-/// A numeric object of the dictionary, or a constant if the device does not have the object.
+/// A numeric object of the dictionary, or a constant if the device does not have the object. Only
+/// an object whose constant is 0 may be set.
 class Slot {
  public:
   Slot(ObjectStore& store, ObjectKey key, std::int64_t missing = 0)
-      : object_{store.find(key)}, missing_{missing} {
-    if (object_ != nullptr && object_->is_bytes()) object_ = nullptr;
-  }
-  std::int64_t get() const noexcept { return object_ == nullptr ? missing_ : object_->number(); }
+      : object_{&store.number_or(key, missing)} {}
+  std::int64_t get() const noexcept { return object_->number(); }
   /// Returns the value, or `other` if the parameter is missing or not above zero (unset).
   double positive_or(double other) const noexcept {
     const std::int64_t value = get();
     return value > 0 ? static_cast<double>(value) : other;
   }
   void set(std::int64_t value) noexcept {
-    if (object_ != nullptr) object_->set(static_cast<std::uint64_t>(value));
+    assert(exists() || object_->value == 0);
+    object_->set(static_cast<std::uint64_t>(value));
   }
-  bool exists() const noexcept { return object_ != nullptr; }
+  bool exists() const noexcept { return !object_->is_bytes(); }
   bool is(const Object& object) const noexcept { return object_ == &object; }
 
  private:
   Object* object_;
-  std::int64_t missing_;
 };
 
 /// The objects of one axis. The objects of axis n lie 0x800 x n above those of axis 0. CiA 402-2.
