@@ -37,11 +37,14 @@ Abort check_entry(const ObjectStore& store, const MappingRules& rules,
 
 bool PdoMapping::add(ObjectStore& store, std::uint64_t entry) noexcept {
   const auto bits = static_cast<std::uint8_t>(entry & 0xFF);
-  if (count_ == places_.size() || bits == 0 || bits_ + bits > 64) return false;
+  if (bits == 0 || bits_ + bits > 64) return false;
   const ObjectKey key = key_of(entry);
-  places_[count_++] = {.object = key.index <= last_dummy ? nullptr : store.find(key),
-                       .mask = bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1,
-                       .shift = bits_};
+  Object* const object = key.index <= last_dummy ? nullptr : store.find(key);
+  if (object != nullptr) {
+    places_[count_++] = {.object = object,
+                         .mask = bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1,
+                         .shift = bits_};
+  }
   bits_ = static_cast<std::uint8_t>(bits_ + bits);
   return true;
 }
@@ -50,7 +53,7 @@ std::uint64_t PdoMapping::pack() const noexcept {
   std::uint64_t data = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     const Place& place = places_[i];
-    if (place.object != nullptr) data |= (place.object->value & place.mask) << place.shift;
+    data |= (place.object->value & place.mask) << place.shift;
   }
   return data;
 }
@@ -58,7 +61,7 @@ std::uint64_t PdoMapping::pack() const noexcept {
 void PdoMapping::unpack(std::uint64_t data) const noexcept {
   for (std::size_t i = 0; i < count_; ++i) {
     const Place& place = places_[i];
-    if (place.object != nullptr) place.object->value = (data >> place.shift) & place.mask;
+    place.object->value = (data >> place.shift) & place.mask;
   }
 }
 

@@ -33,11 +33,11 @@ class PdoMapping {
 
  private:
   struct Place {
-    Object* object = nullptr;  ///< nullptr for a dummy
+    Object* object = nullptr;
     std::uint64_t mask = 0;
     std::uint8_t shift = 0;
   };
-  std::uint8_t count_ = 0;
+  std::uint8_t count_ = 0;  ///< dummies have no place
   std::uint8_t bits_ = 0;
   std::array<Place, 64> places_{};
 };

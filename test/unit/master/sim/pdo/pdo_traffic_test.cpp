@@ -164,6 +164,13 @@ TEST(Rpdo, OfAnEventTypeActsAtOnce) {
   }
 }
 
+TEST(Rpdo, LeavesOutItsDummies) {
+  Traffic device{communicating(5_node).pdo(0x1400, 0x205, 255, {0x0005'0008, 0x2012'0010})};
+  device.start();
+  device.receive(make_frame(CobId::base(0x205), {0xAA, 0x34, 0x12}));
+  EXPECT_EQ(device.get(0x2012), 0x1234u);
+}
+
 TEST(Rpdo, ThatIsShortIsThrownAwayAndReportedOnce) {
   Traffic device{with_rpdo(255)};
   device.start();
