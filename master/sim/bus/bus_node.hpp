@@ -74,9 +74,9 @@ class BusNode {
   std::size_t queued() const noexcept { return queue_.size(); }
   /// Of the queued frames, returns the earliest time at which one is ready. Requires that there is
   /// one.
-  Time first_ready() const noexcept;
+  [[gnu::noinline]] Time first_ready() const noexcept;
   /// Returns the lowest rank of the queued frames. Requires that there is one.
-  std::uint32_t lowest_rank() const noexcept;
+  [[gnu::noinline]] std::uint32_t lowest_rank() const noexcept;
 
   bool on_bus() const noexcept { return powered && !bus_off; }
   bool error_passive(std::uint64_t frames) const noexcept {
@@ -106,7 +106,7 @@ class BusNode {
   Time suspended_until{};  ///< end of the pause of an error-passive node after its own frame
 
  private:
-  std::size_t lowest_ready(Time now) const noexcept;
+  [[gnu::noinline]] std::size_t lowest_ready(Time now) const noexcept;
   std::size_t erase_expired(Time now) noexcept;
 
   FrameQueue queue_;           ///< has room for `capacity` frames and one that was put back

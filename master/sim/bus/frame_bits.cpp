@@ -125,9 +125,9 @@ FrameBits count(const Frame& frame) noexcept {
   row.stuff<7>(crc >> 8);
   row.stuff(crc & 0xFF);
   const std::uint32_t plain = (extended ? 64u : 44u) + 8 * bytes;
-  return {.crc = static_cast<std::uint16_t>(crc),
+  return {.total = static_cast<std::uint16_t>(plain + row.stuffed()),
           .stuff = static_cast<std::uint16_t>(row.stuffed()),
-          .total = static_cast<std::uint16_t>(plain + row.stuffed())};
+          .crc = static_cast<std::uint16_t>(crc)};
 }
 
 /// count(), by the number of data bytes.

@@ -64,12 +64,16 @@ void VirtualBus::renew_offer(BusNodeIndex index) noexcept {
 
 Offer VirtualBus::offer_of(BusNodeIndex index) const noexcept {
   const BusNode& node = nodes_[index];
-  const bool several = node.offers_any();
-  const Time ready = several ? node.first_ready() : node.at(0).ready;
-  return {.from = std::max(ready, node.suspended_until),
-          .rank = several ? node.lowest_rank() : node.at(0).rank,
-          .node = index,
-          .by_priority = several};
+  Offer offer{.from = node.at(0).ready,
+              .rank = node.at(0).rank,
+              .node = index,
+              .by_priority = node.offers_any()};
+  if (offer.by_priority) [[unlikely]] {
+    offer.from = node.first_ready();
+    offer.rank = node.lowest_rank();
+  }
+  offer.from = std::max(offer.from, node.suspended_until);
+  return offer;
 }
 
 void VirtualBus::set_powered(BusNodeIndex index, bool on, Time now) noexcept {

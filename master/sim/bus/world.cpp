@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 #include "master/sim/bus/hosted_device.hpp"
 
@@ -167,9 +168,9 @@ void World::deliver_to_devices(const WireFrame& wire) noexcept {
     }
     return;
   }
-  const std::size_t row = wire.frame.id.id() * words_;
-  for (std::size_t word = 0; word < words_; ++word) {
-    for (std::uint64_t bits = takers_[row + word]; bits != 0; bits &= bits - 1) {
+  const std::span takers{takers_.data() + wire.frame.id.id() * words_, words_};
+  for (std::size_t word = 0; word < takers.size(); ++word) {
+    for (std::uint64_t bits = takers[word]; bits != 0; bits &= bits - 1) {
       const std::size_t index = word * 64 + static_cast<std::size_t>(std::countr_zero(bits));
       if (index != wire.sender) deliver(index, wire.frame);
     }

@@ -143,16 +143,19 @@ void Device::send_bootup(Time now) noexcept {
 bool Device::on_frame(const Frame& frame, Time now) noexcept {
   const std::span<const Route> found = routes_.of(frame.id);
   if (found.empty()) return false;
-  if (found.size() == 1) {
-    if (keep_until_sync(found.front(), frame, now)) return false;
-    const Route route = found.front();
-    dispatch(route, frame, now);
-    is_exchange(route, frame) ? finish_exchange(now) : finish_call(now);
-    return true;
-  }
-  std::array<Route, 8> taken;  // a handler may rebuild the routes
-  const std::size_t count = std::min(found.size(), taken.size());
-  std::copy_n(found.begin(), count, taken.begin());
+  if (found.size() > 1) return share(found, frame, now);
+  const Route route = found.front();  // a copy, because a handler may rebuild the routes
+  if (keep_until_sync(route, frame, now)) return false;
+  dispatch(route, frame, now);
+  is_exchange(route, frame) ? finish_exchange(now) : finish_call(now);
+  return true;
+}
+
+/// Gives the frame to several services.
+bool Device::share(std::span<const Route> routes, const Frame& frame, Time now) noexcept {
+  std::array<Route, 8> taken;  // copies, likewise
+  const std::size_t count = std::min(routes.size(), taken.size());
+  std::copy_n(routes.begin(), count, taken.begin());
   bool exchange = true;
   for (std::size_t i = 0; i < count; ++i) {
     exchange = exchange && is_exchange(taken[i], frame);

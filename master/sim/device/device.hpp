@@ -117,6 +117,8 @@ class Device final : private Dictionary {
   bool is_mute(ObjectKey key) const noexcept override;
 
   bool keep_until_sync(const Route& route, const Frame& frame, Time now) noexcept;
+  [[gnu::noinline]] bool share(std::span<const Route> routes, const Frame& frame,
+                               Time now) noexcept;
   void dispatch(const Route& route, const Frame& frame, Time now) noexcept;
   void on_request(const Route& route, Time now) noexcept;
   void ask(SdoServer& server, const Frame& frame, Time now) noexcept;

@@ -32,11 +32,6 @@ Time PdoRecord::inhibit() const noexcept {
   return std::chrono::microseconds{100} * static_cast<std::int64_t>(inhibit_->value);
 }
 
-Time PdoRecord::event_timer() const noexcept {
-  if (timer_ == nullptr) return Time{};
-  return std::chrono::milliseconds{timer_->value};
-}
-
 Abort PdoRecord::check_write(const MappingRules& rules, const Object& object,
                              std::uint64_t raw) const noexcept {
   if (object.key.index == communication_) {

@@ -44,7 +44,10 @@ class PdoRecord {
   }
   bool synchronous() const noexcept { return type() <= 240 || type() == 252; }
   Time inhibit() const noexcept;
-  Time event_timer() const noexcept;  ///< for an RPDO, its deadline
+  /// Returns the event timer; for an RPDO, its deadline.
+  Time event_timer() const noexcept {
+    return std::chrono::milliseconds{timer_ == nullptr ? 0 : timer_->value};
+  }
   std::uint8_t sync_start() const noexcept {
     return start_ == nullptr ? 0 : static_cast<std::uint8_t>(start_->value);
   }

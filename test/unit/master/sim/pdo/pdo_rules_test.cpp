@@ -58,6 +58,27 @@ TEST_F(PdoRules, TakesTheProcedureOfTheStandard) {
   EXPECT_EQ(write(0x1800, 1, 0x4000'0185, 4), 0u);
 }
 
+TEST_F(PdoRules, ATpdoThatIsEnabledInOperationalIsSentAtTheNextSync) {
+  device_.on_frame(make_frame(CobId::base(0), {1, 5}), now_ += 1ms);
+  device_.out().clear();
+  const Frame sync{.id = CobId::base(0x080)};
+  device_.on_frame(sync, now_ += 1ms);
+  EXPECT_EQ(device_.out().pending().size(), 1u);
+  device_.out().clear();
+
+  ASSERT_EQ(write(0x1A01, 1, 0x2011'0020, 4), 0u);
+  ASSERT_EQ(write(0x1A01, 0, 1, 1), 0u);
+  ASSERT_EQ(write(0x1801, 1, 0x4000'0285, 4), 0u);
+  device_.on_frame(sync, now_ += 1ms);
+  ASSERT_EQ(device_.out().pending().size(), 2u);
+  EXPECT_EQ(device_.out().pending()[1].frame.id, CobId::base(0x285));
+  device_.out().clear();
+
+  disable(0x1800, 0x185);
+  device_.on_frame(sync, now_ += 1ms);
+  EXPECT_EQ(device_.out().pending().size(), 1u);
+}
+
 TEST_F(PdoRules, RefuseTheWrongOrder) {
   EXPECT_EQ(write(0x1800, 1, 0x4000'0186, 4), 0x0609'0030u) << "another id while valid";
   EXPECT_EQ(write(0x1A00, 0, 0, 1), 0x0601'0000u) << "mapping while valid";
