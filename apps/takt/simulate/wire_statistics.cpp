@@ -25,15 +25,15 @@ WireStatistics::WireStatistics(const BusPlan& plan)
     : plan_{plan}, tpdos_(plan.pdos.tpdos.size()), rpdos_(plan.pdos.rpdos.size()) {
   list(Content::Kind::tpdo, plan.pdos.tpdos);
   list(Content::Kind::rpdo, plan.pdos.rpdos);
+  content(plan.cycle.sync_cob_id) = {.kind = Content::Kind::sync};
 }
 
 /// Of several PDOs with one identifier, the first counts all frames.
 void WireStatistics::list(Content::Kind kind, const std::vector<PdoRow>& pdos) {
   for (std::size_t row = 0; row < pdos.size(); ++row) {
-    const CobId id = pdos[row].cob_id;
-    Content& content = id.is_extended() ? extended_ids_[id] : base_ids_[id.id()];
-    if (content.kind == Content::Kind::service) {
-      content = {.kind = kind, .row = static_cast<std::uint16_t>(row)};
+    Content& carried = content(pdos[row].cob_id);
+    if (carried.kind == Content::Kind::service) {
+      carried = {.kind = kind, .row = static_cast<std::uint16_t>(row)};
     }
   }
 }
@@ -47,13 +47,14 @@ void WireStatistics::on_wire(const sim::WireFrame& wire) noexcept {
   cycle_bits_ += wire.bits + interframe_bits;
   if (wire.result != sim::WireResult::sent || wire.frame.rtr) return;
   const CobId id = wire.frame.id;
-  if (id == plan_.cycle.sync_cob_id) return on_sync(wire.start);
-  const Content content = content_of(id);
-  switch (content.kind) {
+  const Content carried = content_of(id);
+  switch (carried.kind) {
+    case Content::Kind::sync:
+      return on_sync(wire.start);
     case Content::Kind::tpdo:
-      return on_tpdo(tpdos_[content.row], plan_.pdos.tpdos[content.row], wire.end);
+      return on_tpdo(tpdos_[carried.row], plan_.pdos.tpdos[carried.row], wire.end);
     case Content::Kind::rpdo:
-      ++rpdos_[content.row].frames;
+      ++rpdos_[carried.row].frames;
       return;
     case Content::Kind::service:
       if (!id.is_extended()) count_service(id);

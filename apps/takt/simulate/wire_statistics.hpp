@@ -48,11 +48,12 @@ class WireStatistics final : public sim::BusObserver {
  private:
   /// What the frames of one identifier carry.
   struct Content {
-    enum class Kind : std::uint8_t { service, tpdo, rpdo } kind = Kind::service;
+    enum class Kind : std::uint8_t { service, sync, tpdo, rpdo } kind = Kind::service;
     std::uint16_t row = 0;
   };
 
   void list(Content::Kind kind, const std::vector<PdoRow>& pdos);
+  Content& content(CobId id) { return id.is_extended() ? extended_ids_[id] : base_ids_[id.id()]; }
   Content content_of(CobId id) const noexcept {
     return id.is_extended() ? extended_content(id) : base_ids_[id.id()];
   }
