@@ -94,8 +94,10 @@ bool PdoOutputs::hear(Row& row, Output& output, SignalIndex signal, const SetPoi
   return true;
 }
 
-PdoOutputs::Built PdoOutputs::build(std::size_t position, std::span<const SetPoint> set_points,
-                                    OutputMoment moment) noexcept {
+/// build_all() calls it for each row, so it is a part of that function.
+[[gnu::always_inline]] inline PdoOutputs::Built PdoOutputs::build(
+    std::size_t position, std::span<const SetPoint> set_points, OutputMoment moment,
+    Time prompt) noexcept {
   const PdoRow& pdo = plan_.pdos.rpdos[position];
   Row& row = rows_[position];
   // The loop stores values, so the compiler would load the members again for each field.
@@ -103,7 +105,6 @@ PdoOutputs::Built PdoOutputs::build(std::size_t position, std::span<const SetPoi
   const FieldProgram* const fields = fields_.data() + pdo.first_field;
   std::int64_t* const values = image_.values.data();
   Output* const outputs = outputs_.data();
-  const Time prompt = prompt_after(moment);
   const bool stopping = stopping_;
   bool begun = begun_[pdo.node_index] != 0;
   std::uint32_t fresh = 0;
@@ -183,10 +184,11 @@ bool PdoOutputs::due(std::size_t position, OutputMoment moment) const noexcept {
 
 bool PdoOutputs::build_all(std::span<const SetPoint> set_points, OutputMoment moment) noexcept {
   unsigned together = 0;
+  const Time prompt = prompt_after(moment);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     Row& row = rows_[i];
     if (!row.open) continue;
-    const Built built = build(i, set_points, moment);
+    const Built built = build(i, set_points, moment, prompt);
     row.ready = !built.lacking;
     if (built.lacking || row.fallen != 0 || row.risen != 0) [[unlikely]] {
       report_changes(i, built.lacking, moment);

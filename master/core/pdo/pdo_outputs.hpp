@@ -184,7 +184,9 @@ class PdoOutputs {
     bool commanded = false;  ///< a signal of the row has a new command
   };
 
-  Built build(std::size_t row, std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
+  /// `prompt` is prompt_after() of this moment.
+  Built build(std::size_t row, std::span<const SetPoint> set_points, OutputMoment moment,
+              Time prompt) noexcept;
   [[gnu::cold, gnu::noinline]] bool hear(Row& row, Output& output, SignalIndex signal,
                                          const SetPoint& set_point, OutputMoment moment) noexcept;
   void take(Output& output, SignalIndex signal, const SetPoint& set_point,
@@ -244,8 +246,8 @@ class PdoOutputs {
     return stopping_ || output.forced || output.led;
   }
 
-  void command_limited(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live,
-                       OutputMoment moment) noexcept;
+  [[gnu::noinline]] void command_limited(SignalIndex signal, std::int64_t value,
+                                         std::uint32_t time_to_live, OutputMoment moment) noexcept;
 
   // These functions are in pdo_outputs_limits.cpp.
   /// Drops those new commands of this pack that are outside their limits.
