@@ -48,6 +48,19 @@ Done Axes::State::check(const Values& values, const MotionBounds& bounds) const 
   return {};
 }
 
+/// The names of all axes, as taktd knows them.
+std::vector<motion_goal_t> Axes::State::goals() const {
+  std::vector<motion_goal_t> named;
+  for (const Index axis : axes) {
+    const signal_t& controlword = group.input().signals()[*group.axes().signals(axis).controlword];
+    motion_goal_t goal{};
+    goal.node = controlword.node;
+    goal.axis = number_of_axis(controlword.index);
+    named.push_back(std::move(goal));
+  }
+  return named;
+}
+
 Done Axes::State::begin(const std::string& kind, const Values& values, const MotionBounds& bounds) {
   if (Done fits = check(values, bounds); !fits) return fits;
   // taktd refuses a motion that comes from the image of a stop, or from an earlier one.
@@ -64,18 +77,14 @@ Done Axes::State::begin(const std::string& kind, const Values& values, const Mot
   command.kind = kind;
   command.id = ++id_;
   command.timeout_ms = static_cast<std::int32_t>(options.timeout.count());
+  command.goals = goals();
   for (Index i = 0; i < size(); ++i) {
-    const AxisSignals& signals = group.axes().signals(in_group(i));
-    const signal_t& controlword = group.input().signals()[*signals.controlword];
-    motion_goal_t goal{};
-    goal.node = controlword.node;
-    goal.axis = number_of_axis(controlword.index);
+    motion_goal_t& goal = command.goals[static_cast<std::size_t>(i)];
     (kind == "jog" ? goal.velocity : goal.position) = values(i);
     goal.max_velocity = value_of(bounds.velocity, i);
     goal.max_acceleration = value_of(bounds.acceleration, i);
     goal.max_jerk = value_of(bounds.jerk, i);
     goal.max_following_error = value_of(bounds.following_error, i);
-    command.goals.push_back(std::move(goal));
   }
   events_.clear();
   has_motion_ = true;
@@ -174,13 +183,7 @@ void Axes::State::send_stop() {
   command.kind = "stop";
   command.id = id_;
   command.timeout_ms = static_cast<std::int32_t>(options.timeout.count());
-  for (const Index axis : axes) {
-    const signal_t& controlword = group.input().signals()[*group.axes().signals(axis).controlword];
-    motion_goal_t goal{};
-    goal.node = controlword.node;
-    goal.axis = number_of_axis(controlword.index);
-    command.goals.push_back(std::move(goal));
-  }
+  command.goals = goals();
   stop_cycle_ = group.input().cycle();
   last_sent_ = Clock::now();
   group.send_motion(command);

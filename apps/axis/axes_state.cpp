@@ -101,6 +101,7 @@ void Axes::State::keep_alive() {
   motion_command_t command{};
   command.kind = "alive";
   command.timeout_ms = static_cast<std::int32_t>(options.timeout.count());
+  command.goals = goals();
   group.send_motion(command);
 }
 

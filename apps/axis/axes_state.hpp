@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <takt/motion.hpp>
+#include <takt/motion_goal_t.hpp>
 #include <utility>
 #include <vector>
 
@@ -67,7 +68,9 @@ class Axes::State {
   /// Waits until `reached` returns true. Returns std::nullopt if `longest` is over before.
   std::optional<Done> wait_until(const Condition& reached, std::chrono::nanoseconds longest,
                                  Interruption interruption = Interruption::obeyed);
+  /// A sign of life that names the axes, because one without names renews no jog.
   void keep_alive();
+  std::vector<motion_goal_t> goals() const;
   bool all(const AxisCondition& is) const;
   bool any(const AxisCondition& is) const;
   /// Returns the newest event of this kind since the newest motion began whose text contains

@@ -398,7 +398,7 @@ class Axes:
             if before - self._image_time > max(IMAGE_TIME, self.timeout):
                 raise Obstacle("no bus", f"no image of bus {self.bus} has come for {before - self._image_time:.1f} s")
             if self._commanding and now - self._last_sent > min(SILENCE, self.timeout / 4):
-                self._send("alive", [])
+                self._send("alive", self._goals())  # without names it renews no jog
             if reached():
                 return True
             if now >= end:

@@ -55,7 +55,7 @@ class Daemon:
     def take(self, command):
         self.active = True
         if command.kind == "alive":
-            self.signs += 1
+            self.signs += command.num_goals > 0  # without goals it renews no jog
             return
         self.commands.append(command)
         for goal in command.goals:

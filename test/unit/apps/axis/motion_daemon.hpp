@@ -93,7 +93,7 @@ class MotionDaemonTransport final : public Transport {
   void take(const motion_command_t& command) {
     daemon_.active = true;
     if (command.kind == "alive") {
-      ++daemon_.signs_of_life;
+      daemon_.signs_of_life += command.goals.empty() ? 0 : 1;  // without goals it renews no jog
       return;
     }
     daemon_.commands.push_back(command);
