@@ -72,6 +72,8 @@ class BusNode {
   }
   const QueuedFrame& at(std::size_t position) const noexcept { return queue_[position]; }
   std::size_t queued() const noexcept { return queue_.size(); }
+  // Few nodes have several frames at once, so the two following functions are no part of their
+  // callers.
   /// Of the queued frames, returns the earliest time at which one is ready. Requires that there is
   /// one.
   [[gnu::noinline]] Time first_ready() const noexcept;
