@@ -50,13 +50,15 @@ Done Axes::State::enable() {
   const auto blocked = [&](Index axis) {
     return known.drive(axis).in_fault() || group.holder(axis).is_other(held_statuses);
   };
-  const auto waited = wait_until([&] { return all_ready() || any(blocked); }, options.longest);
+  const auto no_motions = [&] { return event_text("motion_refused", "taktd runs no motions"); };
+  const auto waited = wait_until(
+      [&] { return all_ready() || any(blocked) || !no_motions().empty(); }, options.longest);
   if (waited && !*waited) return *waited;
   if (all_ready()) {
     sending_ = Sending::alive;
     return {};
   }
-  const std::string why = why_not_ready_text();
+  const std::string why = no_motions().empty() ? why_not_ready_text() : no_motions();
   static_cast<void>(disable());  // the first obstacle is the one to tell
   return obstacle(Obstacle::Kind::blocked, why);
 }

@@ -178,10 +178,11 @@ class Axes:
         self._mode, self._words = CYCLIC_SYNCHRONOUS_POSITION, ENABLING
         self._commanding = True
         blocked = lambda axis: axis.state in FAULTS or axis.held >= HELD_STATUSES
-        self._wait(lambda: self._ready() or any(map(blocked, self._axes)), self.longest)
+        no_motions = lambda: self._event("motion_refused", "taktd runs no motions")
+        self._wait(lambda: self._ready() or any(map(blocked, self._axes)) or no_motions(), self.longest)
         self._words = None
         if not self._ready():
-            why = self._why_not_ready()
+            why = no_motions() or self._why_not_ready()
             self.disable()
             raise Obstacle("blocked", why)
 

@@ -51,6 +51,8 @@ class Daemon:
                     self.drives[place - 4].controlword = value
         elif self.motions:
             self.take(takt.motion_command_t.decode(data))
+        else:
+            self.say("motion_refused", "taktd runs no motions: it was started without --motions")
 
     def take(self, command):
         self.active = True
@@ -229,9 +231,9 @@ check("the bits are named that keep a drive from being enabled", kind == "blocke
       "bit 4 (voltage enabled) is 0" in text, (kind, text))
 check("a drive that is not enabled does not move", obstacle(axes.move, 1.0)[0] == "blocked" and not daemon.commands)
 
-daemon, axes = on_a_bus(longest=SHORT)
+daemon, axes = on_a_bus()
 daemon.motions = False
-check("a taktd without motions is named", "was taktd started with --motions" in obstacle(axes.enable)[1])
+check("a taktd without motions is named", "it was started without --motions" in obstacle(axes.enable)[1])
 daemon, axes = on_a_bus()
 daemon.holder = "another"
 check("another program is named", "shoulder belongs to 'another'" in obstacle(axes.enable)[1])

@@ -137,8 +137,8 @@ TEST_F(AxesOnABus, NameTheBitThatKeepsADriveFromBeingEnabled) {
 
 TEST_F(AxesOnABus, SayThatTaktdRunsNoMotions) {
   daemon_.has_motions = false;
-  Axes axes = open({}, short_time);
-  EXPECT_THAT(obstacle_of(axes.enable()).text, HasSubstr("was taktd started with --motions"));
+  Axes axes = open();
+  EXPECT_THAT(obstacle_of(axes.enable()).text, HasSubstr("it was started without --motions"));
 }
 
 TEST_F(AxesOnABus, NameTheProgramThatHoldsThem) {

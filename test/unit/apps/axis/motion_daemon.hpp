@@ -51,8 +51,11 @@ class MotionDaemonTransport final : public Transport {
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override {
     if (channel == "LIFT_COMMAND") take(*decode<command_t>(data));
-    if (channel == "LIFT_MOTION_COMMAND" && daemon_.has_motions) {
+    if (channel != "LIFT_MOTION_COMMAND") return true;
+    if (daemon_.has_motions) {
       take(*decode<motion_command_t>(data));
+    } else {
+      say("motion_refused", "taktd runs no motions: it was started without --motions");
     }
     return true;
   }
