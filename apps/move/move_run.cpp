@@ -52,7 +52,7 @@ constexpr std::chrono::milliseconds set_point_life{1000};
 
 MoveRun::MoveRun(AxisGroup& group, const MoveOptions& options,
                  const volatile std::sig_atomic_t& stop)
-    : group_{group}, axes_{group.axes()}, options_{options}, stop_{stop} {}
+    : group_{group}, axes_{group.axes()}, options_{options}, stop_{stop}, beat_{group} {}
 
 int MoveRun::run() {
   if (!hear_bus()) return exit_no_daemon;
@@ -148,7 +148,10 @@ bool MoveRun::enable() {
     rest_where_others_hold(group_);
     return ready() || !held_by_others(group_, held_before_motion).empty();
   };
-  if (hold_until(decided, enable_seconds) && ready()) return true;
+  if (hold_until(decided, enable_seconds) && ready()) {
+    if (options_.point) hold_until([this] { return knows_beat(); }, enable_seconds);
+    return !restarted_;
+  }
   if (stop_ != 0 || axes_taken(1)) return false;
   for (const AxisControl::Index i : numbers_of(axes_)) {
     for (const std::string& line : why_not_ready(group_, i)) progress_.say(line);
@@ -168,9 +171,7 @@ Eigen::VectorXd MoveRun::target(Eigen::VectorXd from) const {
 }
 
 std::optional<SynchronisedMove> MoveRun::planned_move(const Eigen::VectorXd& from) {
-  std::vector<MotionLimits> limits(sizes_.size());
-  std::ranges::transform(sizes_, limits.begin(), &MoveSizes::limits);
-  auto move = SynchronisedMove::plan(from, target(from), limits);
+  auto move = SynchronisedMove::plan(from, target(from), limits());
   if (!move) {
     progress_.say(
         "no move was found: the distance, --velocity, --acceleration and --jerk are too far apart, "
@@ -199,10 +200,12 @@ bool MoveRun::move() {
   if (options_.point) {
     const auto move = planned_move(axes_.target_positions());
     if (!move) return false;
-    progress_.say(fmt::format("moving all axes together, {:.2f} s", move->duration()));
-    if (!follow("move", move->duration(), [&](double t) { return move->position(t); })) {
-      return false;
-    }
+    progress_.say(fmt::format("moving all axes together, {:.2f} s{}", move->duration(),
+                              beat_.offered() ? ", by taktd" : ""));
+    const bool good = beat_.offered() ? watch_beat(target(axes_.target_positions()))
+                                      : follow("move", move->duration(),
+                                               [&](double t) { return move->position(t); });
+    if (!good) return false;
     left -= move->duration();
   }
   if (!options_.sine || stop_ != 0) return true;

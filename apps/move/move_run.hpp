@@ -6,6 +6,7 @@
 #include <takt/axis.hpp>
 #include <vector>
 
+#include "apps/move/beat_move.hpp"
 #include "apps/move/following.hpp"
 #include "apps/move/move_options.hpp"
 #include "apps/move/move_sizes.hpp"
@@ -35,9 +36,13 @@ class MoveRun {
   bool devices_answer();
   bool fits_time();
   bool enable();
+  std::vector<MotionLimits> limits() const;
   std::optional<SynchronisedMove> planned_move(const Eigen::VectorXd& from);
   bool move();
   bool swing(double seconds);
+  bool knows_beat();
+  bool watch_beat(const Eigen::VectorXd& to);
+  BeatMove::Course watch_course();
   bool follow(const char* what, double duration, const Trajectory& trajectory);
   Hold take_input(Input input);
   void compare(const char* what);
@@ -62,6 +67,7 @@ class MoveRun {
   AxisControl& axes_;
   const MoveOptions& options_;
   const volatile std::sig_atomic_t& stop_;
+  BeatMove beat_;
   Progress progress_;
   Following following_{0};
   std::vector<MoveSizes> sizes_;    // one for each axis

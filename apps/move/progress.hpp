@@ -23,6 +23,8 @@ class Progress {
   /// Prints the states that have changed since the last call, and the warnings and errors of taktd:
   /// at most one for each kind and node in two seconds.
   void states(AxisGroup& group);
+  /// Returns true if states() has printed an event of this kind about the bus as a whole.
+  bool has_said(const std::string& kind) const { return last_of_kind_.contains({0, kind}); }
   /// Prints the positions, at most four lines a second.
   void positions(const AxisControl& axes, const Following& following, std::string_view what);
   /// Sets the units, one for each axis.

@@ -267,6 +267,22 @@ TEST(MovingApplication, NamesTheProgramThatHoldsItsAxesAndEnds) {
   EXPECT_EQ(first.wait(), 0) << first.output();
 }
 
+TEST(MovingApplication, LetsTaktdRunTheMoveWhereItRunsMotions) {
+  const Folder folder;
+  DaemonProcess daemon{slow_network(folder.path()), {"--bus", "sim", "--motions"}};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--to", "0.5"}, folder / "move"};
+  int rounds = 0;
+  const auto hear_once = [&] { daemon.hear([&] { return rounds++ % 2 == 1; }); };
+
+  EXPECT_EQ(move.wait(hear_once), 0) << move.output();
+
+  EXPECT_NE(move.output().find(" s, by taktd"), std::string::npos) << move.output();
+  EXPECT_NE(move.output().find("The axes followed."), std::string::npos) << move.output();
+  EXPECT_NEAR(static_cast<double>(daemon.value("shoulder", "position_actual_value")), 796, 4)
+      << "0.5 rad in counts";
+}
+
 TEST(MovingApplication, NamesABusWithoutAxes) {
   const Folder folder;
   DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/beckhoff.yaml", {"--bus", "sim"}};

@@ -1,0 +1,54 @@
+#pragma once
+#include <Eigen/Core>
+#include <chrono>
+#include <cstdint>
+#include <span>
+#include <takt/axis.hpp>
+
+#include "apps/move/motion_limits.hpp"
+
+namespace takt {
+
+/// A move of all axes of a group that taktd runs itself. taktd offers it if it answers a sign of
+/// life with a motion_t that shows each axis. Without `--motions` it answers with an event.
+///
+/// While the axes move, only this class sends: taktd refuses set-points of a moving axis.
+class BeatMove {
+ public:
+  /// How a move stands.
+  enum class Course : std::uint8_t {
+    unanswered,  ///< taktd has not taken the command.
+    runs,        ///< At least one axis moves or stops.
+    done,        ///< All axes are at their targets.
+    stopped,     ///< taktd has stopped the move; its events say why.
+    refused      ///< taktd has refused the move; its events say why.
+  };
+
+  explicit BeatMove(AxisGroup& group);
+
+  /// Sends a sign of life if one is due.
+  void keep_alive();
+  /// Returns true if taktd reports that each axis follows motions.
+  bool offered() const;
+  /// Begins a move along a straight line, with limits for each axis. A newer move replaces it.
+  void begin(const Eigen::VectorXd& to, std::span<const MotionLimits> limits);
+  /// Stops the axes along their limits. The caller repeats the call until moving() is false.
+  void stop();
+  /// Returns the commanded positions that taktd has reported last.
+  Eigen::VectorXd positions() const;
+  Course course() const;
+  bool moving() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  motion_command_t command_for(const char* kind) const;
+  void send(motion_command_t command);
+  template <class Is>
+  bool all(Is is) const;
+
+  AxisGroup& group_;
+  std::int32_t id_;
+  Clock::time_point sent_{};
+};
+
+}  // namespace takt
