@@ -19,6 +19,9 @@ constexpr int signs_in_timeout = 4;
 constexpr std::chrono::seconds image_time{2};
 constexpr int image_periods = 20;
 constexpr std::size_t most_kept_events = 64;
+/// Range of motion_command_t::timeout_ms.
+constexpr std::chrono::milliseconds shortest_timeout{1};
+constexpr std::chrono::seconds longest_timeout{10};
 
 }  // namespace
 
@@ -31,6 +34,9 @@ bool Axes::State::all(const AxisCondition& is) const { return std::ranges::all_o
 bool Axes::State::any(const AxisCondition& is) const { return std::ranges::any_of(axes, is); }
 
 Done Axes::State::find() {
+  if (options.timeout < shortest_timeout || options.timeout > longest_timeout) {
+    return obstacle(Obstacle::Kind::wrong_use, "the timeout is not one of 1 ms to 10 s");
+  }
   const auto until = Clock::now() + options.longest;
   while (group.wait(axes_tick) != Input::fresh) {
     if (options.interrupted && options.interrupted()) {

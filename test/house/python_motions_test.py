@@ -239,4 +239,5 @@ daemon.holder = "another"
 check("another program is named", "shoulder belongs to 'another'" in obstacle(axes.enable)[1])
 kind, text = obstacle(on_a_bus, "wrist")
 check("a wrong name is told the right ones", kind == "wrong use" and text.endswith("the axes are: shoulder, elbow"), text)
+check("a timeout that taktd refuses is refused", obstacle(Axes, "lift", timeout=20.0)[0] == "wrong use")
 sys.exit(1 if failures else 0)

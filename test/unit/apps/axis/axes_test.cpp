@@ -179,6 +179,16 @@ TEST(AxesWithAWrongName, SayWhichAxesThereAre) {
               HasSubstr("'wrist', or it is named twice; the axes are: shoulder, elbow"));
 }
 
+TEST(AxesWithAWrongTimeout, AreNotOpened) {
+  MotionDaemon daemon;
+  for (const auto timeout : {0ms, 10'001ms}) {
+    const auto axes = Axes::open(std::make_unique<MotionDaemonTransport>(daemon),
+                                 {.bus = "lift", .longest = 100s, .timeout = timeout});
+    ASSERT_FALSE(axes);
+    EXPECT_EQ(axes.error().kind, Kind::wrong_use);
+  }
+}
+
 TEST(AxesOfASilentBus, SayThatNoImageComes) {
   MotionDaemon daemon;
   daemon.cyclic = false;
