@@ -51,6 +51,9 @@ constexpr Key<AxisLimitsSpec> axis_keys[] = {
         "Second difference of positions, difference of velocities (0x60FF plus 0x60B1), and 0x6083 "
         "and 0x6084."),
     magnitude_key<&AxisLimitsSpec::jerk>("jerk", "Not checked: for planned motion."),
+    magnitude_key<&AxisLimitsSpec::following_error>(
+        "following_error",
+        "The largest following error in a motion of `taktd --motions`, which stops the motion."),
     magnitude_key<&AxisLimitsSpec::step>(
         "step", "Change of a position set-point from one cycle to the next."),
     magnitude_key<&AxisLimitsSpec::torque>("torque", "Of 0x6071 plus the torque offset 0x60B2."),

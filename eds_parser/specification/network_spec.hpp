@@ -119,6 +119,8 @@ struct AxisLimitsSpec {
   Sourced<double> velocity;
   Sourced<double> acceleration;
   Sourced<double> jerk;
+  Sourced<double>
+      following_error;   ///< largest distance of the actual position in a motion of taktd
   Sourced<double> step;  ///< largest change of a position set-point from one cycle to the next
   Sourced<double> torque;
   Sourced<double> modulo;  ///< length of the range after which the position starts again

@@ -19,8 +19,8 @@ std::vector<LimitSum> sums_of(const LimitsPlan& limits, const LimitLine& line) {
 }
 
 std::string_view name(LimitKind kind) noexcept {
-  static constexpr std::string_view names[]{"position", "velocity", "acceleration", "jerk",
-                                            "step",     "torque",   "range"};
+  static constexpr std::string_view names[]{
+      "position", "velocity", "acceleration", "jerk", "step", "torque", "range", "following_error"};
   return name_of(kind, names, "limit");
 }
 

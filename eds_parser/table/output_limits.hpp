@@ -19,7 +19,9 @@ enum class LimitKind : std::uint8_t {
   jerk,  ///< not checked, because set-points in whole counts cannot show it
   step,
   torque,
-  range,  ///< range of a single output
+  range,            ///< range of a single output
+  following_error,  ///< of planned motion; the bus thread stops a motion by it, and checks no
+                    ///< output
 };
 
 /// The kind of a set-point of an axis. It decides in which modes the axis follows the set-point.

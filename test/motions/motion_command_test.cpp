@@ -348,7 +348,7 @@ TEST(MotionCommand, RefusesWithTheReason) {
   refusal([](Command& m) { m.goals[0].max_acceleration = 1e-10; }, "is not between");
   refusal([](Command& m) { m.goals[0].max_jerk = 1e187; }, "is not between");
   refusal([&](Command& m) { m.goals[0].max_following_error = nan; },
-          "negative or NaN");
+          "max_following_error is nan: it must be above 0");
   refusal([](Command& m) { m.goals[0].position = 100.5; }, "would leave its range of positions");
   refusal([](Command& m) { m.goals.push_back(m.goals[0]); }, "named twice");
   refusal([](Command& m) { m.session = 8; }, "another session");
@@ -359,6 +359,22 @@ TEST(MotionCommand, RefusesWithTheReason) {
   EXPECT_EQ(bus.axis(0).ended_id, 77);
   EXPECT_EQ(bus.axis(0).outcome, refused);
   EXPECT_NEAR(bus.position(0), 0.0, 1e-6);
+}
+
+/// 0.1 rad for the elbow; 0.1 mrad for the shoulder, which any motion exceeds.
+TEST(MotionCommand, TheNetworkFileLimitsTheFollowingError) {
+  MotionBus bus{{}, TAKT_SOURCE_DIR "/test/motions/data/following_error.yaml"};
+  bus.enable();
+  motion_command_t message = bus.command("move", 5);
+  message.goals = {MotionBus::goal("elbow", 1.0)};
+  message.goals[0].max_following_error = 0.2;
+  bus.send(message);
+  bus.run(3);
+  EXPECT_TRUE(bus.said("motion_refused", "`limits:` of the network file allow 0.1"));
+  bus.move_both(6, 10.0, 10.0);
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(1).state == stopping; }, 200));
+  EXPECT_TRUE(bus.said("motion_stopped", "because of shoulder: the following error is above"));
 }
 
 TEST(MotionCommand, AFollowingErrorAboveItsLimitStopsTheGroup) {

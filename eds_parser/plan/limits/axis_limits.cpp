@@ -61,6 +61,7 @@ void AxisLimits::compile(const AxisLimitsSpec& limits) {
   velocity(limits.velocity);
   acceleration(limits.acceleration);
   line_of_file(LimitKind::jerk, limits.jerk, false);
+  line_of_file(LimitKind::following_error, limits.following_error, false);
   step(limits.step);
   torque(limits.torque);
   describe_rows();
@@ -108,6 +109,7 @@ std::string AxisLimits::unit_of(LimitKind kind) const {
     case LimitKind::position:
     case LimitKind::step:
     case LimitKind::range:
+    case LimitKind::following_error:
       return base;
     case LimitKind::velocity:
       return rate(units.velocity, "/s");

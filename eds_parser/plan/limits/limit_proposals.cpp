@@ -40,6 +40,7 @@ class Proposal {
         return step();
       case LimitKind::jerk:
       case LimitKind::range:
+      case LimitKind::following_error:
         return;
     }
   }

@@ -43,9 +43,9 @@ std::string sums(const BusPlan& plan, const LimitLine& line) {
 }
 
 std::string source(const BusPlan& plan, const LimitLine& line) {
-  const std::string unchecked = line.kind == LimitKind::jerk
-                                    ? ", used for planned motion only"
-                                    : ", not checked: no output carries this value";
+  const bool for_motions = line.kind == LimitKind::jerk || line.kind == LimitKind::following_error;
+  const std::string unchecked = for_motions ? ", used for planned motion only"
+                                            : ", not checked: no output carries this value";
   switch (line.source) {
     case LimitSource::none:
       return fmt::format("proposal: `{}` ({})", line.proposal, line.because);

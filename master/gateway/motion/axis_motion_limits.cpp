@@ -70,12 +70,24 @@ AxisMotionLimits::Axis AxisMotionLimits::limits_of(const BusPlan& plan, const Mo
       found.range = {.min = std::max(found.range.min, line.low.value_or(found.range.min)),
                      .max = std::min(found.range.max, *line.high)};
     }
+    if (line.kind == LimitKind::following_error && line.unit == unit) {
+      found.following_error = line.high;
+    }
     if (!is_rate_of(line.unit, unit)) continue;
     if (line.kind == LimitKind::velocity) found.velocity = line.high;
     if (line.kind == LimitKind::acceleration) found.acceleration = line.high;
     if (line.kind == LimitKind::jerk) found.jerk = line.high;
   }
   return found;
+}
+
+std::expected<double, std::string> AxisMotionLimits::following_error(
+    std::size_t axis, const motion_goal_t& goal) const {
+  const std::optional<double>& of_file = axes_[axis].following_error;
+  if (goal.max_following_error != 0.0 || of_file) {
+    return limit(goal.max_following_error, of_file, "following_error");
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 std::expected<motion::Limits, std::string> AxisMotionLimits::of(std::size_t axis,

@@ -25,6 +25,10 @@ class AxisMotionLimits {
 
   /// Returns the limits of a motion, or why there are none. `axis` is a position in motion_axes().
   std::expected<motion::Limits, std::string> of(std::size_t axis, const motion_goal_t& goal) const;
+  /// Returns the largest following error of a motion, or why there is none; infinite if neither the
+  /// command nor the file has one.
+  std::expected<double, std::string> following_error(std::size_t axis,
+                                                     const motion_goal_t& goal) const;
   const motion::PositionRange& range(std::size_t axis) const noexcept { return axes_[axis].range; }
 
  private:
@@ -32,6 +36,7 @@ class AxisMotionLimits {
     std::optional<double> velocity{};
     std::optional<double> acceleration{};
     std::optional<double> jerk{};
+    std::optional<double> following_error{};
     motion::PositionRange range{};
   };
   static Axis limits_of(const BusPlan& plan, const MotionAxis& axis);

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <utility>
 
 #include "master/gateway/motion/motion_senders.hpp"
@@ -35,15 +34,14 @@ std::expected<motion::AxisGoal, MotionRefusal> axis_goal(const motion_goal_t& go
   if (!(std::abs(wanted) <= AxisMotionLimits::largest)) {
     return refused(fmt::format("its target {} is infinite, NaN or too large", wanted));
   }
-  if (!(goal.max_following_error >= 0.0)) return refused("max_following_error is negative or NaN");
+  const auto following_error = limits.following_error(axis, goal);
+  if (!following_error) return refused(following_error.error());
   return motion::AxisGoal{
       .axis = static_cast<std::uint8_t>(axis),
       .to = {.position = is_jog ? 0.0 : goal.position, .velocity = is_jog ? goal.velocity : 0.0},
       .limits = *within,
       .range = limits.range(axis),
-      .max_following_error = goal.max_following_error > 0.0
-                                 ? goal.max_following_error
-                                 : std::numeric_limits<double>::infinity()};
+      .max_following_error = *following_error};
 }
 
 }  // namespace

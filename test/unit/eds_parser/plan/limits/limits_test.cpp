@@ -207,6 +207,15 @@ TEST(Limits, AreNamedWithTheirSourceByThePlan) {
   EXPECT_THAT(json_of(net), HasSubstr(R"("source": "file")"));
 }
 
+TEST(Limits, OfTheFollowingErrorAreForMotionsOnly) {
+  const Compiled net = drive("    limits: {position: [-1.5, 1.5], following_error: 0.1}\n");
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_THAT(text_of(net),
+              HasSubstr("arm  following_error  0.1 rad          from the network file, used for "
+                        "planned motion only\n"));
+  EXPECT_THAT(json_of(net), HasSubstr(R"("limit": "following_error")"));
+}
+
 TEST(Limits, AreProposedWhereThereAreNone) {
   const Compiled net = drive("    limits: {velocity: 2}\n");
   EXPECT_THAT(text_of(net),
