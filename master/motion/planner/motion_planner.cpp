@@ -31,6 +31,20 @@ bool leads_out(const PositionRange& range, double position, double velocity) noe
   return (position < range.min && velocity <= 0.0) || (position > range.max && velocity >= 0.0);
 }
 
+/// An axis that speeds up becomes faster until its acceleration has ended, and the lower the jerk,
+/// the faster. The jerk of a new motion is therefore raised, at most to that of the motion that
+/// runs, until the axis stays within the velocities of both.
+Limits with_enough_jerk(Limits limits, const State& from, const Limits& running) noexcept {
+  if (from.acceleration == 0.0) return limits;
+  const double room = from.acceleration > 0.0
+                          ? std::max(limits.max_velocity, running.max_velocity) - from.velocity
+                          : from.velocity - std::min(limits.min_velocity, running.min_velocity);
+  const double needed =
+      room > 0.0 ? from.acceleration * from.acceleration / (2 * room) : running.jerk;
+  limits.jerk = std::max(limits.jerk, std::min(needed, running.jerk));
+  return limits;
+}
+
 }  // namespace
 
 const MotionOrder* MotionPlanner::Axis::waiting(CycleNumber cycle) const noexcept {
@@ -103,7 +117,11 @@ std::expected<void, PlanRefusal> MotionPlanner::set_tasks(const GroupGoal& group
     const PositionRange range = group.goal == Goal::position ? goal.range : PositionRange{};
     State to = goal.to;
     if (group.reference == Reference::commanded) to.position += from->position;
-    tasks_.push_back({.from = *from, .to = to, .limits = goal.limits, .range = range});
+    const TaggedOrder* running = axes_[goal.axis].find(axes_[goal.axis].report.running);
+    const Limits limits = running == nullptr
+                              ? goal.limits
+                              : with_enough_jerk(goal.limits, *from, running->order.stop);
+    tasks_.push_back({.from = *from, .to = to, .limits = limits, .range = range});
   }
   planned_.resize(tasks_.size());
   const TrajectoryOptions options{.goal = group.goal, .synchronisation = group.synchronisation};
@@ -133,7 +151,7 @@ std::expected<void, PlanRefusal> MotionPlanner::set_orders(const GroupGoal& grou
                       .begin = begin,
                       .from = tasks_[i].from,
                       .profile = planned_[i].profile,
-                      .stop = goal.limits,
+                      .stop = tasks_[i].limits,
                       .timeout = group.timeout,
                       .max_following_error = goal.max_following_error};
     if (!(planned_[i].duration <= longest_motion * period_)) {

@@ -1,5 +1,6 @@
 #include "master/motion/planner/motion_planner.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
@@ -84,6 +85,28 @@ TEST(MotionPlanner, ANewTargetAtAnyTimeTakesOverWithoutAJump) {
     replaced += end.outcome == Outcome::replaced;
   }
   EXPECT_GT(replaced, 300U);
+}
+
+/// With a jerk of 1, the velocity would rise by 5^2 / 2 until the acceleration has ended.
+TEST(MotionPlanner, ANewTargetWithALowJerkDoesNotMakeTheAxisFasterThanBothAllow) {
+  for (const bool stops : {false, true}) {
+    Line line{1};
+    ASSERT_TRUE(line.send({to(0, 3.0)}));
+    while (line.axis(0).commanded.acceleration < limits.max_acceleration) line.step();
+    AxisGoal gentle = to(0, 2.5);
+    gentle.limits.max_velocity = 0.5;
+    gentle.limits.jerk = 1.0;
+    ASSERT_TRUE(line.send({gentle}));
+    double fastest = 0.0;
+    for (int i = 0; i < 20'000; ++i) {
+      if (stops && i == 8) line.motions.stop_axis(0, StopCause::application);
+      line.step();
+      fastest = std::max(fastest, line.axis(0).commanded.velocity);
+    }
+    EXPECT_LE(fastest, limits.max_velocity + 1e-9) << stops;
+    EXPECT_EQ(line.axis(0).commanded.velocity, 0.0) << stops;
+    EXPECT_EQ(std::abs(line.axis(0).commanded.position - 2.5) < 1e-9, !stops);
+  }
 }
 
 TEST(MotionPlanner, AxesOfAGroupArriveTogether) {
