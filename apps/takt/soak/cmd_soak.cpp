@@ -104,8 +104,10 @@ int run(const SoakArguments& arguments) {
             << total.random_frames << " random), " << total.faults << " faults, " << total.boots
             << " boots, " << total.requests << " requests, " << total.events << " events, "
             << total.commands << " commands (" << total.forged << " forged), " << total.moves
-            << " moves, " << total.program_faults << " program faults; " << sum.bad
-            << (sum.bad == 1 ? " violation" : " violations") << std::endl;
+            << " moves, " << total.motions << " motions (" << total.arrivals << " arrived, "
+            << total.groups << " groups seen to begin), " << total.program_faults
+            << " program faults; " << sum.bad << (sum.bad == 1 ? " violation" : " violations")
+            << std::endl;
   std::cerr << static_cast<long>(hours * 3600 / elapsed()) << " times real time\n";
   return sum.bad == 0 ? 0 : 1;
 }
@@ -137,6 +139,9 @@ void add_soak(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command.add_option("--candump", arguments.plan.run.candump,
                      "write all frames of one seed (front thread part: FILE.front)");
+  command.add_flag_callback(
+      "--motions", [plan = &arguments.plan] { plan->run.motions = soak::MotionRuns::all; },
+      "let the programs command motions with each seed, not only with every fifth");
   command.add_flag("--verbose", arguments.plan.run.verbose, "print faults and events of one seed");
   command.footer(
       "The bus part has lost, late, doubled and broken frames, babbling nodes, arbitrary frames,\n"
@@ -147,8 +152,11 @@ void add_soak(CLI::App& app, int& exit_code) {
       "answered once, memory use stays flat, all nodes come back, the stop ends in time.\n"
       "The front thread part runs taktd with its LCM gateway and several programs that move\n"
       "axes. The programs are stalled, die, end, restart, jump, or have the name of another\n"
-      "program; messages are slow, repeated, forged and damaged. takt checks: no output is older\n"
-      "than its time to live by the true clock, no program moves what another one holds, no\n"
+      "program; messages are slow, repeated, forged and damaged. With every fifth seed, and with\n"
+      "--motions, the programs also command motions. takt checks: no output is older than its\n"
+      "time to live by the true clock, no axis moves without a command of a living program, "
+      "motions\n"
+      "keep their limits, groups begin together, no program moves what another one holds, no\n"
       "output leaves `limits:`, no wait of the front thread is too long, every program receives\n"
       "its messages, no stop confirms more than the drives did.\n"
       "Exit code 1: an invariant was violated; each line names seed, cycle and invariant.\n\n"

@@ -19,8 +19,13 @@ constexpr std::array<ObjectKey, 6> objects{
 
 class Walk {
  public:
-  Walk(const BusPlan& plan, sim::Random random, Time from, Time until)
-      : plan_{plan}, random_{random}, now_{from}, end_{until}, other_until_(128) {}
+  Walk(const BusPlan& plan, sim::Random random, Time from, Time until, int slowness)
+      : plan_{plan},
+        random_{random},
+        now_{from},
+        end_{until},
+        slowness_{slowness},
+        other_until_(128) {}
 
   sim::Faults take() {
     for (; now_ < end_; now_ += pause()) {
@@ -31,7 +36,7 @@ class Walk {
   }
 
  private:
-  Time pause() { return Time{1ms} + Time{below(2 * mean_pause_.count())}; }
+  Time pause() { return Time{1ms} + slowness_ * Time{below(2 * mean_pause_.count())}; }
   Time::rep below(Time::rep limit) {
     return static_cast<Time::rep>(random_.next() % static_cast<std::uint64_t>(limit));
   }
@@ -142,6 +147,7 @@ class Walk {
   sim::Random random_;
   Time now_;
   Time end_;
+  int slowness_;
   Time mean_pause_ = 300ms;
   std::vector<Time> other_until_;  // until when a node is exchanged, by node-ID
   sim::Faults faults_;
@@ -149,8 +155,9 @@ class Walk {
 
 }  // namespace
 
-sim::Faults fault_walk(const BusPlan& plan, sim::Random random, Time from, Time until) {
-  return Walk{plan, random, from, until}.take();
+sim::Faults fault_walk(const BusPlan& plan, sim::Random random, Time from, Time until,
+                       int slowness) {
+  return Walk{plan, random, from, until, slowness}.take();
 }
 
 }  // namespace takt::soak

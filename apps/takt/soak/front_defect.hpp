@@ -3,6 +3,8 @@
 #include <functional>
 #include <takt/command_t.hpp>
 #include <takt/image_t.hpp>
+#include <takt/motion_command_t.hpp>
+#include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/gateway/front_round.hpp"
@@ -24,6 +26,9 @@ struct FrontDefect {
   std::function<void(BusPlan& plan)> plan{};
   /// Changes a command before the daemon judges it.
   std::function<void(command_t& command, const SeenCycles& cycles)> command{};
+  /// Returns the messages about motions that the daemon receives instead of this one.
+  std::function<std::vector<motion_command_t>(motion_command_t command, const SeenCycles& cycles)>
+      motion{};
   /// Returns the instance that a program uses. `own` is its random one.
   std::function<std::int64_t(unsigned program, std::int64_t own)> instance{};
   /// Returns false if the program shall ignore this image.

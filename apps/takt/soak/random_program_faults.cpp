@@ -5,17 +5,17 @@
 #include "apps/takt/soak/soak_trace.hpp"
 
 namespace takt::soak {
-namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time mean_pause = 400ms;
-
-}  // namespace
-
-RandomProgramFaults::RandomProgramFaults(Cast cast, sim::Random random, Time from, Time until,
+RandomProgramFaults::RandomProgramFaults(Cast cast, sim::Random random, const Span& span,
                                          bool verbose)
-    : cast_{cast}, random_{random}, next_{from}, until_{until}, verbose_{verbose} {}
+    : cast_{cast},
+      random_{random},
+      next_{span.from},
+      until_{span.until},
+      mean_pause_{span.mean_pause},
+      verbose_{verbose} {}
 
 /// Returns the duration of a fault: mostly short, sometimes longer than every time to live.
 Time RandomProgramFaults::span() {
@@ -40,7 +40,7 @@ void RandomProgramFaults::act(Time now) {
   agenda_.act(now);
   if (next_ > now) return;
   begin(now);
-  next_ = now + random_.up_to(2 * mean_pause);
+  next_ = now + random_.up_to(2 * mean_pause_);
   if (next_ >= until_) next_ = never;
 }
 

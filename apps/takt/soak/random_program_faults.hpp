@@ -30,7 +30,14 @@ struct Cast {
 /// lasts for a random time.
 class RandomProgramFaults final : public Actor {
  public:
-  RandomProgramFaults(Cast cast, sim::Random random, Time from, Time until, bool verbose);
+  /// `mean_pause` is the mean time between two faults.
+  struct Span {
+    Time from{};
+    Time until{};
+    Time mean_pause = std::chrono::milliseconds{400};
+  };
+
+  RandomProgramFaults(Cast cast, sim::Random random, const Span& span, bool verbose);
 
   Time next() const noexcept override;
   void act(Time now) override;
@@ -56,6 +63,7 @@ class RandomProgramFaults final : public Actor {
   sim::Random random_;
   Time next_;
   Time until_;
+  Time mean_pause_;
   bool verbose_;
   Agenda agenda_;
   bool daemon_dies_ = false;

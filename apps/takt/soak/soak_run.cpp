@@ -191,6 +191,9 @@ SoakCounts& SoakCounts::operator+=(const SoakCounts& other) noexcept {
   events += other.events;
   commands += other.commands;
   moves += other.moves;
+  motions += other.motions;
+  arrivals += other.arrivals;
+  groups += other.groups;
   forged += other.forged;
   program_faults += other.program_faults;
   return *this;

@@ -17,11 +17,18 @@ class World;
 
 namespace takt::soak {
 
+/// In which runs of the front thread the programs also command motions.
+enum class MotionRuns : std::uint8_t {
+  some,  ///< those whose seed has the remainder 4 when it is divided by 5, if the master sends SYNC
+  all,
+};
+
 struct SoakOptions {
   std::uint64_t seed = 1;
   Time duration = std::chrono::seconds{20};  ///< of the faults; afterwards all must recover
   std::string candump{};                     ///< file for all frames; empty means no file
-  bool verbose = false;                      ///< prints faults and events to stderr
+  MotionRuns motions = MotionRuns::some;
+  bool verbose = false;  ///< prints faults and events to stderr
   /// Called after each cycle and before the judges look. The judges must find what it breaks.
   std::function<void(Exchange&, sim::World&)> defect{};
   FrontDefect front{};
@@ -39,6 +46,9 @@ struct SoakCounts {
   std::uint64_t events = 0;
   std::uint64_t commands = 0;        ///< commands that the programs sent
   std::uint64_t moves = 0;           ///< positions on the wire that the programs commanded
+  std::uint64_t motions = 0;         ///< motions of an axis that the programs commanded
+  std::uint64_t arrivals = 0;        ///< motions that ended at their target
+  std::uint64_t groups = 0;          ///< groups whose begin was seen and judged
   std::uint64_t forged = 0;          ///< forged messages
   std::uint64_t program_faults = 0;  ///< faults of programs: stalls, deaths, rivals, replays ...
 

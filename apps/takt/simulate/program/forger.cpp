@@ -29,6 +29,7 @@ Forger::Forger(const BusPlan& plan, VirtualLcm& lcm, Forged forged, sim::Random 
       lcm_{lcm.join(1000, Echo::unheard)},
       channels_{plan.name} {
   lcm_.subscribe(channels_.command);
+  lcm_.subscribe(channels_.motion_command);
   lcm_.subscribe(channels_.image);
 }
 
@@ -38,8 +39,9 @@ void Forger::act(Time now) {
       image_.assign(data.begin(), data.end());
       return;
     }
-    heard_.push_back({.when = now, .command = {data.begin(), data.end()}});
-    if (heard_.size() > memory) heard_.pop_front();
+    auto& memory_of = channel == channels_.command ? heard_ : motions_;
+    memory_of.push_back({.when = now, .command = {data.begin(), data.end()}});
+    if (memory_of.size() > memory) memory_of.pop_front();
   });
 }
 
@@ -48,7 +50,11 @@ void Forger::publish(const std::string& channel, Bytes data) {
   lcm_.publish(channel, data);
 }
 
+/// A program that has heard no motion acts as if there were none.
 void Forger::act_up(Time now) {
+  if (!motions_.empty() && random_.chance(0.4)) {
+    return random_.chance(0.5) ? forge_motion(now) : replay_motions(now);
+  }
   switch (random_.below(4)) {
     case 0:
       return forge_image(now);
@@ -78,6 +84,22 @@ void Forger::replay(Time now) {
   }
 }
 
+void Forger::replay_motions(Time now) {
+  const auto old = std::ranges::partition_point(
+      motions_, [&](const Heard& heard) { return heard.when < now - as_good_as_new; });
+  const auto many = static_cast<std::uint32_t>(old - motions_.begin());
+  if (many == 0) return;
+  const std::uint32_t first = random_.below(many);
+  const std::uint32_t last = std::min(many, first + 1 + random_.below(60));
+  const bool from_no_cycle = random_.chance(0.5);
+  for (std::uint32_t i = first; i < last; ++i) {
+    auto motion = decode<motion_command_t>(motions_[i].command);
+    if (!motion) continue;
+    if (from_no_cycle) motion->cycle = 0;
+    publish(channels_.motion_command, encode(*motion, buffer_));
+  }
+}
+
 /// Returns the true cycle, extrapolated by the clock from the newest image as in the daemon.
 /// Returns std::nullopt if no image has come yet.
 std::optional<std::int64_t> Forger::cycle_at(Time now) const {
@@ -90,22 +112,49 @@ std::int64_t Forger::far_away() const noexcept {
   return std::max<std::int64_t>(fewest_away, least_away / plan_.cycle.period);
 }
 
+/// Returns cycles that are far from `cycle`, or none at all.
+std::array<std::int64_t, 6> Forger::wrong_cycles(std::int64_t cycle) {
+  return {0,
+          -1,
+          cycle + far_away() + random_.below(100'000),
+          never_reached,
+          std::int64_t{0x7FFF'FFFF'FFFF'FFFF},
+          cycle - 2 * far_away()};
+}
+
+void Forger::forge_motion(Time now) {
+  const auto cycle = cycle_at(now);
+  if (motions_.empty() || !cycle) return;
+  auto motion = decode<motion_command_t>(motions_.back().command);
+  if (!motion) return;
+  const auto wrong = wrong_cycles(*cycle);
+  if (random_.chance(0.2)) {
+    motion->session ^= static_cast<std::int64_t>(random_.next() >> 1 | 1U);
+  } else {
+    motion->cycle = wrong[random_.below(wrong.size())];
+  }
+  if (random_.chance(0.3)) motion->timeout_ms = 10'000;
+  if (random_.chance(0.7)) motion->kind = "move";
+  for (motion_goal_t& goal : motion->goals) {
+    goal.position = -goal.position;
+    goal.max_velocity *= 2;
+    goal.max_acceleration *= 2;
+    goal.max_jerk = 0;
+  }
+  publish(channels_.motion_command, encode(*motion, buffer_));
+}
+
 void Forger::forge_command(Time now) {
   const auto cycle = cycle_at(now);
   if (heard_.empty() || !cycle) return;
   auto command = decode<command_t>(heard_.back().command);
   if (!command) return;
-  const std::array<std::int64_t, 6> wrong_cycles{0,
-                                                 -1,
-                                                 *cycle + far_away() + random_.below(100'000),
-                                                 never_reached,
-                                                 std::int64_t{0x7FFF'FFFF'FFFF'FFFF},
-                                                 *cycle - 2 * far_away()};
+  const auto wrong = wrong_cycles(*cycle);
   const bool other_session = random_.chance(0.2);
   if (other_session) {
     command->session ^= static_cast<std::int64_t>(random_.next() >> 1 | 1U);
   } else {
-    command->cycle = wrong_cycles[random_.below(wrong_cycles.size())];
+    command->cycle = wrong[random_.below(wrong.size())];
   }
   if (random_.chance(0.3)) command->time_to_live = 0x7FFF'FFFF;
   for (std::size_t i = 0; i < command->signals.size(); ++i) {
@@ -128,6 +177,11 @@ void Forger::forge_image(Time now) {
 
 void Forger::send_random_bytes() {
   std::vector<std::byte> bytes;
+  if (!motions_.empty() && random_.chance(0.3)) {
+    bytes = motions_.back().command;
+    bytes.resize(random_.below(static_cast<std::uint32_t>(bytes.size())));
+    return publish(channels_.motion_command, bytes);
+  }
   if (!heard_.empty() && random_.chance(0.5)) {
     bytes = heard_.back().command;
     bytes.resize(random_.below(static_cast<std::uint32_t>(bytes.size())));

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -13,9 +14,9 @@
 namespace takt {
 
 /// A program that receives every message and sends messages that nobody may obey: old messages once
-/// more, commands computed from no cycle, from a future cycle or for another session, images of a
-/// future cycle, and random bytes. The forger learns only from genuine messages, and a forged cycle
-/// is always far from the true one.
+/// more, commands and motions computed from no cycle, from a future cycle or for another session,
+/// images of a future cycle, and random bytes. The forger learns only from genuine messages, and a
+/// forged cycle is always far from the true one.
 class Forger final : public Actor {
  public:
   /// Called with each forged position, which must never appear on the wire.
@@ -29,6 +30,9 @@ class Forger final : public Actor {
   void replay(Time now);
   /// Sends the newest command with other positions and with a wrong cycle or session.
   void forge_command(Time now);
+  /// Sends the newest motion with other targets, without limits of its own, and with a wrong cycle
+  /// or session.
+  void forge_motion(Time now);
   /// Sends an image of a cycle in the far future.
   void forge_image(Time now);
   /// Sends random bytes of random length, or a truncated command, on a random channel.
@@ -43,6 +47,8 @@ class Forger final : public Actor {
     Time when{};
     std::vector<std::byte> command;
   };
+  void replay_motions(Time now);
+  std::array<std::int64_t, 6> wrong_cycles(std::int64_t cycle);
   void publish(const std::string& channel, std::span<const std::byte> data);
   std::optional<std::int64_t> cycle_at(Time now) const;
   std::int64_t far_away() const noexcept;
@@ -53,6 +59,7 @@ class Forger final : public Actor {
   VirtualEndpoint& lcm_;
   Channels channels_;
   std::deque<Heard> heard_;
+  std::deque<Heard> motions_;
   std::vector<std::byte> image_;  // newest genuine image, encoded
   std::vector<std::byte> buffer_;
   std::uint64_t sent_ = 0;

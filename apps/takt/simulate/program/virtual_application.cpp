@@ -20,6 +20,10 @@ constexpr std::uint64_t images_a_reset = 60;   // between fault resets, which ta
 constexpr std::uint16_t from_target_to_offset = 0x60B0 - 0x607A;
 constexpr double turn_before = 2000;   // distance from a limit, in counts
 constexpr Time longest_deafness = 3s;  // the layout is published once a second
+constexpr Time longest_turn = 15s;     // with motions
+constexpr Time longest_set_points = 4s;
+constexpr Time leaving_time = 2s;       // in which the motions of a program come to rest
+constexpr Time talkative_time = 500ms;  // in which the first motion has begun
 
 }  // namespace
 
@@ -29,7 +33,8 @@ VirtualApplication::VirtualApplication(const BusPlan& plan, VirtualLcm& lcm,
       options_{std::move(options)},
       random_{random},
       lcm_{lcm.join(application_room)},
-      channels_{plan.name} {}
+      channels_{plan.name},
+      commander_{plan, options_.nodes, options_.number} {}
 
 void VirtualApplication::start() {
   running_ = true;
@@ -43,6 +48,8 @@ void VirtualApplication::start() {
   jump_ = 0;
   new_layout_ = fresh_ = false;
   heard_ = 0;
+  turn_ = Turn::set_points;
+  turn_ends_ = turn_began_ = {};
   lcm_.subscribe(channels_.image);
   lcm_.subscribe(channels_.layout);
 }
@@ -96,8 +103,32 @@ void VirtualApplication::act(Time now) {
   }
   judge_hearing(now);
   if (!std::exchange(fresh_, false)) return;
+  take_turns(now);
   follow_image();
   send(now);
+}
+
+/// Begins the next turn if the present one is over. Draws random numbers only if there are turns.
+void VirtualApplication::take_turns(Time now) {
+  const bool is_first = turn_began_ == Time{};
+  if (options_.commanding == Commanding::set_points && turn_ == Turn::set_points) return;
+  if (!commander_.has_axes() || (!is_first && now < turn_ends_)) return;
+  const bool by_motions = options_.commanding == Commanding::motions ||
+                          (options_.commanding == Commanding::by_turns &&
+                           turn_ == Turn::set_points && (!is_first || random_.chance(0.7)));
+  if (by_motions && turn_ != Turn::motions) {
+    commander_.start(random_.fork(motions_ + 1));
+    terse_ = random_.chance(0.5);
+    turn_began_ = now;
+  } else if (is_first) {
+    turn_began_ = now;
+  }
+  const bool leaves = turn_ == Turn::motions && !by_motions;
+  if (leaves) commander_.leave();
+  turn_ = by_motions ? Turn::motions : leaves ? Turn::leaving : Turn::set_points;
+  const Time longest = by_motions ? longest_turn : longest_set_points;
+  turn_ends_ = now + (leaves ? leaving_time : random_.up_to(longest));
+  courses_.assign(courses_.size(), {});
 }
 
 void VirtualApplication::take(std::string_view channel, Bytes data) {
@@ -127,6 +158,8 @@ void VirtualApplication::judge_hearing(Time now) {
 
 void VirtualApplication::follow_image() {
   axes_.on_image(input_);
+  // Set-points that follow begin where the motions have led the axes.
+  if (turn_ != Turn::set_points) axes_.set_positions(axes_.sent_positions());
   const bool resets = ++images_ % images_a_reset == 0;
   for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
     const DriveSequence& drive = axes_.drive(i);
@@ -219,7 +252,9 @@ void VirtualApplication::count_on(command_t& command) {
     const auto target = axes_.signals(i).target_position;
     if (!target) continue;
     const auto at = std::ranges::find(command.signals, *target);
-    if (at == command.signals.end()) continue;
+    const bool led =
+        turn_ != Turn::set_points && commander_.leads(static_cast<SignalIndex>(*target));
+    if (at == command.signals.end() || led) continue;
     Course& course = courses_[static_cast<std::size_t>(i)];
     if (axes_.drive(i).enabled()) {
       std::int64_t& value = command.values[static_cast<std::size_t>(at - command.signals.begin())];
@@ -233,11 +268,58 @@ void VirtualApplication::count_on(command_t& command) {
   jump_ = 0;
 }
 
+/// Removes the outputs that the motions lead.
+void VirtualApplication::leave_motions(command_t& command) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < command.signals.size(); ++i) {
+    const auto signal = static_cast<SignalIndex>(command.signals[i]);
+    commander_.see(signal, command.values[i]);
+    if (commander_.leads(signal)) continue;
+    command.signals[kept] = command.signals[i];
+    command.values[kept++] = command.values[i];
+  }
+  command.signals.resize(kept);
+  command.values.resize(kept);
+  command.num_values = static_cast<std::int32_t>(kept);
+}
+
+/// A terse program commands outputs only until its axes are enabled and its first motion has begun.
+bool VirtualApplication::has_to_command(Time now) const {
+  if (turn_ != Turn::motions || !terse_ || now < turn_began_ + talkative_time) return true;
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    const AxisSignals& signals = axes_.signals(i);
+    const bool mine = signals.target_position &&
+                      commander_.leads(static_cast<SignalIndex>(*signals.target_position));
+    if (mine && !axes_.drive(i).enabled()) return true;
+  }
+  return false;
+}
+
+/// `command` is the command of outputs of the same image.
+void VirtualApplication::send_motion(const command_t& command, Time now) {
+  auto message = commander_.next(now);
+  if (!message) return;
+  message->utime = now / 1us;
+  message->schema = command.schema;
+  message->session = command.session;
+  message->cycle = command.cycle;
+  message->instance = instance_;
+  message->sender = options_.name;
+  if (options_.motion_commanded) options_.motion_commanded(*message, sync_);
+  ++motions_;
+  lcm_.publish(channels_.motion_command, encode(*message, buffer_));
+}
+
 void VirtualApplication::send(Time now) {
   command_t& command = axes_.command();
   keep_own_outputs(command);
   if (command.signals.empty()) return;
   count_on(command);
+  if (turn_ != Turn::set_points) {
+    leave_motions(command);
+    send_motion(command, now);
+    if (command.signals.empty() || !has_to_command(now)) return;
+  }
   command.utime = now / 1us;
   command.instance = instance_;
   command.sender = options_.name;

@@ -5,8 +5,10 @@
 #include <string>
 #include <takt/axis_control.hpp>
 #include <takt/image_input.hpp>
+#include <takt/motion_command_t.hpp>
 #include <vector>
 
+#include "apps/takt/simulate/program/motion_commander.hpp"
 #include "apps/takt/simulate/program/stage.hpp"
 #include "apps/takt/simulate/program/virtual_lcm.hpp"
 #include "master/gateway/bridge.hpp"
@@ -14,13 +16,23 @@
 
 namespace takt {
 
+/// How a program moves its axes.
+enum class Commanding : std::uint8_t {
+  set_points,  ///< by a set-point for each image
+  motions,     ///< by motions that taktd runs, see MotionCommander
+  by_turns,    ///< by both, one after the other, for random times
+};
+
 struct ApplicationOptions {
   std::string name;         ///< sender name in the program's commands
   unsigned number = 0;      ///< number of the program, 0..7
   std::vector<bool> nodes;  ///< nodes that the program commands, in the order of BusPlan::nodes
+  Commanding commanding = Commanding::set_points;
 
   /// Called with each command that is sent and the SYNC time of the image it was computed from.
   std::function<void(const command_t& command, Time computed_from)> commanded{};
+  /// The same for a message about motions.
+  std::function<void(const motion_command_t& command, Time computed_from)> motion_commanded{};
   /// Called when the program gives up its outputs.
   std::function<void(Time now)> released{};
   /// Called if the program has received images for a long time and could use none of them.
@@ -55,12 +67,15 @@ class VirtualApplication final : public Actor {
   unsigned number() const noexcept { return options_.number; }
   const std::vector<bool>& nodes() const noexcept { return options_.nodes; }
   bool commands(std::size_t node_index) const { return options_.nodes[node_index]; }
+  /// From now on the program moves its axes in this way.
+  void command_by(Commanding commanding) noexcept { options_.commanding = commanding; }
   /// From now on the program needs this additional time for each image.
   void slow_down(Time reaction) noexcept { slowness_ = reaction; }
   /// Returns the number of axes that the program moves at this moment.
   std::size_t leads() const noexcept;
-  std::uint64_t images() const noexcept { return images_; }  ///< images used
-  std::uint64_t sent() const noexcept { return sent_; }      ///< commands sent
+  std::uint64_t images() const noexcept { return images_; }    ///< images used
+  std::uint64_t sent() const noexcept { return sent_; }        ///< commands sent
+  std::uint64_t motions() const noexcept { return motions_; }  ///< messages about motions sent
   std::uint64_t dropped() const noexcept { return lcm_.dropped(); }
 
   /// Describes the program by its number and the statuswords of its axes.
@@ -83,6 +98,10 @@ class VirtualApplication final : public Actor {
                          std::int64_t value, command_t& command);
   bool has_push(AxisControl::Index axis) const;
   void judge_hearing(Time now);
+  void take_turns(Time now);
+  void leave_motions(command_t& command);
+  bool has_to_command(Time now) const;
+  void send_motion(const command_t& command, Time now);
 
   const BusPlan& plan_;
   ApplicationOptions options_;
@@ -115,6 +134,19 @@ class VirtualApplication final : public Actor {
   std::uint64_t heard_ = 0;      // rounds with images since the last usable image
   Time heard_since_{};
   std::uint64_t sent_ = 0;
+
+  /// The part that the program has in the motions of its axes.
+  enum class Turn : std::uint8_t {
+    set_points,
+    motions,
+    leaving,  ///< the motions stop, and set-points follow
+  };
+  MotionCommander commander_;
+  Turn turn_ = Turn::set_points;
+  Time turn_ends_{};
+  Time turn_began_{};
+  bool terse_ = false;  ///< it sends no commands of outputs while its axes are enabled
+  std::uint64_t motions_ = 0;
   std::vector<std::byte> buffer_;
 };
 

@@ -31,7 +31,7 @@ VirtualDaemon::VirtualDaemon(const BusPlan& plan, StagedPort& port, VirtualLcm& 
       clocks_{clocks},
       random_{random},
       lcm_{lcm.join(daemon_room)},
-      transport_{lcm_, Channels{plan.name}.command} {}
+      transport_{lcm_, Channels{plan.name}.command, Channels{plan.name}.motion_command} {}
 
 void VirtualDaemon::start() {
   session_ = static_cast<std::int64_t>(random_.next() >> 2 | 1U);
@@ -41,7 +41,8 @@ void VirtualDaemon::start() {
   master_->begin();
   bridge_ = std::make_unique<Bridge>(
       *master_, transport_, clocks_,
-      BridgeOptions{.session = session_, .interface = "virtual", .realtime = "virtual"},
+      BridgeOptions{
+          .session = session_, .interface = "virtual", .realtime = "virtual", .motions = true},
       [this](const Notice& notice) {
         if (hears_.notice) hears_.notice(notice);
       });

@@ -48,6 +48,10 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   void on_round(RoundHook on_round) { round_hook_ = std::move(on_round); }
   /// For tests: changes each command before the front thread receives it.
   void rewrite(RewritingTransport::Rewrite rewrite) { transport_.rewrite(std::move(rewrite)); }
+  /// The same for each message about motions.
+  void rewrite(RewritingTransport::RewriteMotion rewrite) {
+    transport_.rewrite(std::move(rewrite));
+  }
 
   /// Starts a new process with a new session.
   void start();

@@ -18,11 +18,7 @@ using namespace std::chrono_literals;
 
 constexpr std::uint16_t axis_objects = 0x800;  // distance of two axes in a device, CiA 402
 constexpr std::uint16_t actual_position = 0x6064;
-constexpr Time longest_gap = 50ms;
-constexpr double fewest_cycles = 3;           // lower limit of longest_gap in cycles
-constexpr double clear_part = 0.2;            // part of a cycle that a wake-up may be late
 constexpr double cycles_behind = 4;           // age of the actual position that the master knows
-constexpr unsigned state_doubt = 8;           // age of the axis state that the master knows
 constexpr std::size_t fewest_remembered = 8;  // positions kept even if they are old
 constexpr double real_rounding = 0x1p-20;     // relative rounding of a value of type REAL
 
@@ -53,7 +49,7 @@ LimitJudge::LimitJudge(const BusPlan& plan, sim::World& world, Verdict& verdict)
     : plan_{plan},
       world_{world},
       verdict_{verdict},
-      most_cycles_{std::max(fewest_cycles, static_cast<double>(longest_gap / plan.cycle.period))},
+      most_cycles_{most_cycles_of_way(plan.cycle.period)},
       places_(plan.layout.outputs()),
       sent_(plan.layout.outputs()) {
   for (const OutputLimit& limit : plan.limits.outputs) {
@@ -166,13 +162,9 @@ double LimitJudge::length(const Place& place, double from, double to) const noex
   return way > 0 ? way - turn : way + turn;
 }
 
-LimitJudge::Way LimitJudge::way_to(const Place& place, double value, Time now) const noexcept {
-  const double cycles = static_cast<double>((now - place.when).count()) /
-                        static_cast<double>(plan_.cycle.period.count());
-  const bool clear = std::abs(cycles - std::round(cycles)) <= clear_part;
-  const double counted = clear ? std::round(cycles) : std::ceil(cycles);
+Way LimitJudge::way_to(const Place& place, double value, Time now) const noexcept {
   return {.length = length(place, *place.value, value),
-          .cycles = static_cast<unsigned>(std::clamp(counted, 1.0, most_cycles_))};
+          .cycles = cycles_between(place.when, now, plan_.cycle.period, most_cycles_)};
 }
 
 /// Returns how far from its actual position an axis at rest may be sent, in counts.
@@ -225,28 +217,10 @@ void LimitJudge::judge_way(const Place& place, double value, const Way& way) {
   judge(place.limit->rate, place.limit->rate_of);
 }
 
-/// Returns true if the distance needs more than the permitted acceleration. Each of the three
-/// values is rounded to a count, which may look like an acceleration. A distance over several
-/// cycles may have begun in any of them, if the same value was commanded again before.
-bool LimitJudge::too_sharp(const Place& place, const Way& way) const noexcept {
-  const double bend = place.limit->bend;
-  const auto sharp = [&](unsigned cycles, double before, unsigned gap) {
-    const double found = std::abs(way.length / cycles - before);
-    return found > bend * (cycles + gap) / 2 + 1.0 / cycles + 1.0 / gap + 1e-6;
-  };
-  for (unsigned cycles = 1; cycles <= way.cycles; ++cycles) {
-    if (way.cycles > 1 && !sharp(cycles, 0, 1)) return false;
-    for (unsigned gap = 1; gap <= place.last_way->cycles; ++gap) {
-      if (!sharp(cycles, place.last_way->length / gap, gap)) return false;
-    }
-  }
-  return true;
-}
-
 void LimitJudge::judge_bend(const Place& place, double value, const Way& way) {
   const bool real = is_real(signal_of(place).type);
   if (place.limit->bend == OutputLimit::none || !place.last_way || real) return;
-  if (!too_sharp(place, way)) return;
+  if (!is_too_sharp(place.limit->bend, way, *place.last_way)) return;
   report_violation(
       place, value, LimitKind::acceleration,
       fmt::format("the value is {:.0f} counts away in {} cycles, after {:.0f} in {}", way.length,

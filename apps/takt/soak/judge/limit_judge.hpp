@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/takt/soak/judge/verdict.hpp"
+#include "apps/takt/soak/judge/way.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/sim/bus/world.hpp"
 #include "master/wire/frame.hpp"
@@ -47,12 +48,6 @@ class LimitJudge {
     Time when{};
     double position = 0;
   };
-  /// The distance to a value: its length in counts, and the greatest number of cycles that it may
-  /// have taken.
-  struct Way {
-    double length = 0;
-    unsigned cycles = 1;
-  };
   /// What was sent of an output, or of its offset, since the newest judge().
   enum class Change : std::uint8_t { none, value, begins };
   struct Place {
@@ -88,7 +83,6 @@ class LimitJudge {
   void judge_range(const Place& place, double value);
   void judge_way(const Place& place, double value, const Way& way);
   void judge_bend(const Place& place, double value, const Way& way);
-  bool too_sharp(const Place& place, const Way& way) const noexcept;
   void report_violation(const Place& place, double value, LimitKind kind, const std::string& what);
   const Signal& signal_of(const Place& place) const noexcept {
     return plan_.layout.signals[place.limit->signal];

@@ -25,10 +25,9 @@ WireJudge::WireJudge(const BusPlan& plan, sim::World& world, Verdict& verdict)
     : plan_{plan},
       verdict_{verdict},
       outputs_(plan.layout.outputs()),
-      holders_(plan.nodes.size()),
-      moved_(32),
-      released_(32, -never),
-      limits_{plan, world, verdict} {}
+      holders_{plan, verdict},
+      limits_{plan, world, verdict},
+      motions_{plan, verdict, holders_} {}
 
 void WireJudge::commanded(SignalIndex index, std::int64_t value, const SentCommand& command) {
   const Signal& signal = plan_.layout.signals[index];
@@ -49,24 +48,15 @@ void WireJudge::forged(SignalIndex signal, std::int64_t value) {
   output(signal).known.try_emplace(static_cast<std::uint64_t>(value) & mask);
 }
 
-void WireJudge::released(SenderBit sender, Time now) {
-  released_[static_cast<std::size_t>(std::countr_zero(sender))] = now;
-  for (Holder& holder : holders_) {
-    if (holder.sender == sender) holder = {};
-  }
-}
-
 void WireJudge::begin_anew() {
-  std::ranges::fill(holders_, Holder{});
+  holders_.begin_anew();
   limits_.begin_anew();
-}
-
-Time WireJudge::last_move(SenderBit sender) const noexcept {
-  return moved_[static_cast<std::size_t>(std::countr_zero(sender))];
+  motions_.begin_anew();
 }
 
 void WireJudge::sent(std::span<const Frame> frames, Time now) {
   for (const Frame& frame : frames) {
+    if (plan_.cycle.sync && frame.id == plan_.cycle.sync_cob_id) motions_.sync_sent();
     for (const PdoRow& row : plan_.pdos.rpdos) {
       if (row.cob_id != frame.id || row.on_request || row.multiplexed()) continue;
       for (const PdoField& field : plan_.pdos.fields_of(row)) {
@@ -82,47 +72,66 @@ void WireJudge::judge(SignalIndex index, std::uint64_t value, Time now) {
   Output& output = this->output(index);
   // The first value of an output is the one that the device has (607A from 6064).
   const bool begins = now > output.when + 5 * plan_.cycle.period;
-  const bool changed = !begins && value != output.last;
+  const bool differs = value != output.last;
+  const bool changed = !begins && differs;
   limits_.sent(index, value, begins);
   output.last = value;
   output.when = now;
   const auto found = output.known.find(value);
   const Known* const known = found == output.known.end() ? nullptr : &found->second;
-  if (known != nullptr && now <= known->until) {
+  const bool fresh = known != nullptr && now <= known->until;
+  // While an axis does not obey, the master itself sends its actual position.
+  const bool actual = is_target(signal) && limits_.is_actual(index, value);
+  if (is_target(signal)) {
+    const auto counts = static_cast<std::int32_t>(static_cast<std::uint32_t>(value));
+    motions_.sent(index, counts, {.begins = begins, .by_set_point = fresh || actual}, now);
+  }
+  if (by_motion(index, value, differs, now)) return;
+  if (fresh) {
     if (is_target(signal) && changed) judge_holder(signal, *known, now);
     return;
   }
-  // While an axis does not obey, the master itself sends its actual position.
-  if (is_target(signal) && limits_.is_actual(index, value)) return;
+  if (actual) return;
   const bool old =
       known != nullptr && (is_target(signal) ? changed : !is_lasting(plan_, signal, value));
-  if (old || (known == nullptr && !is_lasting(plan_, signal, value))) {
+  const bool moved = changed && is_target(signal) && motions_.orders().axis_of(index);
+  if (old || (known == nullptr && (moved || !is_lasting(plan_, signal, value)))) {
     report_stale_output(signal, value, known, now);
   }
 }
 
+/// Returns true if a motion may be the cause of the value: it leads the output, it has led the axis
+/// to where it stands, or its sender keeps the outputs of the node valid.
+bool WireJudge::by_motion(SignalIndex index, std::uint64_t value, bool differs,
+                          Time now) const noexcept {
+  const Signal& signal = plan_.layout.signals[index];
+  if (motions_.explains(index, now)) return true;
+  if (is_target(signal)) return !differs && motions_.was_led(index);
+  const bool still = motions_.orders().axis_of(index) && value == 0;
+  return still || (!differs && motions_.orders().keeps_alive(signal.node_index, now));
+}
+
 void WireJudge::judge_holder(const Signal& signal, const Known& known, Time now) {
-  Holder& holder = holders_[signal.node_index];
   ++moves_;
   if (!std::has_single_bit(known.senders)) return;  // two programs commanded the same value
-  const auto sender = static_cast<std::size_t>(std::countr_zero(known.senders));
-  moved_[sender] = now;
-  if (holder.sender != 0 && holder.sender != known.senders && now < holder.until) {
-    verdict_.report_violation(
-        "no sender moves what another holds",
-        fmt::format("{} is moved by program {}, but program {} holds it for another {} us",
-                    plan_.nodes[signal.node_index].name, std::countr_zero(known.senders),
-                    std::countr_zero(holder.sender), (holder.until - now) / 1us));
-  }
-  if (holder.sender != known.senders) holder = {.sender = known.senders, .until = {}};
-  // A value from before the release may come to the wire later; it does not hold the node.
-  if (known.computed_from > released_[sender]) {
-    holder.until = std::max(holder.until, known.held_until);
-  }
+  holders_.moved(signal.node_index,
+                 {.sender = known.senders,
+                  .computed_from = known.computed_from,
+                  .held_until = known.held_until},
+                 now);
 }
 
 void WireJudge::report_stale_output(const Signal& signal, std::uint64_t value, const Known* known,
                                     Time now) {
+  const auto index = static_cast<SignalIndex>(&signal - plan_.layout.signals.data());
+  if (is_target(signal) && (known == nullptr || known->senders != 0) && motions_.was_led(index)) {
+    return verdict_.report_violation(
+        "an axis moves only while its sender commands it",
+        fmt::format("{}.{} = {} is sent, but no program has commanded a motion or a set-point "
+                    "within its timeout",
+                    plan_.nodes[signal.node_index].name, signal.name,
+                    static_cast<std::int32_t>(static_cast<std::uint32_t>(value))));
+  }
   std::string what = plan_.nodes[signal.node_index].name + "." + signal.name + " = " +
                      hex(static_cast<std::uint32_t>(value)) + " is sent, which ";
   if (known == nullptr) {

@@ -4,15 +4,14 @@
 #include <unordered_map>
 #include <vector>
 
+#include "apps/takt/soak/judge/holder_judge.hpp"
 #include "apps/takt/soak/judge/limit_judge.hpp"
+#include "apps/takt/soak/judge/motion_judge.hpp"
 #include "apps/takt/soak/judge/verdict.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/wire/frame.hpp"
 
 namespace takt::soak {
-
-/// A set of senders of commands: one bit for each program.
-using SenderBit = std::uint32_t;
 
 /// Describes a value that an application has sent.
 struct SentCommand {
@@ -22,31 +21,45 @@ struct SentCommand {
 };
 
 /// Checks the outputs on the wire against the commands of the applications, by the true clock: no
-/// value is older than its time to live, no program moves an axis that another one holds, and each
-/// output is within its limits.
+/// value is older than its time to live, no axis moves without a motion or set-point of a program
+/// that is alive, no program moves an axis that another one holds, and each output is within its
+/// limits.
 class WireJudge {
  public:
   WireJudge(const BusPlan& plan, sim::World& world, Verdict& verdict);
 
   /// Call this when an application has sent this value.
   void commanded(SignalIndex signal, std::int64_t value, const SentCommand& command);
+  /// Call this when an application has sent this message about motions to the present process of
+  /// the daemon.
+  void commanded(const SentMotion& motion, Time now) { motions_.commanded(motion, now); }
   /// Call this with a forged value, which must never appear on the wire.
   void forged(SignalIndex signal, std::int64_t value);
   /// Call this when this sender has given up its outputs.
-  void released(SenderBit sender, Time now);
+  void released(SenderBit sender, Time now) {
+    holders_.released(sender, now);
+    motions_.released(now);
+  }
   /// Call this when the daemon is a new process: no sender holds the outputs, and nothing was sent
   /// so far.
   void begin_anew();
   /// Call this when the master begins a cycle.
-  void begin_cycle(Time now) { limits_.begin_cycle(now); }
+  void begin_cycle(Time now) {
+    limits_.begin_cycle(now);
+    motions_.begin_cycle(now);
+  }
   /// Call this with each frame on the wire.
-  void heard(const Frame& frame) { limits_.heard(frame); }
+  void heard(const Frame& frame) {
+    limits_.heard(frame);
+    motions_.heard(frame);
+  }
   /// Call this with the frames that the master passes to the interface.
   void sent(std::span<const Frame> frames, Time now);
   /// Returns the number of positions on the wire that an application had commanded.
   std::uint64_t moves() const noexcept { return moves_; }
-  /// Returns the time at which a position of this sender was last on the wire.
-  Time last_move(SenderBit sender) const noexcept;
+  /// Returns the time at which a position of this sender, or of its motions, was last on the wire.
+  Time last_move(SenderBit sender) const noexcept { return holders_.last_move(sender); }
+  const MotionJudge& motions() const noexcept { return motions_; }
 
  private:
   struct Known {
@@ -54,10 +67,6 @@ class WireJudge {
     Time computed_from{};
     Time held_until{};  ///< until then the sender certainly holds the node
     SenderBit senders = 0;
-  };
-  struct Holder {
-    SenderBit sender = 0;
-    Time until{};
   };
   struct Output {
     std::unordered_map<std::uint64_t, Known> known;
@@ -67,16 +76,16 @@ class WireJudge {
 
   void judge(SignalIndex signal, std::uint64_t value, Time now);
   void judge_holder(const Signal& signal, const Known& known, Time now);
+  bool by_motion(SignalIndex signal, std::uint64_t value, bool changed, Time now) const noexcept;
   void report_stale_output(const Signal& signal, std::uint64_t value, const Known* known, Time now);
   Output& output(SignalIndex signal) { return outputs_[signal - plan_.layout.inputs]; }
 
   const BusPlan& plan_;
   Verdict& verdict_;
   std::vector<Output> outputs_;
-  std::vector<Holder> holders_;  // in the order of BusPlan::nodes
-  std::vector<Time> moved_;      // time of the last move, by the number of the sender's bit
-  std::vector<Time> released_;   // time of the release, by the number of the sender's bit
+  HolderJudge holders_;
   LimitJudge limits_;
+  MotionJudge motions_;
   std::uint64_t moves_ = 0;
 };
 

@@ -1,0 +1,168 @@
+#include "apps/takt/simulate/program/motion_commander.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Time message_period = 20ms;
+constexpr Time message_jitter = 10ms;
+constexpr Time busy_pause = 800ms;  // between two motions, at most
+constexpr Time calm_pause = 2s;     // at least; a motion comes to rest in it
+constexpr double quick = 20'000;    // counts/s; of all axes without a lower limit
+constexpr double quick_rise = 0.1;  // s until the velocity is reached
+constexpr double jerk_rise = 0.05;  // s until the acceleration is reached
+constexpr double reach_time = 3.0;  // s of a quick motion to the farthest target
+constexpr double part_of_range = 0.5;
+constexpr double near = 0.1;  // part of the reach within which most targets are
+constexpr unsigned rival = 7;
+constexpr std::array<std::int32_t, 6> timeouts{0, 0, 100, 200, 1000, 3000};  // ms
+
+}  // namespace
+
+MotionCommander::MotionCommander(const BusPlan& plan, const std::vector<bool>& nodes,
+                                 unsigned number)
+    : number_{number} {
+  for (const MotionAxis& axis : motion_axes(plan)) {
+    if (nodes[axis.node_index]) axes_.push_back(axis_of(plan, axis));
+  }
+}
+
+MotionCommander::Axis MotionCommander::axis_of(const BusPlan& plan, const MotionAxis& signals) {
+  const Signal& target = plan.layout.signals[signals.target];
+  Axis axis{.signals = signals,
+            .node = plan.nodes[signals.node_index].name,
+            .scale = target.scale,
+            .offset = target.offset,
+            .speed = quick,
+            .acceleration = quick / quick_rise,
+            .reach = 1e9};
+  const double counts = 1.0 / std::abs(target.scale);
+  bool has_velocity = false;
+  bool has_acceleration = false;
+  for (const LimitLine& line : plan.limits.lines) {
+    const bool mine = line.node_index == signals.node_index && line.axis == signals.number + 1;
+    if (!mine || !line.high) continue;
+    const double half = *line.high * counts / 2;
+    if (line.kind == LimitKind::position) axis.reach = half * 2 * part_of_range;
+    if (line.kind == LimitKind::velocity) axis.speed = std::min(axis.speed, half);
+    if (line.kind == LimitKind::acceleration) {
+      axis.acceleration = std::min(axis.acceleration, half);
+    }
+    has_velocity |= line.kind == LimitKind::velocity;
+    has_acceleration |= line.kind == LimitKind::acceleration;
+  }
+  axis.limited = has_velocity && has_acceleration;
+  axis.reach = std::min(axis.reach, reach_time * axis.speed);
+  return axis;
+}
+
+bool MotionCommander::leads(SignalIndex output) const noexcept {
+  return std::ranges::any_of(axes_, [&](const Axis& axis) {
+    return axis.signals.target == output || axis.signals.velocity_offset == output;
+  });
+}
+
+void MotionCommander::start(sim::Random random) {
+  random_ = random;
+  due_ = motion_due_ = {};
+  leaves_ = false;
+  calm_ = random_.chance(0.4);
+  timeout_ms_ = timeouts[random_.below(timeouts.size())];
+  for (Axis& axis : axes_) axis.pace = share(0.2);
+}
+
+void MotionCommander::see(SignalIndex target, std::int64_t counts) noexcept {
+  for (Axis& axis : axes_) {
+    if (axis.signals.target == target) axis.position = static_cast<double>(counts);
+  }
+}
+
+/// The targets of a rival are farther away than those of any other program, so that its axes stop
+/// at one of them only if it has moved them.
+std::int64_t MotionCommander::target_of(const Axis& axis) {
+  const double sign = random_.chance(0.5) ? 1 : -1;
+  double counts = sign * share(0) * axis.reach;
+  if (number_ == rival) {
+    counts = sign * (1.2 + share(0) * 0.3) * axis.reach;
+  } else if (random_.chance(0.7)) {
+    counts = std::clamp(axis.position + counts * near, -axis.reach, axis.reach);
+  }
+  return (std::llround(counts) & ~std::int64_t{15}) | number_;
+}
+
+motion_goal_t MotionCommander::goal_of(const Axis& axis) {
+  const std::int64_t counts = target_of(axis);
+  const double pace = random_.chance(0.2) ? share(0.2) : axis.pace;
+  const bool of_file = axis.limited && random_.chance(0.1);
+  motion_goal_t goal{};
+  goal.node = axis.node;
+  goal.axis = static_cast<std::int8_t>(axis.signals.number == 0 ? 0 : axis.signals.number + 1);
+  goal.position = static_cast<double>(counts) * axis.scale + axis.offset;
+  if (of_file) return goal;
+  const double size = std::abs(axis.scale);
+  goal.max_velocity = pace * axis.speed * size;
+  goal.max_acceleration = pace * axis.acceleration * size;
+  if (random_.chance(0.8)) goal.max_jerk = goal.max_acceleration / jerk_rise;
+  goal.velocity = (random_.chance(0.5) ? 1 : -1) * share(0.1) * goal.max_velocity;
+  if (random_.chance(0.1)) goal.max_following_error = 1 + random_.below(2000) * size;
+  return goal;
+}
+
+void MotionCommander::add_goals(motion_command_t& command, bool all) {
+  const std::uint32_t one = random_.below(static_cast<std::uint32_t>(axes_.size()));
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (all || i == one) command.goals.push_back(goal_of(axes_[i]));
+  }
+}
+
+motion_command_t MotionCommander::motion() {
+  motion_command_t command{};
+  command.id = ++id_;
+  const std::uint32_t choice = random_.below(20);
+  command.kind = choice < 15 ? "move" : choice < 18 ? "jog" : "stop";
+  constexpr std::array<const char*, 6> synchronisations{"",     "time", "phase",
+                                                        "none", "none", "none"};
+  command.synchronisation = synchronisations[random_.below(synchronisations.size())];
+  add_goals(command, random_.chance(0.5));
+  return command;
+}
+
+motion_command_t MotionCommander::stop_all() const {
+  motion_command_t command{};
+  command.kind = "stop";
+  for (const Axis& axis : axes_) {
+    motion_goal_t goal{};
+    goal.node = axis.node;
+    goal.axis = static_cast<std::int8_t>(axis.signals.number + 1);
+    command.goals.push_back(goal);
+  }
+  return command;
+}
+
+std::optional<motion_command_t> MotionCommander::next(Time now) {
+  if (axes_.empty() || now < due_) return std::nullopt;
+  due_ = now + message_period + random_.up_to(message_jitter);
+  if (random_.chance(0.01)) due_ += random_.chance(0.1) ? Time{2s} : Time{300ms};
+  motion_command_t command{};
+  command.kind = "alive";
+  if (leaves_) {
+    command = stop_all();
+  } else if (now >= motion_due_) {
+    motion_due_ =
+        now + (calm_ ? calm_pause + random_.up_to(calm_pause) : random_.up_to(busy_pause));
+    command = motion();
+  } else if (random_.chance(0.1)) {
+    add_goals(command, true);
+  }
+  command.timeout_ms = timeout_ms_;
+  command.num_goals = static_cast<std::int32_t>(command.goals.size());
+  return command;
+}
+
+}  // namespace takt

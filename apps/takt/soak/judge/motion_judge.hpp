@@ -1,0 +1,89 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "apps/takt/soak/judge/group_judge.hpp"
+#include "apps/takt/soak/judge/holder_judge.hpp"
+#include "apps/takt/soak/judge/motion_orders.hpp"
+#include "apps/takt/soak/judge/verdict.hpp"
+#include "apps/takt/soak/judge/way.hpp"
+#include "master/wire/frame.hpp"
+
+namespace takt::soak {
+
+/// Checks the target positions on the wire against the motions that programs have sent: an axis
+/// keeps the limits of its motion, its motion comes to rest at the target of a program that holds
+/// the node, a group begins in one cycle, and it ends if one of its drives does not follow any
+/// longer. The judge uses what was sent over LCM and the frames on the wire, and nothing that the
+/// master has computed.
+class MotionJudge {
+ public:
+  MotionJudge(const BusPlan& plan, Verdict& verdict, HolderJudge& holders);
+
+  /// Call this when a program has sent this message to the present process of the daemon.
+  void commanded(const SentMotion& sent, Time now);
+  /// Call this when the daemon is a new process.
+  void begin_anew();
+  /// Call this when a sender has given up its outputs. Its release may leave one set-point out, see
+  /// share/doc/motion.md.
+  void released(Time now) noexcept { released_until_ = now + MotionOrders::longest_way; }
+  /// Call this when the master begins a cycle.
+  void begin_cycle(Time now);
+  /// Call this with each frame on the wire.
+  void heard(const Frame& frame);
+  /// Call this when the master passes a SYNC to the interface.
+  void sync_sent();
+
+  /// How a target position came to the wire.
+  struct Cause {
+    bool begins = false;        ///< the output was not sent in the last cycles
+    bool by_set_point = false;  ///< a set-point or the actual position explains the value
+  };
+  /// Call this when the master passes a target position to the interface.
+  void sent(SignalIndex target, std::int64_t value, const Cause& cause, Time now);
+
+  /// Returns true if a motion may explain the value of this output: a target position or a velocity
+  /// offset.
+  bool explains(SignalIndex output, Time now) const noexcept;
+  /// Returns true if this is a target position that motions have led in this run of the daemon.
+  bool was_led(SignalIndex target) const noexcept;
+  const MotionOrders& orders() const noexcept { return orders_; }
+  /// Returns the number of motions that have come to rest at their targets.
+  std::uint64_t arrivals() const noexcept { return arrivals_; }
+  /// Returns the number of groups whose begin was seen.
+  std::uint64_t groups() const noexcept { return groups_.judged(); }
+
+ private:
+  struct Axis {
+    std::optional<double> value{};  ///< newest target position, in counts
+    Time when{};                    ///< when `value` was first sent
+    Time sent_at{};                 ///< when the last frame was sent
+    std::optional<Way> last_way{};  ///< way of that frame; empty if the drive did not follow
+    bool enabled = false;           ///< the last statusword is that of an enabled drive
+    unsigned doubt = 0;             ///< cycles in which the master may not know the state
+    unsigned disabled_cycles = 0;   ///< cycles that have begun since the drive was disabled
+    unsigned silent_cycles = 0;     ///< SYNCs since its last statusword
+    bool judged_rest = true;        ///< the rest at `value` was judged
+  };
+
+  void watch(const SentMotion& sent, Time now);
+  void judge_failure(std::size_t axis, Time now);
+  void judge_rest(std::size_t axis);
+  void judge_way(std::size_t axis, const Way& way, Time now);
+  void report_violation(std::size_t axis, const char* invariant, const std::string& what);
+
+  const BusPlan& plan_;
+  Verdict& verdict_;
+  HolderJudge& holders_;
+  MotionOrders orders_;
+  GroupJudge groups_;
+  std::vector<Axis> axes_;
+  double most_cycles_;  // greatest number of cycles that counts for one distance
+  Time last_cycle_{};
+  Time released_until_{};     // until then, a release may come to the master
+  unsigned late_cycles_ = 0;  // a SYNC was left out in the last cycles
+  std::uint64_t arrivals_ = 0;
+};
+
+}  // namespace takt::soak

@@ -1,0 +1,107 @@
+#pragma once
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <takt/motion_command_t.hpp>
+#include <vector>
+
+#include "apps/takt/soak/judge/holder_judge.hpp"
+#include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/motion_axes.hpp"
+
+namespace takt::soak {
+
+/// Limits of a motion, in counts and seconds.
+struct MotionBounds {
+  double velocity = 0;
+  double acceleration = 0;
+  double jerk = 0;
+};
+
+/// A message about motions that a program has sent.
+struct SentMotion {
+  const motion_command_t& command;
+  SenderBit sender = 0;
+  Time computed_from{};  ///< SYNC time of the image that the program has seen
+};
+
+/// A move or a jog of one axis that a program has sent.
+struct OrderedMotion {
+  std::uint64_t message = 0;  ///< number of the message; all axes of a group have the same
+  std::size_t group_size = 1;
+  bool creeps = false;  ///< it may be as slow as the slowest axis of its group
+  SenderBit sender = 0;
+  Time sent{};
+  Time computed_from{};
+  Time timeout{};
+  MotionBounds bounds{};
+  MotionBounds fastest{};                ///< of all motions that may have run before
+  std::optional<std::int64_t> target{};  ///< in counts; empty for a jog
+  Time ended = never;                    ///< it moves nothing after this time
+};
+
+/// Knows from the messages of the programs which motions may run at this moment. A motion may run
+/// while its sender was heard within the timeout, and then for as long as its stop takes. The
+/// answers are upper limits: a message may have been refused.
+class MotionOrders {
+ public:
+  /// So long after it was sent, a motion has begun, or it never does: messages are not slower, and
+  /// those that wait for longer while the front thread stands still are discarded.
+  static constexpr Time longest_way = std::chrono::milliseconds{400};
+
+  explicit MotionOrders(const BusPlan& plan);
+
+  void commanded(const SentMotion& sent, Time now);
+  /// Call this when the daemon is a new process, which knows no motion.
+  void begin_anew();
+  /// The axis has stood still since this time. Forgets the motions that have ended therefore.
+  void stood(std::size_t axis, Time since, Time now);
+  /// This motion has come to rest at its target. It and those that its sender has sent before are
+  /// over.
+  void arrived(std::size_t axis, const OrderedMotion& order);
+  /// The drive of the axis did not follow at `now`: its motion has ended, and the other axes of its
+  /// group stop.
+  void failed(std::size_t axis, Time now);
+
+  /// Returns the number of the axis with this target position, or with this velocity offset.
+  std::optional<std::size_t> axis_of(SignalIndex output) const noexcept;
+  const std::vector<MotionAxis>& axes() const noexcept { return axes_; }
+  bool may_move(std::size_t axis, Time now) const noexcept { return bounds(axis, now).has_value(); }
+  /// Returns the largest limits of the motions that may run; empty if none may.
+  std::optional<MotionBounds> bounds(std::size_t axis, Time now) const noexcept;
+  /// Returns the sender of all motions that may run; 0 if there is none, or more than one.
+  SenderBit mover(std::size_t axis, Time now) const noexcept;
+  /// Returns true if a sender of motions may keep the outputs of the node valid.
+  bool keeps_alive(std::size_t node_index, Time now) const noexcept;
+  std::span<const OrderedMotion> orders(std::size_t axis) const noexcept { return orders_[axis]; }
+  bool was_commanded(std::size_t axis) const noexcept;
+  /// Returns the time at which the newest motion was sent that is not over; 0 if all are.
+  Time newest(std::size_t axis) const noexcept {
+    return orders_[axis].empty() ? Time{} : orders_[axis].back().sent;
+  }
+  std::uint64_t motions() const noexcept { return motions_; }  ///< moves and jogs
+
+ private:
+  /// `limits:` of one axis, in counts and seconds; 0 where there is none.
+  using FileLimits = MotionBounds;
+  static constexpr std::size_t most_senders = 32;
+
+  void add(const SentMotion& sent, const motion_goal_t& goal, std::size_t axis, Time now);
+  MotionBounds bounds_of(const motion_goal_t& goal, std::size_t axis) const noexcept;
+  Time end_of(const OrderedMotion& order) const noexcept;
+  Time latest_begin(const OrderedMotion& order) const noexcept;
+  Time heard(SenderBit sender) const noexcept;
+
+  const BusPlan& plan_;
+  std::vector<MotionAxis> axes_;
+  std::vector<FileLimits> file_;
+  std::vector<std::vector<OrderedMotion>> orders_;       // by axis, oldest first
+  std::vector<std::array<Time, most_senders>> longest_;  // by axis and sender: timeout and stop
+  std::array<Time, most_senders> heard_{};
+  std::uint64_t messages_ = 0;
+  std::uint64_t motions_ = 0;
+};
+
+}  // namespace takt::soak
