@@ -97,9 +97,11 @@ class MasterRun {
   bool submit(const Request& request) noexcept { return exchange_->requests.push(request); }
 
   /// Hands a message about motions to the bus thread. Returns false if too many messages wait;
-  /// submit it again later.
+  /// submit it again later. Points of streams leave room for the other kinds.
   bool submit(const motion::MotionMessage& message) noexcept {
-    return exchange_->motions.push(message);
+    const bool waits = message.kind == motion::MessageKind::points &&
+                       !exchange_->motions.has_room(motions_a_cycle + 1);
+    return !waits && exchange_->motions.push(message);
   }
   /// Takes the next end of an order of motion. Returns false if there is none.
   bool take(motion::MotionEnd& end) noexcept { return exchange_->motion_ends.pop(end); }

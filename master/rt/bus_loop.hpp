@@ -84,7 +84,7 @@ class BusLoop {
   OutputStage<P, L, S> outputs_;
   CycleReport<L, S> report_;
   Time published_{};             ///< publish time of the newest image
-  std::size_t state_words_ = 0;  ///< size of a checkpoint
+  std::size_t state_words_ = 0;  ///< size of a checkpoint without points of streams
 };
 
 template <Port P, FrontLink L, Services S>

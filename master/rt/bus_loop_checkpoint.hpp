@@ -6,7 +6,7 @@ namespace takt {
 
 /// The first word of a checkpoint. It changes whenever the order of the other words changes,
 /// because a checkpoint can only be used by the version of takt that has written it.
-inline constexpr std::uint64_t checkpoint_layout = 0x7461'6B74'0000'0004;
+inline constexpr std::uint64_t checkpoint_layout = 0x7461'6B74'0000'0005;
 
 /// Returns true if no operation is in progress, so that the state in keep() alone decides what
 /// follows.
@@ -29,8 +29,9 @@ void BusLoop<P, L, S>::keep_state() noexcept {
   constexpr Time word_time = std::chrono::nanoseconds{10};
   if (!front_.checkpoint_due() || !idle()) return;
   const Time end = beat_.outputs_due() - bus_.wire.worst_dialogue();
-  if (published_ + static_cast<Time::rep>(state_words_) * word_time > end) return;
-  std::uint64_t* const room = front_.checkpoint(state_words_);
+  const std::size_t words = state_words_ + motions_.point_words();
+  if (published_ + static_cast<Time::rep>(words) * word_time > end) return;
+  std::uint64_t* const room = front_.checkpoint(words);
   if (room == nullptr) return;
   StateWriter writer{room};
   keep(writer);
@@ -38,9 +39,10 @@ void BusLoop<P, L, S>::keep_state() noexcept {
 
 template <Port P, FrontLink L, Services S>
 bool BusLoop<P, L, S>::resume(std::span<const std::uint64_t> checkpoint) noexcept {
-  if (checkpoint.size() != state_words_ || checkpoint.front() != checkpoint_layout) return false;
+  if (checkpoint.size() < state_words_ || checkpoint.front() != checkpoint_layout) return false;
   StateReader reader{checkpoint};
   keep(reader);
+  if (checkpoint.size() != state_words_ + motions_.point_words()) return false;
   finish_cycle();
   return true;
 }

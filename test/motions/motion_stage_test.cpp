@@ -74,6 +74,16 @@ TEST(MotionStage, AMotionOutlivesItsApplicationByTheTimeoutAndTheDriveIsDisabled
   ASSERT_TRUE(bus.run_until([&] { return !bus.enabled(0); }, 600)) << "its commands have expired";
 }
 
+TEST(MotionStage, PointsLeaveRoomForTheOtherMessages) {
+  MovedAxes bus;
+  bus.enable();
+  int points = 0;
+  while (points < 1000 && bus.master.submit({.kind = motion::MessageKind::points})) ++points;
+  EXPECT_GT(points, 100);
+  for (std::size_t i = 0; i < motions_a_cycle; ++i) bus.keep_alive();
+  EXPECT_FALSE(bus.master.submit({.kind = motion::MessageKind::heard}));
+}
+
 TEST(MotionStage, AnAxisThatStandsIsKeptEnabledWhileItsSenderIsAlive) {
   MovedAxes bus;
   bus.enable();

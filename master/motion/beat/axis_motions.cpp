@@ -69,9 +69,34 @@ std::span<const AxisReport> AxisMotions::run(CycleNumber cycle,
   begin_orders(cycle);
   for (std::size_t i = 0; i < runners_.size(); ++i) {
     reports_[i] = runners_[i].run(cycle);
-    runners_[i].forget_ended();
   }
+  stop_split_streams();
+  for (AxisRunner& runner : runners_) runner.forget_ended();
   return reports_;
+}
+
+/// All axes of a stream end in the same cycle. If one axis has ended while another goes on, the
+/// next points have reached them in different cycles, too late for the first. The group stops in
+/// the next cycle.
+void AxisMotions::stop_split_streams() noexcept {
+  const auto is_done = [](const AxisRunner& runner) { return runner.has_done_stream(); };
+  if (std::ranges::none_of(runners_, is_done)) return;
+  std::array<std::uint32_t, max_axes> moving{};  // the stream of each group
+  for (const AxisRunner& runner : runners_) {
+    if (runner.is_streaming()) moving[runner.group()] = runner.newest();
+  }
+  for (std::size_t i = 0; i < runners_.size(); ++i) {
+    const AxisRunner& runner = runners_[i];
+    if (is_done(runner) && moving[runner.group()] == runner.newest()) {
+      add_stop(i, StopCause::points_ended);
+    }
+  }
+}
+
+std::size_t AxisMotions::points() const noexcept {
+  std::size_t sum = 0;
+  for (const AxisRunner& runner : runners_) sum += runner.points();
+  return sum;
 }
 
 void AxisMotions::observe(CycleNumber cycle, std::span<const AxisInput> inputs) noexcept {

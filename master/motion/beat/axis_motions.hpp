@@ -23,8 +23,8 @@ class AxisMotions {
   Outcome take(const MotionOrder& order) noexcept;
   /// The sender was alive in this cycle, which is not later than the present one.
   void sender_heard(std::uint8_t sender, CycleNumber cycle) noexcept;
-  /// Appends points to the stream that the axis follows or is about to follow. Points that do not
-  /// fit are dropped: the stream ends without them.
+  /// Appends points to the stream that the axis follows or is about to follow. If one does not fit,
+  /// the stream ends before it.
   void add_points(std::uint8_t axis, const StreamPoints& points) noexcept {
     if (axis < runners_.size()) runners_[axis].add_points(points);
   }
@@ -55,9 +55,14 @@ class AxisMotions {
   /// The reports of the last run.
   std::span<const AxisReport> reports() const noexcept { return reports_; }
 
+  /// Number of points that wait in the streams of all axes. Each of them adds
+  /// StreamPoint::kept_words to keep().
+  std::size_t points() const noexcept;
+
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(runners_, reports_, stops_, heard_);
+    state(runners_, reports_, heard_);
+    for (std::size_t i = 0; i < runners_.size(); ++i) state(stops_[i]);
   }
 
  private:
@@ -77,6 +82,7 @@ class AxisMotions {
   void observe(CycleNumber cycle, std::span<const AxisInput> inputs) noexcept;
   void stop_groups() noexcept;
   void begin_orders(CycleNumber cycle) noexcept;
+  void stop_split_streams() noexcept;
   Outcome objection_of(std::size_t axis, CycleNumber cycle) noexcept;
   CycleNumber silence_of(std::uint8_t sender, CycleNumber cycle) const noexcept;
 

@@ -215,8 +215,13 @@ void AxisRunner::end_or_count_down(CycleNumber cycle) noexcept {
   }
 }
 
+/// The acceleration at the end of a cubic curve is what results. The axis may jump to rest from it,
+/// as it may jump to that of the next curve.
 bool AxisRunner::points_end_at_rest() const noexcept {
-  return has_same_motion(stream_.last().state, {}, stop_limits_);
+  const StreamPoint& last = stream_.last();
+  State end = last.state;
+  if (last.curve == Curve::cubic) end.acceleration = 0.0;
+  return has_same_motion(end, {}, stop_limits_);
 }
 
 State AxisRunner::commanded_at(CycleNumber cycle) noexcept {

@@ -82,6 +82,17 @@ class AxisRunner {
   void forget_ended() noexcept { report_.ended.clear(); }
 
   std::uint8_t group() const noexcept { return group_; }
+  /// Returns true if the axis follows a stream of points.
+  bool is_streaming() const noexcept {
+    return report_.state == AxisState::moving && source_ == Source::points;
+  }
+  /// Returns true if the last run() has ended the stream of the axis at its last point.
+  bool has_done_stream() const noexcept {
+    const auto is_done = [](const EndedOrder& order) { return order.outcome == Outcome::done; };
+    return source_ == Source::points && std::ranges::any_of(report_.ended.orders(), is_done);
+  }
+  /// Number of points that wait in the stream.
+  std::size_t points() const noexcept { return stream_.size(); }
   /// The sender of the newest motion, or `no_sender`.
   std::uint8_t sender() const noexcept { return sender_; }
   /// Id of the newest motion that began; 0 for none.
@@ -108,9 +119,6 @@ class AxisRunner {
   State commanded_at(CycleNumber cycle) noexcept;
   double time_at(CycleNumber cycle) const noexcept {
     return static_cast<double>(cycle - began_) * period_;
-  }
-  bool is_streaming() const noexcept {
-    return report_.state == AxisState::moving && source_ == Source::points;
   }
   bool points_end_at_rest() const noexcept;
   StopCause cause_of_motion(CycleNumber cycle, const Silence& silence) const noexcept;

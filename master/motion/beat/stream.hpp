@@ -17,6 +17,8 @@ enum class Curve : std::uint8_t {
 
 /// A state that an axis shall have at a time.
 struct StreamPoint {
+  static constexpr std::size_t kept_words = 5;  ///< of keep()
+
   double time = 0.0;  ///< s, after the begin of the stream
   State state;
   Curve curve = Curve::quintic;

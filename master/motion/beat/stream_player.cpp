@@ -3,7 +3,8 @@
 namespace takt::motion {
 
 bool StreamPlayer::add(const StreamPoint& point) noexcept {
-  if (size_ == capacity || !is_finite(point) || !(point.time > last_.time)) return false;
+  if (size_ == capacity || !is_finite(point) || !(point.time > last_.time)) tail_ = Tail::cut;
+  if (tail_ == Tail::cut) return false;
   const StreamPoint whole = reached(last_, point);
   points_[(first_ + size_) % capacity] = whole;
   if (size_ == 0) segment_ = {passed_, whole};

@@ -19,24 +19,33 @@ class StreamPlayer {
     order_ = order;
     passed_ = last_ = {.time = 0.0, .state = from};
     first_ = size_ = 0;
+    tail_ = Tail::open;
   }
   std::uint32_t order() const noexcept { return order_; }
   /// Appends a point. Returns false if it is not later than the last one, if a number of it is not
-  /// finite, or if there is no room.
+  /// finite, or if there is no room. The stream ends before such a point, and takes no later one:
+  /// nobody has checked the curve that would lead over the gap.
   bool add(const StreamPoint& point) noexcept;
   /// Returns the state at a time; after the last point, the state at that point.
   State at(double time) noexcept;
   /// The last point.
   const StreamPoint& last() const noexcept { return last_; }
+  /// Number of points that wait.
+  std::size_t size() const noexcept { return size_; }
 
+  /// Keeps only the points that wait, so the number of words changes with size().
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(order_, passed_, last_, segment_, points_);
+    state(order_, passed_, last_, segment_, tail_);
     state.position(first_, capacity);
     state.position(size_, capacity + 1);
+    for (std::size_t i = 0; i < size_; ++i) state(points_[(first_ + i) % capacity]);
   }
 
  private:
+  /// Whether the stream takes more points.
+  enum class Tail : std::uint8_t { open, cut };
+
   std::uint32_t order_ = 0;  ///< 0 before the first stream
   StreamPoint passed_;       ///< the newest point that was passed
   StreamPoint last_;
@@ -44,6 +53,7 @@ class StreamPlayer {
   std::array<StreamPoint, capacity> points_{};
   std::size_t first_ = 0;  ///< of the points that wait, in a ring
   std::size_t size_ = 0;
+  Tail tail_ = Tail::open;
 };
 
 }  // namespace takt::motion

@@ -31,10 +31,12 @@ class SpscRing {
   }
 
   /// Producer. Returns true if the next push would be refused.
-  bool full() noexcept {
+  bool full() noexcept { return !has_room(1); }
+  /// Producer. Returns true if the ring has room for so many items, at most N.
+  bool has_room(std::size_t items) noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
-    if (head - tail_seen_ == N) tail_seen_ = tail_.load(std::memory_order_acquire);
-    return head - tail_seen_ == N;
+    if (head - tail_seen_ > N - items) tail_seen_ = tail_.load(std::memory_order_acquire);
+    return head - tail_seen_ <= N - items;
   }
 
   /// Consumer. Returns false if the ring is empty.

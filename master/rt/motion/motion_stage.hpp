@@ -9,6 +9,7 @@
 #include "eds_parser/table/motion_axes.hpp"
 #include "master/motion/beat/axis_motions.hpp"
 #include "master/motion/beat/motion_message.hpp"
+#include "master/rt/exchange/exchange.hpp"
 #include "master/rt/exchange/front_link.hpp"
 #include "master/rt/machines/bus_machines.hpp"
 #include "master/rt/motion/driven_axis.hpp"
@@ -45,15 +46,16 @@ class MotionStage {
     }
   }
 
+  /// Words of keep() that the points of streams need.
+  std::size_t point_words() const noexcept {
+    return motions_.points() * motion::StreamPoint::kept_words;
+  }
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(active_, beats_, last_run_, axes_, motions_);
   }
 
  private:
-  /// Messages that are taken in one cycle: an order for each axis, and a few more.
-  static constexpr std::size_t most_messages = motion::max_axes + 8;
-
   /// If SYNC is missing in more periods than this, the drives have stopped following, and a motion
   /// that went on would jump.
   static constexpr motion::CycleNumber most_missed = 1;
@@ -62,7 +64,7 @@ class MotionStage {
     return last_run_ != 0 && moment.cycle - last_run_ > most_missed + 1;
   }
   void take_messages(motion::CycleNumber cycle) noexcept {
-    for (std::size_t i = 0; i < most_messages && front_.take_motion(message_); ++i) {
+    for (std::size_t i = 0; i < motions_a_cycle && front_.take_motion(message_); ++i) {
       active_ = true;
       accept(message_, cycle);
     }

@@ -253,6 +253,18 @@ TEST(SpscRing, IsFullExactlyWhenPushRefuses) {
   EXPECT_FALSE(ring.full());
 }
 
+TEST(SpscRing, HasRoomForAsManyItemsAsItTakes) {
+  SpscRing<int, 4> ring;
+  int item = 0;
+  for (int laps = 0; laps < 3; ++laps) {
+    EXPECT_TRUE(ring.has_room(4));
+    EXPECT_TRUE(ring.push(1) && ring.push(2));
+    EXPECT_TRUE(ring.has_room(2));
+    EXPECT_FALSE(ring.has_room(3));
+    EXPECT_TRUE(ring.pop(item) && ring.pop(item));
+  }
+}
+
 TEST(SpscRing, LosesNothingBetweenTwoThreads) {
   auto ring = std::make_unique<SpscRing<std::uint64_t, 16>>();
   std::thread producer{[&] {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "master/core/kept_state.hpp"
 #include "master/motion/planner/stream_check.hpp"
 #include "test/unit/master/motion/beat/plant.hpp"
 
@@ -104,6 +105,104 @@ TEST(AxisStreams, PointsThatDoNotFitAreDropped) {
     add(plant, {{.time = 0.001 * i, .state = plant.last[0].commanded}});
   plant.step();
   EXPECT_EQ(plant.last[0].cycles_left, StreamPlayer::capacity);
+}
+
+/// Nobody has checked a curve from the last point before the gap to the next one behind it.
+TEST(AxisStreams, APointThatIsLostEndsTheStream) {
+  Plant plant{1};
+  plant.step();
+  ASSERT_TRUE(plant.take(stream_order(plant)));
+  for (int i = 1; i <= 65; ++i) add(plant, {wave(i * 0.02)});  // the last one finds no room
+  plant.steps(101);
+  add(plant, {wave(66 * 0.02)});
+  plant.steps(64 * 20 - 100);
+  EXPECT_EQ(plant.last[0].state, AxisState::moving);
+  EXPECT_NEAR(plant.last[0].commanded.position, wave(64 * 0.02).state.position, 1e-9);
+  plant.step();
+  EXPECT_EQ(plant.last[0].state, AxisState::stopping);
+  EXPECT_EQ(plant.last[0].stop.cause, StopCause::points_ended);
+  plant.steps(500);
+  plant.ids = 2;
+  ASSERT_TRUE(plant.take(stream_order(plant)));
+  StreamPoint rest{.time = 0.1, .state = plant.last[0].commanded};
+  add(plant, {rest});
+  plant.step();
+  EXPECT_EQ(plant.last[0].cycles_left, 100U) << "the next stream takes points again";
+}
+
+/// The curve has an acceleration at its end, which is no part of the point.
+TEST(AxisStreams, ACubicCurveThatEndsWithoutVelocityEndsTheMotionAtItsPoint) {
+  Plant plant{1};
+  plant.step();
+  ASSERT_TRUE(plant.take(stream_order(plant)));
+  add(plant, {{.time = 2.0, .state = {.position = 0.01}, .curve = Curve::cubic}});
+  plant.steps(2001);
+  EXPECT_EQ(plant.last[0].state, AxisState::standing);
+  EXPECT_EQ(plant.ended[0].outcome, Outcome::done);
+  EXPECT_NEAR(plant.last[0].commanded.position, 0.01, 1e-12);
+  plant.steps(500);
+  EXPECT_EQ(plant.last[0].stop.cause, StopCause::none);
+  EXPECT_NEAR(plant.last[0].commanded.position, 0.01, 1e-12);
+}
+
+/// The next points of a group have come to one axis in time, and to the other one cycle too late.
+TEST(AxisStreams, AnAxisThatIsDoneWhileItsGroupGoesOnStopsTheGroup) {
+  Plant plant{3};
+  plant.step();
+  for (std::uint8_t axis = 0; axis < 3; ++axis) {
+    MotionOrder order = stream_order(plant);
+    order.axis = axis;
+    order.group = axis == 2 ? 2 : 0;
+    order.axes = axis == 2 ? 1 : 2;
+    ASSERT_TRUE(plant.take(order));
+    StreamPoints points{.order = plant.ids, .size = 1};
+    points.points[0] = {.time = 0.5, .state = {.position = 0.05}};
+    if (axis > 0) points.points[points.size++] = {.time = 1.0, .state = {.position = 0.1}};
+    plant.motions.add_points(axis, points);
+  }
+  plant.steps(501);
+  EXPECT_EQ(plant.ended[0].outcome, Outcome::done);
+  EXPECT_EQ(plant.last[1].state, AxisState::moving);
+  plant.step();
+  EXPECT_EQ(plant.last[1].stop.cause, StopCause::points_ended);
+  EXPECT_EQ(plant.last[1].stop.axis, 0);
+  EXPECT_EQ(plant.ended[1].outcome, Outcome::stopped);
+  EXPECT_EQ(plant.last[2].state, AxisState::moving) << "it is no axis of this stream";
+  plant.steps(500);
+  EXPECT_EQ(plant.ended[2].outcome, Outcome::done);
+}
+
+/// A checkpoint has the points that wait, not the room for others.
+TEST(AxisStreams, TheStateHasTheWaitingPointsOnly) {
+  const auto words_of = [](Plant& plant) {
+    StateSize size;
+    plant.motions.keep(size);
+    return size.count();
+  };
+  Plant plant{1};
+  plant.step();
+  ASSERT_TRUE(plant.take(stream_order(plant)));
+  const std::size_t without = words_of(plant);
+  for (int i = 1; i <= 70; ++i) add(plant, {wave(i * 0.02)});
+  plant.steps(501);  // passes 25 of 64
+  EXPECT_EQ(plant.motions.points(), 39U);
+  ASSERT_EQ(words_of(plant), without + 39 * StreamPoint::kept_words);
+  std::vector<std::uint64_t> words(words_of(plant));
+  StateWriter writer{words.data()};
+  plant.motions.keep(writer);
+  Plant other{1};
+  StateReader reader{words};
+  other.motions.keep(reader);
+  other.cycle = plant.cycle;
+  other.last = plant.last;
+  other.inputs = plant.inputs;
+  add(other, {wave(71 * 0.02)});  // a point was lost
+  for (int i = 0; i < 1000; ++i) {
+    plant.step();
+    other.step();
+    ASSERT_EQ(other.last[0].commanded.position, plant.last[0].commanded.position) << i;
+  }
+  EXPECT_EQ(other.last[0].stop.cause, StopCause::points_ended);
 }
 
 TEST(AxisStreams, AStreamBeginsOnlyAtRest) {
