@@ -53,6 +53,37 @@ TEST(MotionMessages, ACopyOfTheOlderOfTwoMovesOfOneImageDoesNotLeadTheAxisBack) 
   EXPECT_EQ(bus.axis(0).id, 2);
 }
 
+/// A program may leave utime at 0. Then a motion that only one of two orders of arrival would make
+/// right can't be told from a copy.
+TEST(MotionMessages, ACopyOfAMoveByIsKnownAlsoBehindAnotherMotionOfItsImage) {
+  MotionBus bus;
+  bus.enable();
+  motion_command_t first = bus.command("move_by", 1);
+  first.goals = {MotionBus::goal("shoulder", 0.5)};
+  bus.send(first);
+  bus.send(move_of(bus, 2, 1.0, 0));
+  bus.send(first);
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).ended_id == 2; }, 2000));
+  EXPECT_TRUE(bus.said("motion_refused", "may be a copy"));
+  EXPECT_NEAR(bus.axis(0).position, 1.0, 1e-9);
+}
+
+/// The orders of the first motion are on their way when the second one is refused and the sender
+/// gives up its nodes.
+TEST(MotionMessages, AMotionOnItsWayIsStoppedByAReleaseAlsoIfAnotherOneWasRefused) {
+  MotionBus bus;
+  bus.enable();
+  bus.send(move_of(bus, 1, 20.0, 1000));
+  bus.send(move_of(bus, 2, 1e6, 2000));
+  bus.release();
+  bus.run(3);
+  EXPECT_TRUE(bus.said("motion_refused", "would leave its range of positions"));
+  EXPECT_TRUE(bus.said("motion_refused", "does not hold the nodes any longer"));
+  bus.each_cycle = [&] { EXPECT_NE(bus.axis(0).state, axis_moves); };
+  bus.run(20);
+}
+
 /// The elbow has no power. Both axes are free.
 TEST(MotionMessages, ARefusedCommandTakesNoNode) {
   MotionBus bus{{{.kind = sim::FaultKind::power_off, .node = 2_node, .at = 3500ms, .until = 20s}},

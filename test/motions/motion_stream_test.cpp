@@ -264,6 +264,60 @@ TEST(MotionStream, AMoveDuringAStreamIsRefusedAndAStopEndsIt) {
   EXPECT_EQ(bus.axis(0).state, test::standing);
 }
 
+/// An application may send all points again as a sign of life, also after the end.
+TEST(MotionStream, AClosedPathIsNotRunAgainByItsOwnPoints) {
+  MotionBus bus;
+  bus.enable();
+  std::vector<motion_point_t> points{wave(0.0, {1.0}), wave(0.0, {1.0}), wave(0.0, {1.0})};
+  points[1].time = 0.5;
+  points[1].position = {0.1};
+  points[2].time = 1.0;
+  bus.each_cycle = [&, count = 0]() mutable {
+    if (count++ % 25 == 0) bus.send_stream(1, {"shoulder"}, 0, points);
+  };
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).ended_id == 1; }, 600));
+  EXPECT_FALSE(bus.said("motion_refused", ""));
+  bus.run(100);
+  EXPECT_EQ(bus.axis(0).state, 1);
+  EXPECT_EQ(bus.axis(0).outcome, 1);
+  EXPECT_TRUE(bus.said("motion_refused", "the stream with its id is over"));
+  bus.each_cycle = {};
+  bus.send_stream(2, {"shoulder"}, 0, points);
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).id == 2; }, 10));
+}
+
+TEST(MotionStream, CubicCurvesThatEndWithoutVelocityAreDoneAtTheirLastPoint) {
+  MotionBus bus;
+  bus.enable();
+  motion_point_t end = wave(0.0, {1.0});
+  end.time = 1.0;
+  end.position = {0.5};
+  end.acceleration.clear();
+  bus.send_stream(1, {"shoulder"}, 0, {wave(0.0, {1.0}), end});
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).ended_id == 1; }, 600));
+  EXPECT_EQ(bus.axis(0).outcome, 1);
+  bus.run(50);
+  EXPECT_NEAR(bus.axis(0).position, 0.5, 1e-12);
+}
+
+/// A motion that is refused overtakes no points, although its message is younger.
+TEST(MotionStream, PointsArriveBehindARefusedMoveOfTheSameImage) {
+  MotionBus bus;
+  bus.enable();
+  bus.send_stream(1, {"shoulder"}, 0, {wave(0.0, {1.0}), wave(0.02, {1.0})});
+  bus.run(2);
+  motion_command_t move = bus.command("move", 5);
+  move.utime = 2000;
+  move.goals = {MotionBus::goal("shoulder", 1.0)};
+  bus.send(move);
+  bus.send_stream(1, {"shoulder"}, 2, {wave(0.04, {1.0}), wave(0.06, {1.0})});  // utime 0
+  bus.run(2);
+  EXPECT_FALSE(bus.said("motion_refused", "has overtaken it"));
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).id == 1; }, 5));
+  EXPECT_GT(bus.axis(0).time_left, 0.05);
+}
+
 TEST(MotionStream, MorePointsThanTheBufferHoldsAreRefused) {
   MotionBus bus;
   bus.enable();

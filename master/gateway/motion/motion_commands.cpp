@@ -163,16 +163,17 @@ void MotionCommands::take(const motion_stream_t& stream, const CommandContext& c
   if (runs && !streams_.has_axes(command.instance, command.id, *axes)) {
     return refuse(command, {.why = "its axes are not those of its first message"}, context);
   }
-  const auto is_copy = [&](std::size_t axis) { return sequences_[axis].has_come(command); };
-  if (!runs && std::ranges::any_of(*axes, is_copy)) {
-    return refuse(command, {.why = std::string{MotionSequence::copy}}, context);
+  const auto is_over = [&](std::size_t axis) { return sequences_[axis].has_streamed(command); };
+  if (!runs && std::ranges::any_of(*axes, is_over)) {
+    return refuse(command, {.why = "the stream with its id is over: a new one needs a new id"},
+                  context);
   }
   const auto claim = claim_of(command, *axes, context);
   if (!claim) return;
   active_ = true;
   if (!runs && !begin_stream(stream, command, *axes, claim->sender, context)) return;
   hold(command, *axes, *claim, context);
-  const auto refused = streams_.add(stream, context.cycle);
+  const auto refused = streams_.add(stream, context.cycle, jobs_.snapshot().cycle);
   if (refused) refuse(command, *refused, context);
 }
 
@@ -187,6 +188,7 @@ bool MotionCommands::begin_stream(const motion_stream_t& stream, const motion_co
   }
   note_motion(*job, command, axes, sender, context);
   if (!jobs_.prepare_stream(*job, context)) return false;
+  for (const std::size_t axis : axes) sequences_[axis].streamed(command);
   streams_.begin(*job, stream.points.front().time);
   jobs_.start(std::move(*job));
   return true;
@@ -268,14 +270,18 @@ void MotionCommands::take_stop(const motion_command_t& command, std::span<const 
   tell_heard(command, {}, *sender);
 }
 
-/// A move or jog that a later message has overtaken is refused, and so is a copy from before a
-/// stop.
+/// A motion that a later message has overtaken is refused, and so is a copy from before a stop.
+/// More points for a stream that runs can't be overtaken, not even by a motion that was refused.
 bool MotionCommands::is_newest(const motion_command_t& command, std::span<const std::size_t> axes,
                                const CommandContext& context) {
-  if (!is_motion(command) && command.kind != "stream") return true;
+  const bool is_stream = command.kind == "stream";
+  if (!is_motion(command) && !is_stream) return true;
+  const bool goes_on = is_stream && streams_.runs(command.instance, command.id);
+  const auto now = static_cast<std::int64_t>(context.cycle);
   for (const std::size_t axis : axes) {
+    const MotionSequence& sequence = sequences_[axis];
     const std::string_view why =
-        sequences_[axis].objection(command, static_cast<std::int64_t>(context.cycle));
+        goes_on ? sequence.stop_objection(command, now) : sequence.objection(command, now);
     if (why.empty()) continue;
     refuse(command, {.why = std::string{why}, .axis = axis}, context);
     return false;

@@ -32,8 +32,9 @@ MotionJobs::MotionJobs(const BusPlan& plan, const std::vector<MotionAxis>& axes,
       planner_{axes.size(), std::chrono::duration<double>{plan.cycle.period}.count()} {}
 
 bool MotionJobs::prepare(MotionJob& job, const CommandContext& context) {
+  if (!plan(job, context)) return false;
   drop_replaced(job);
-  return plan(job, context);
+  return true;
 }
 
 void MotionJobs::start(MotionJob job) {
@@ -47,18 +48,19 @@ void MotionJobs::drop(std::size_t axis) {
   });
 }
 
-/// A newer command of an axis ends the wait of an older one.
+/// A newer command of an axis ends the wait of an older one. One that is refused does not: the
+/// orders of the older one may be on their way, see take_lost().
 void MotionJobs::drop_replaced(const MotionJob& job) {
   for (const motion::AxisGoal& goal : job.goals) drop(goal.axis);
 }
 
 bool MotionJobs::prepare_stream(MotionJob& job, const CommandContext& context) {
-  drop_replaced(job);
   const auto orders = planner_.begin_stream(job.group, job.goals, next_begin(context));
   if (!orders) {
     refuse_plan(job, orders.error(), context);
     return false;
   }
+  drop_replaced(job);
   take_orders(job, *orders);
   job.tries = most_tries;
   return true;

@@ -20,25 +20,41 @@ class MotionSequence {
     move_ = {.instance = move.instance, .cycle = move.cycle, .utime = move.utime, .id = move.id};
   }
 
-  /// Returns why a move or jog is refused; empty if it is not. `now` is the present cycle: a later
-  /// one cannot judge, because the clock goes back if SYNC stood still.
-  std::string_view objection(const motion_command_t& move, std::int64_t now) const noexcept {
+  /// A stream has begun.
+  void streamed(const motion_command_t& stream) noexcept {
+    stream_ = {.instance = stream.instance, .id = stream.id};
+  }
+
+  /// Returns why a message is refused that would move the axis in spite of a stop; empty if it is
+  /// not. `now` is the present cycle: a later one cannot judge, because the clock goes back if SYNC
+  /// stood still.
+  std::string_view stop_objection(const motion_command_t& move, std::int64_t now) const noexcept {
     if (stop_.instance == move.instance && stop_.cycle <= now + 1 && move.cycle <= stop_.cycle) {
       return "it is not newer than the stop of its sender: both are from the same image, or the "
              "stop is from a later one";
     }
-    if (move_.instance == move.instance && move_.cycle == move.cycle && move.utime < move_.utime) {
-      return "a newer motion of its sender from the same image has overtaken it";
-    }
-    if (move.kind == "move_by" && has_come(move)) return copy;
     return {};
   }
-  /// Returns true if this message was the newest motion before, or has all of its numbers.
-  bool has_come(const motion_command_t& move) const noexcept {
-    return move_.instance == move.instance && move_.cycle == move.cycle &&
-           move_.utime == move.utime && move_.id == move.id;
+  /// The same for a message that begins a motion. A `move_by` or the begin of a stream must be
+  /// newer than each motion from the same image, because a copy of it would move the axis again.
+  std::string_view objection(const motion_command_t& move, std::int64_t now) const noexcept {
+    if (const std::string_view why = stop_objection(move, now); !why.empty()) return why;
+    if (move_.instance != move.instance || move_.cycle != move.cycle) return {};
+    if (move.utime < move_.utime) {
+      return "a newer motion of its sender from the same image has overtaken it";
+    }
+    const bool moves_again = move.kind == "move_by" || move.kind == "stream";
+    if (moves_again && move.utime == move_.utime) {
+      return "it may be a copy, and a copy must not move again: it is not newer than the last "
+             "motion "
+             "of its sender from the same image";
+    }
+    return {};
   }
-  static constexpr std::string_view copy = "it has come before: a copy must not move again";
+  /// Returns true if this is the stream that has begun last. Its points must not begin it again.
+  bool has_streamed(const motion_command_t& stream) const noexcept {
+    return stream_.instance == stream.instance && stream_.id == stream.id;
+  }
 
  private:
   struct Message {
@@ -49,6 +65,7 @@ class MotionSequence {
   };
   Message stop_;
   Message move_;
+  Message stream_;  ///< without its cycle and time
 };
 
 }  // namespace takt

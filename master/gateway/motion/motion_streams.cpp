@@ -68,16 +68,16 @@ void MotionStreams::observe(const MotionSnapshot& snapshot) {
   });
 }
 
-std::optional<MotionRefusal> MotionStreams::add(const motion_stream_t& message,
-                                                std::uint64_t cycle) {
+std::optional<MotionRefusal> MotionStreams::add(const motion_stream_t& message, std::uint64_t cycle,
+                                                std::uint64_t reported) {
   const auto found = std::ranges::find_if(streams_, [&](const Stream& stream) {
     return stream.instance == message.instance && stream.id == message.id;
   });
   if (found == streams_.end()) return std::nullopt;
   Stream& stream = *found;
-  const std::uint64_t passed = cycle - std::min(cycle, stream.begin);
-  const double now = static_cast<double>(passed) * period_;
-  while (!stream.times.empty() && stream.times.front() <= now) stream.times.pop_front();
+  const double now = time_of(stream, cycle);
+  const double passed = time_of(stream, reported);
+  while (!stream.times.empty() && stream.times.front() <= passed) stream.times.pop_front();
   if (message.first_point > stream.next) {
     return MotionRefusal{.why = fmt::format("its point {} is missing: the message begins with {}",
                                             stream.next, message.first_point)};
@@ -112,22 +112,35 @@ std::optional<MotionRefusal> MotionStreams::add_point(Stream& stream, const moti
   if (stream.last.front().time < now) {
     return MotionRefusal{.why = "it is too late: the points before have ended"};
   }
-  std::vector<motion::StreamPoint> reached;
-  for (std::size_t i = 0; i < axes; ++i) {
-    const motion::AxisGoal& goal = stream.goals[i];
-    const motion::StreamPoint next = stream_point(point, i, time);
-    const auto defect = defect_of(stream.last[i], next,
-                                  {.limits = goal.limits, .range = goal.range, .period = period_});
-    if (defect) return MotionRefusal{.why = std::string{text(*defect)}, .axis = goal.axis};
-    reached.push_back(motion::reached(stream.last[i], next));
+  const double most = longest_step / static_cast<double>(axes);
+  if (time - stream.last.front().time > most * period_) {
+    return MotionRefusal{.why = fmt::format("it is more than {:.0f} cycles after the point before, "
+                                            "which is {:.0f} divided by the number of axes",
+                                            std::floor(most), longest_step)};
   }
+  std::vector<motion::StreamPoint> next;
+  for (std::size_t i = 0; i < axes; ++i) next.push_back(stream_point(point, i, time));
+  if (const auto defect = defect_of(stream, next)) return defect;
   if (stream.filling.front().points.size == motion::StreamPoints::capacity) close(stream);
   for (std::size_t i = 0; i < axes; ++i) {
     motion::StreamPoints& points = stream.filling[i].points;
-    points.points[points.size++] = reached[i];
+    points.points[points.size++] = stream.last[i] = motion::reached(stream.last[i], next[i]);
   }
-  stream.last = std::move(reached);
   stream.times.push_back(time);
+  return std::nullopt;
+}
+
+/// The ways of all axes are checked first, because the stops take much longer.
+std::optional<MotionRefusal> MotionStreams::defect_of(
+    const Stream& stream, std::span<const motion::StreamPoint> next) const {
+  for (const auto check : {motion::defect_of_way, motion::defect_of_stops}) {
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      const motion::AxisGoal& goal = stream.goals[i];
+      const auto defect = check(stream.last[i], next[i],
+                                {.limits = goal.limits, .range = goal.range, .period = period_});
+      if (defect) return MotionRefusal{.why = std::string{text(*defect)}, .axis = goal.axis};
+    }
+  }
   return std::nullopt;
 }
 

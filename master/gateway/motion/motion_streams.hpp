@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -18,8 +19,11 @@ namespace takt {
 /// thread as fast as it takes them. Front thread.
 class MotionStreams {
  public:
-  /// Points may be at most this far in the future, in s. It bounds the time that a check takes.
+  /// Points may be at most this far in the future, in s.
   static constexpr double longest_ahead = 5.0;
+  /// Most cycles from one point to the next, all axes added. It bounds the time that the check of a
+  /// point takes.
+  static constexpr double longest_step = 20'000;
 
   /// `period` is that of the cycle in s.
   MotionStreams(double period, SubmitMotion submit) : period_{period}, submit_{std::move(submit)} {}
@@ -34,8 +38,11 @@ class MotionStreams {
   bool has_axes(std::int64_t instance, std::int32_t id,
                 std::span<const std::size_t> axes) const noexcept;
   /// Takes the points of a message for a stream that runs. Points that it has already are skipped.
-  /// Returns why a point and all later ones are refused; those before it are taken.
-  std::optional<MotionRefusal> add(const motion_stream_t& message, std::uint64_t cycle);
+  /// Returns why a point and all later ones are refused; those before it are taken. `cycle` is the
+  /// present one, `reported` that of the newest report: the bus thread has no more points than are
+  /// left then.
+  std::optional<MotionRefusal> add(const motion_stream_t& message, std::uint64_t cycle,
+                                   std::uint64_t reported);
   /// Forgets the streams that have ended, or have not begun in their cycle.
   void observe(const MotionSnapshot& snapshot);
   /// An order has ended or was refused.
@@ -61,6 +68,12 @@ class MotionStreams {
   };
 
   const Stream* find(std::int64_t instance, std::int32_t id) const noexcept;
+  /// Time of the stream in a cycle, in s.
+  double time_of(const Stream& stream, std::uint64_t cycle) const noexcept {
+    return static_cast<double>(cycle - std::min(cycle, stream.begin)) * period_;
+  }
+  std::optional<MotionRefusal> defect_of(const Stream& stream,
+                                         std::span<const motion::StreamPoint> next) const;
   std::optional<MotionRefusal> add_point(Stream& stream, const motion_point_t& point, double now);
   static void close(Stream& stream);
   void hand_over(Stream& stream);

@@ -73,14 +73,30 @@ bool coasts_inside(const State& state, const Limits& limits) noexcept {
                    limits.max_velocity - limits.min_velocity);
 }
 
-std::optional<StreamDefect> defect_of_stops(const StreamSegment& segment, const Course& course,
+}  // namespace
+
+std::optional<StreamDefect> defect_of_way(const StreamPoint& from, const StreamPoint& to,
+                                          const StreamRules& rules) noexcept {
+  if (!is_finite(to)) return StreamDefect::not_finite;
+  if (!(to.time > from.time)) return StreamDefect::not_later;
+  const StreamSegment segment{from, to};
+  const auto is_number = [](double number) { return std::isfinite(number); };
+  if (!std::ranges::all_of(segment.position(), is_number)) return StreamDefect::not_finite;
+  return defect_of_course(course_of(segment), rules);
+}
+
+/// The cycle of `from` counts, too: the bus thread is on the new curve then, and a cubic one begins
+/// with another acceleration than the last one has ended with.
+std::optional<StreamDefect> defect_of_stops(const StreamPoint& from, const StreamPoint& to,
                                             const StreamRules& rules) noexcept {
+  const StreamSegment segment{from, to};
+  const Course course = course_of(segment);
   const double stop = longest_stop(course, rules.limits);
   const bool is_far = course.position.min - stop >= rules.range.min &&
                       course.position.max + stop <= rules.range.max;
-  const double end = segment.begin() + segment.duration();
-  for (double cycle = std::floor(segment.begin() / rules.period) + 1; cycle * rules.period <= end;
+  for (double cycle = std::floor(from.time / rules.period); cycle * rules.period <= to.time;
        ++cycle) {
+    if (cycle * rules.period < from.time) continue;
     const State state = segment.at(cycle * rules.period);
     if (!coasts_inside(state, rules.limits)) return StreamDefect::stop_velocity;
     if (is_far) continue;
@@ -89,20 +105,6 @@ std::optional<StreamDefect> defect_of_stops(const StreamSegment& segment, const 
     }
   }
   return std::nullopt;
-}
-
-}  // namespace
-
-std::optional<StreamDefect> defect_of(const StreamPoint& from, const StreamPoint& to,
-                                      const StreamRules& rules) noexcept {
-  if (!is_finite(to)) return StreamDefect::not_finite;
-  if (!(to.time > from.time)) return StreamDefect::not_later;
-  const StreamSegment segment{from, to};
-  const auto is_number = [](double number) { return std::isfinite(number); };
-  if (!std::ranges::all_of(segment.position(), is_number)) return StreamDefect::not_finite;
-  const Course course = course_of(segment);
-  if (const auto defect = defect_of_course(course, rules)) return defect;
-  return defect_of_stops(segment, course, rules);
 }
 
 }  // namespace takt::motion

@@ -28,9 +28,12 @@ struct StreamRules {
 };
 
 /// Checks the way from one point to the next. The first defect is returned; empty if there is none.
-/// All extremes of the curve count. A stop is checked from the state of each cycle in which the bus
-/// thread can begin one. Takes a time in proportion to the number of cycles between the points.
-std::optional<StreamDefect> defect_of(const StreamPoint& from, const StreamPoint& to,
-                                      const StreamRules& rules) noexcept;
+/// All extremes of the curve count. Stops are not checked. Takes a short, constant time.
+std::optional<StreamDefect> defect_of_way(const StreamPoint& from, const StreamPoint& to,
+                                          const StreamRules& rules) noexcept;
+/// The same for a stop from the state of each cycle in which the bus thread can begin one. The way
+/// must have no defect. Takes a time in proportion to the number of cycles between the points.
+std::optional<StreamDefect> defect_of_stops(const StreamPoint& from, const StreamPoint& to,
+                                            const StreamRules& rules) noexcept;
 
 }  // namespace takt::motion

@@ -28,6 +28,12 @@ bool add(Plant& plant, const std::vector<StreamPoint>& points) {
   return true;
 }
 
+std::optional<StreamDefect> defect_of(const StreamPoint& from, const StreamPoint& to,
+                                      const StreamRules& rules) {
+  const auto defect = defect_of_way(from, to, rules);
+  return defect ? defect : defect_of_stops(from, to, rules);
+}
+
 /// 0.2 sin^3(2 t): smooth, and at rest where it begins.
 StreamPoint wave(double time) {
   const double s = std::sin(2 * time);
@@ -288,6 +294,21 @@ TEST(StreamCheck, NamesTheFirstDefect) {
   EXPECT_EQ(defect(4.0, {.position = 0.99, .velocity = 0.5}), StreamDefect::stop_position);
   EXPECT_EQ(defect(1.0, {.position = 0.3, .velocity = 0.95, .acceleration = 3.0}),
             StreamDefect::stop_velocity);
+}
+
+/// A cubic curve begins with another acceleration than the one before has ended with. In the cycle
+/// of its first point, a stop begins with the new one.
+TEST(StreamCheck, ChecksTheStopFromTheBeginOfEachCurve) {
+  const StreamRules rules{
+      .limits = Plant::limits, .range = {.min = -10.0, .max = 10.0}, .period = Plant::period};
+  const auto defect = [&](double begin) {
+    const State from{.velocity = 0.9};
+    const State to = advanced({.velocity = 0.9, .acceleration = 4.0}, 0.0005, 0.0);
+    return defect_of({.time = begin, .state = from},
+                     {.time = begin + 0.0005, .state = to, .curve = Curve::cubic}, rules);
+  };
+  EXPECT_EQ(defect(1.0), StreamDefect::stop_velocity);
+  EXPECT_EQ(defect(1.0002), std::nullopt) << "no cycle is on this curve";
 }
 
 }  // namespace
