@@ -34,7 +34,8 @@ std::string Axes::State::why_not_ready_text() const {
                ": taktd reports no motion of it: was taktd started with --motions, and are "
                "6041 and 6064 in TPDOs and 607A in an RPDO of the drive?"};
     } else if (lines.empty() && !is_ready(axis)) {
-      lines = {name + ": its target position is not sent: has each object of its RPDO a value?"};
+      lines = {name +
+               ": its target position is not sent: does each object of its RPDO have a value?"};
     }
     for (const std::string& line : lines) text += (text.empty() ? "" : "; ") + line;
   }

@@ -40,7 +40,7 @@ ParsedJog parse_jog(int argc, char** argv) {
   app.add_option("bus", options.bus, "name of the bus (default: the first bus whose daemon sends)");
   app.add_option("--axis", options.axis, "name of the axis (default: the only axis of the bus)");
   app.add_option("--velocity", options.velocity,
-                 "velocity of the jog, unit/s; a negative one turns the keys around")
+                 "velocity of the jog, unit/s; a negative one swaps the directions of the keys")
       ->required()
       ->check(moving);
   app.add_option("--acceleration", options.acceleration,

@@ -104,7 +104,8 @@ class Axes:
 
     def __init__(self, bus: str, *names: str, timeout: float = 0.5, longest: float = 10.0):
         """Waits until the bus is heard. Without names: all axes, in the order of their node-IDs. The second axis of a device
-        is "gantry.2". `longest`: seconds that a call waits at most, except for move(), move_by() and wait()."""
+        is "gantry.2". `longest`: seconds that a call waits at most, except for move(), move_by(), wait()
+        and run()."""
         if not 0.001 <= timeout <= 10.0:
             raise Obstacle("wrong use", f"a timeout of {timeout} s is not one of 1 ms to 10 s")
         self.bus, self.timeout, self.longest = bus.upper(), timeout, longest

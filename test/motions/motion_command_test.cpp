@@ -273,7 +273,7 @@ TEST(MotionCommand, MovesByADistance) {
   const motion_command_t second = move_by(2, 0.5, 0.5);
   bus.send(second);  // a copy
   ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).ended_id == 2 && bus.axis(0).id == 0; }));
-  EXPECT_TRUE(bus.said("motion_refused", "a copy must not move again"));
+  EXPECT_TRUE(bus.said("motion_refused", "a copy, which must not move the axis again"));
   EXPECT_NEAR(bus.axis(0).position, 1.0, 1e-9);
   EXPECT_NEAR(bus.axis(1).position, 0.25, 1e-9);
   bus.move_one(3, 5.0);

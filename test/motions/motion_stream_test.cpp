@@ -188,7 +188,7 @@ TEST(MotionStream, RefusesAStreamThatDoesNotBeginWhereTheAxisStands) {
   first.velocity[0] = 0.1;
   begin(first, "is not where the axis stands");
   first = wave(0.0, {1.0, 1.0});
-  begin(first, "has not one position");
+  begin(first, "needs one position");
   first = wave(0.0, {1.0});
   first.position[0] = std::numeric_limits<double>::quiet_NaN();
   begin(first, "infinite, NaN");
@@ -238,8 +238,8 @@ TEST(MotionStream, RefusesAPointWithTheReasonAndFollowsThoseBefore) {
   refusal([](Point& p) { p.position[0] += 2.0; }, "the velocity would exceed");
   refusal([](Point& p) { p.velocity[0] = 2.9; }, "the acceleration would exceed");
   refusal([](Point& p) { p.time = 0.52, p.position[0] -= 0.0999; }, "the jerk would exceed");
-  refusal([](Point& p) { p.position.push_back(0.0); }, "it has not one position");
-  refusal([](Point& p) { p.acceleration = {1.0, 2.0}; }, "it has not one position");
+  refusal([](Point& p) { p.position.push_back(0.0); }, "it needs one position");
+  refusal([](Point& p) { p.acceleration = {1.0, 2.0}; }, "it needs one position");
 }
 
 TEST(MotionStream, AMoveDuringAStreamIsRefusedAndAStopEndsIt) {

@@ -74,7 +74,7 @@ TEST(MotionStreams, CheckAPointInABoundedTime) {
   StreamsAlone alone;
   const auto far = alone.add(0, {StreamsAlone::point(0.0), StreamsAlone::point(2.001)}, 98, 98);
   ASSERT_TRUE(far);
-  EXPECT_EQ(far->why.substr(0, 40), "its point 1: it is more than 10000 cycle");
+  EXPECT_EQ(far->why.substr(0, 46), "its point 1: its time is more than 10000 cycle");
   EXPECT_FALSE(alone.add(1, {StreamsAlone::point(1.999)}, 98, 98));
   const auto bad = alone.add(2, {StreamsAlone::point(2.999, {0.9, 0.9}, {2.0, 9.0})}, 98, 98);
   ASSERT_TRUE(bad);

@@ -141,7 +141,8 @@ void add_soak(CLI::App& app, int& exit_code) {
                      "write all frames of one seed (front thread part: FILE.front)");
   command.add_flag_callback(
       "--motions", [plan = &arguments.plan] { plan->run.motions = soak::MotionRuns::all; },
-      "let the programs command motions with each seed, not only with every fifth");
+      "let the programs command motions with each seed; the default is every fifth, and only if "
+      "the master sends SYNC");
   command.add_flag("--verbose", arguments.plan.run.verbose, "print faults and events of one seed");
   command.footer(
       "The bus part has lost, late, doubled and broken frames, babbling nodes, arbitrary frames,\n"
@@ -152,8 +153,9 @@ void add_soak(CLI::App& app, int& exit_code) {
       "answered once, memory use stays flat, all nodes come back, the stop ends in time.\n"
       "The front thread part runs taktd with its LCM gateway and several programs that move\n"
       "axes. The programs are stalled, die, end, restart, jump, or have the name of another\n"
-      "program; messages are slow, repeated, forged and damaged. With every fifth seed, and with\n"
-      "--motions, the programs also command motions. takt checks: no output is older than its\n"
+      "program; messages are slow, repeated, forged and damaged. With every fifth seed (with\n"
+      "--motions: each), the programs also command motions. takt checks: no output is older than "
+      "its\n"
       "time to live by the true clock, no axis moves without a command of a living program, "
       "motions\n"
       "keep their limits, groups begin together, no program moves what another one holds, no\n"

@@ -22,7 +22,7 @@ class MotionAnswers {
   MotionAnswers(const BusPlan& plan, const std::vector<MotionAxis>& axes, NoticeSink announce)
       : plan_{plan}, axes_{axes}, announce_{std::move(announce)}, shown_(axes.size()) {}
 
-  /// A message about these axes is refused, which are positions in motion_axes().
+  /// Refuses a message. `axes` are the positions of its axes in motion_axes().
   void refuse(const MotionName& motion, std::span<const std::size_t> axes,
               const MotionRefusal& refusal, const CommandContext& context);
   void refuse(const MotionJob& job, const MotionRefusal& refusal, const CommandContext& context);

@@ -79,8 +79,8 @@ std::optional<std::vector<std::size_t>> MotionCommands::axes_of(const motion_com
     if (axis == axes_.end()) {
       refuse(command,
              {.why = fmt::format("'{:.64}' has no axis {} that taktd can move: it needs 6041 and "
-                                 "6064 in TPDOs, 607A in the unit of 6064 in an RPDO, and "
-                                 "`profile: cia402`",
+                                 "6064 in TPDOs, 607A with the unit, scale and offset of 6064 in "
+                                 "an RPDO, no 60B0 in an RPDO, and `profile: cia402`",
                                  goal.node, number + 1)},
              context);
       if (is_stop) continue;

@@ -39,7 +39,8 @@ class MotionCommands {
   /// Takes the end of an order.
   void take(const motion::MotionEnd& end, const CommandContext& context);
 
-  /// Returns true once a command was accepted. There are no reports before.
+  /// Returns true once a command other than a stop, or a stream, has come from a sender that may
+  /// hold the nodes. No motion_t is sent before.
   bool active() const noexcept { return active_; }
   /// The messages about the newest reports. The caller sets `utime` and `session`.
   std::vector<motion_t> messages() const {

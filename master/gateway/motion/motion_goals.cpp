@@ -110,7 +110,7 @@ std::expected<MotionJob, MotionRefusal> stream_job(const motion_stream_t& stream
   const motion_point_t& first = stream.points.front();
   if (first.position.size() != axes.size() || first.velocity.size() != axes.size()) {
     return std::unexpected{
-        MotionRefusal{.why = "its point 0 has not one position and one velocity for each axis"}};
+        MotionRefusal{.why = "its point 0 needs one position and one velocity for each axis"}};
   }
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const double acceleration = i < first.acceleration.size() ? first.acceleration[i] : 0.0;

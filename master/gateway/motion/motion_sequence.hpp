@@ -45,9 +45,8 @@ class MotionSequence {
     }
     const bool moves_again = move.kind == "move_by" || move.kind == "stream";
     if (moves_again && move.utime == move_.utime) {
-      return "it may be a copy, and a copy must not move again: it is not newer than the last "
-             "motion "
-             "of its sender from the same image";
+      return "it may be a copy, which must not move the axis again: its utime is not later than "
+             "that of the last motion of its sender from the same image";
     }
     return {};
   }

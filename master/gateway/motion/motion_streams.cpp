@@ -100,7 +100,9 @@ std::optional<MotionRefusal> MotionStreams::add_point(Stream& stream, const moti
   const auto fits = [&](const auto& numbers) { return numbers.size() == axes; };
   if (!fits(point.position) || !fits(point.velocity) ||
       !(fits(point.acceleration) || point.acceleration.empty())) {
-    return MotionRefusal{.why = "it has not one position and one velocity for each axis"};
+    return MotionRefusal{.why =
+                             "it needs one position and one velocity for each axis, and one "
+                             "acceleration for each axis or none"};
   }
   if (stream.times.size() == motion::StreamPlayer::capacity) {
     return MotionRefusal{.why = fmt::format("{} points wait already", stream.times.size())};
@@ -114,8 +116,8 @@ std::optional<MotionRefusal> MotionStreams::add_point(Stream& stream, const moti
   }
   const double most = longest_step / static_cast<double>(axes);
   if (time - stream.last.front().time > most * period_) {
-    return MotionRefusal{.why = fmt::format("it is more than {:.0f} cycles after the point before, "
-                                            "which is {:.0f} divided by the number of axes",
+    return MotionRefusal{.why = fmt::format("its time is more than {:.0f} cycles after that of the "
+                                            "point before ({:.0f} divided by the number of axes)",
                                             std::floor(most), longest_step)};
   }
   std::vector<motion::StreamPoint> next;

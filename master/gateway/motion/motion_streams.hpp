@@ -21,8 +21,8 @@ class MotionStreams {
  public:
   /// Points may be at most this far in the future, in s.
   static constexpr double longest_ahead = 5.0;
-  /// Most cycles from one point to the next, all axes added. It bounds the time that the check of a
-  /// point takes.
+  /// Largest number of cycles from one point to the next, times the number of axes. It bounds the
+  /// time that the check of a point takes.
   static constexpr double longest_step = 20'000;
 
   /// `period` is that of the cycle in s.

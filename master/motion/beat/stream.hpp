@@ -12,10 +12,10 @@ namespace takt::motion {
 /// How the motion reaches a point of a stream.
 enum class Curve : std::uint8_t {
   quintic,  ///< with the position, velocity and acceleration of the point
-  cubic,    ///< with its position and velocity; the acceleration is what results, and jumps
+  cubic,    ///< with its position and velocity; the acceleration follows, and jumps at the point
 };
 
-/// A state that an axis shall have at a time.
+/// The state that an axis has to have at a time.
 struct StreamPoint {
   static constexpr std::size_t kept_words = 5;  ///< of keep()
 

@@ -31,9 +31,9 @@ bool leads_out(const PositionRange& range, double position, double velocity) noe
   return (position < range.min && velocity <= 0.0) || (position > range.max && velocity >= 0.0);
 }
 
-/// An axis that speeds up becomes faster until its acceleration has ended, and the lower the jerk,
-/// the faster. The jerk of a new motion is therefore raised, at most to that of the motion that
-/// runs, until the axis stays within the velocities of both.
+/// An axis that accelerates gains velocity until its acceleration is 0, and the more, the lower the
+/// jerk is. So the jerk of a new motion is raised until the axis stays within the velocities of
+/// both motions, but not above the jerk of the motion that runs.
 Limits with_enough_jerk(Limits limits, const State& from, const Limits& running) noexcept {
   if (from.acceleration == 0.0) return limits;
   const double room = from.acceleration > 0.0

@@ -80,8 +80,8 @@ class MotionPlanner {
   /// time that plan() takes.
   static constexpr double longest_jog_start = 20'000;
   static constexpr double longest_motion = 1e9;  ///< in cycles
-  /// Difference of the first point of a stream from the state of the axis that counts as rounding,
-  /// as a part of the position, or of 1 where it is smaller, and of the limits.
+  /// Largest difference between the first point of a stream and the state of the axis that counts
+  /// as rounding. It is relative to the position (at least 1) and to the limits.
   static constexpr double start_tolerance = 1e-6;
 
   /// `period` is that of the cycle in s.

@@ -55,8 +55,8 @@ std::optional<StreamDefect> defect_of_course(const Course& course,
   return std::nullopt;
 }
 
-/// A stop takes the acceleration to 0 first, in which time the velocity may rise. Then it brakes at
-/// the limits. No stop of the segment is longer than this.
+/// Returns an upper limit of the distance of a stop that begins on the segment. A stop takes the
+/// acceleration to 0 first, and the velocity may rise meanwhile. Then it brakes along the limits.
 double longest_stop(const Course& course, const Limits& limits) noexcept {
   const double acceleration = largest(course.acceleration);
   const double rise = acceleration / limits.jerk;
@@ -65,7 +65,7 @@ double longest_stop(const Course& course, const Limits& limits) noexcept {
   return velocity * rise + velocity / 2 * (velocity / braking + braking / limits.jerk);
 }
 
-/// The velocity at which a stop from this state begins to brake.
+/// Returns true if a stop from this state begins to brake at a velocity that is within the limits.
 bool coasts_inside(const State& state, const Limits& limits) noexcept {
   const double velocity =
       state.velocity + state.acceleration * std::abs(state.acceleration) / (2 * limits.jerk);

@@ -22,10 +22,10 @@ struct Obstacle {
   enum class Kind : std::uint8_t {
     wrong_use,    ///< An axis is unknown, or the number of values does not fit.
     no_bus,       ///< LCM can't be opened, or no image of the bus comes.
-    blocked,      ///< A drive, its device or another program stands in the way.
-    refused,      ///< taktd has refused the motion.
+    blocked,      ///< A drive, its device or another program is in the way, or still is at the end.
+    refused,      ///< taktd has refused the motion, or has not answered it for 2 s.
     stopped,      ///< The motion has ended before its target.
-    time_over,    ///< The longest time of the call is over.
+    time_over,    ///< The axes still move or are still enabled, or no newer image has come.
     restarted,    ///< taktd has restarted. Only a new Axes can command its axes.
     interrupted,  ///< AxesOptions::interrupted has returned true.
   };
@@ -47,8 +47,8 @@ struct AxesOptions {
   std::string sender = "axes";
   /// Address of LCM, as for open_lcm().
   std::string lcm_url = {};
-  /// Longest time of each call, except for move(), move_by() and wait(), which last as long as
-  /// their motions.
+  /// Longest time of each call. But move(), move_by() and wait() last as long as their motions, and
+  /// run() as long as it is told to. jog() waits for the answer of taktd for 2 s at most.
   std::chrono::nanoseconds longest = std::chrono::seconds{10};
   /// The motions stop along their limits if this program is silent for so long, 1 ms to 10 s.
   std::chrono::milliseconds timeout{500};
@@ -77,7 +77,7 @@ struct MotionBounds {
 ///
 /// The axes of one call begin in the same cycle, and a stop of one stops all of them. Vectors have
 /// one element for each axis, in its unit (rad, m, or raw counts if the layout states no unit). All
-/// calls come from one thread. After a move, an object may only be destroyed or assigned to.
+/// calls come from one thread. A moved-from object may only be destroyed or assigned to.
 class Axes {
  public:
   /// Opens LCM, waits until the first image of the bus has come, and finds the axes.
@@ -86,7 +86,7 @@ class Axes {
   /// for taktd.
   static std::expected<Axes, Obstacle> open(std::unique_ptr<Transport> lcm, AxesOptions options,
                                             const EnvelopeKey* key = nullptr);
-  /// Calls disable() if enable() was called since the last disable().
+  /// Calls disable(), which does nothing if this object commands no drive.
   ~Axes();
   /// Moves the object.
   Axes(Axes&& other) noexcept;

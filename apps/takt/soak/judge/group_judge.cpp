@@ -49,8 +49,8 @@ void GroupJudge::forget(std::size_t axis) {
   });
 }
 
-/// While an axis keeps its velocity, its position is that of an axis which has had this velocity
-/// since the middle of its acceleration.
+/// An axis that has reached its velocity is where it would be if it had jumped to this velocity in
+/// the middle of its acceleration.
 void GroupJudge::look(Begin& axis, Group& group, double value, Time now) const {
   axis.value = value;
   const MotionBounds& bounds = axis.member.bounds;
