@@ -6,10 +6,12 @@
 namespace takt {
 namespace {
 
-template <class Value>
-Eigen::VectorXd of_each(Eigen::Index size, Value value) {
-  Eigen::VectorXd values{size};
-  for (Eigen::Index i = 0; i < size; ++i) values(i) = value(i);
+/// The place of the axes in the messages is known until taktd restarts; then the values are 0.
+template <class State, class Value>
+Eigen::VectorXd of_each(const State& state, Value value) {
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(state.size());
+  if (!state.is_current()) return values;
+  for (Eigen::Index i = 0; i < state.size(); ++i) values(i) = value(state.in_group(i));
   return values;
 }
 
@@ -25,7 +27,9 @@ Axes& Axes::operator=(Axes&& other) noexcept {
 }
 
 Axes::~Axes() {
-  if (state_) static_cast<void>(state_->disable());
+  if (!state_) return;
+  // Nobody is left to tell about an obstacle.
+  [[maybe_unused]] const Done done = state_->disable();
 }
 
 std::expected<Axes, Obstacle> Axes::open(AxesOptions options) {
@@ -61,8 +65,8 @@ Done Axes::move(const Eigen::Ref<const Eigen::VectorXd>& positions, const Motion
 }
 
 Done Axes::move_by(const Eigen::Ref<const Eigen::VectorXd>& distances, const MotionBounds& bounds) {
-  if (distances.size() != size()) return begin_move(distances, bounds);  // says what is wrong
-  return move(commanded_positions() + distances, bounds);
+  if (Done begun = state_->begin("move_by", distances, bounds); !begun) return begun;
+  return wait();
 }
 
 Done Axes::jog(const Eigen::Ref<const Eigen::VectorXd>& velocities, const MotionBounds& bounds) {
@@ -74,37 +78,34 @@ bool Axes::moving() const { return state_->moving(); }
 AxisGroup& Axes::group() noexcept { return state_->group; }
 
 const std::string& Axes::name(Eigen::Index axis) const {
-  return std::as_const(state_->group).axes().name(state_->in_group(axis));
+  return state_->names[static_cast<std::size_t>(axis)];
 }
 
 const std::string& Axes::unit(Eigen::Index axis) const {
-  const AxisGroup& group = state_->group;
-  const AxisSignals& signals = group.axes().signals(state_->in_group(axis));
-  return group.input().signals()[signals.position.value_or(*signals.controlword)].unit;
+  return state_->units[static_cast<std::size_t>(axis)];
 }
 
 Eigen::VectorXd Axes::positions() const {
   const AxisControl& axes = std::as_const(state_->group).axes();
-  return of_each(size(), [&](Eigen::Index i) { return axes.positions()(state_->in_group(i)); });
+  return of_each(*state_, [&](Eigen::Index axis) { return axes.positions()(axis); });
 }
 
 Eigen::VectorXd Axes::velocities() const {
   const AxisControl& axes = std::as_const(state_->group).axes();
-  return of_each(size(), [&](Eigen::Index i) { return axes.velocities()(state_->in_group(i)); });
+  return of_each(*state_, [&](Eigen::Index axis) { return axes.velocities()(axis); });
 }
 
 Eigen::VectorXd Axes::commanded_positions() const {
   const AxisControl& axes = std::as_const(state_->group).axes();
-  return of_each(size(), [&](Eigen::Index i) {
-    const Eigen::Index axis = state_->in_group(i);
+  return of_each(*state_, [&](Eigen::Index axis) {
     const auto motion = state_->group.motion(axis);
     return motion ? motion->position : axes.positions()(axis);
   });
 }
 
 Eigen::VectorXd Axes::following_errors() const {
-  return of_each(size(), [&](Eigen::Index i) {
-    const auto motion = state_->group.motion(state_->in_group(i));
+  return of_each(*state_, [&](Eigen::Index axis) {
+    const auto motion = state_->group.motion(axis);
     return motion ? motion->following_error : 0.0;
   });
 }

@@ -43,6 +43,7 @@ std::string Axes::State::why_not_ready_text() const {
 }
 
 Done Axes::State::enable() {
+  if (!is_current()) return restarted();
   AxisControl& known = group.axes();
   mode_ = DriveMode::cyclic_position;
   known.set_mode(mode_);
@@ -60,13 +61,14 @@ Done Axes::State::enable() {
     return {};
   }
   const std::string why = no_motions().empty() ? why_not_ready_text() : no_motions();
-  static_cast<void>(disable());  // the first obstacle is the one to tell
+  [[maybe_unused]] const Done done = disable();  // the first obstacle is the one to tell
   return obstacle(Obstacle::Kind::blocked, why);
 }
 
 Done Axes::State::disable() {
-  if (sending_ == Sending::nothing) return {};
+  if (sending_ == Sending::nothing || !is_current()) return {};
   const Done stood = stop();
+  if (!is_current()) return stood;
   AxisControl& known = group.axes();
   for (const Index axis : axes) known.set_goal(axis, DriveGoal::disabled);
   sending_ = Sending::controls;
@@ -88,6 +90,7 @@ Done Axes::State::disable() {
 }
 
 Done Axes::State::reset() {
+  if (!is_current()) return restarted();
   AxisControl& known = group.axes();
   const auto in_fault = [&](Index axis) { return known.drive(axis).in_fault(); };
   if (!any(in_fault)) return {};
@@ -99,6 +102,7 @@ Done Axes::State::reset() {
 }
 
 Done Axes::State::set_mode(DriveMode wanted) {
+  if (!is_current()) return restarted();
   const Done stood = stop();
   if (!stood) return stood;
   mode_ = wanted;

@@ -14,10 +14,10 @@ using std::chrono::nanoseconds;
 constexpr std::chrono::seconds answer_time{2};
 /// Longest wait for the event with the reason of an end.
 constexpr std::chrono::milliseconds reason_time{100};
-/// Time between two stops, until the axes stand.
-constexpr std::chrono::milliseconds stop_pause{50};
-/// After a stop, a motion that taktd has not answered counts as never begun after so many cycles.
-constexpr std::int64_t unanswered_cycles = 100;
+/// Cycles between two stops, until the axes stand.
+constexpr std::int64_t cycles_between_stops = 4;
+/// A motion begins at most so many cycles after its command, or never.
+constexpr std::int64_t longest_begin = 12;
 /// Values of axis_motion_t::state and axis_motion_t::outcome.
 constexpr std::int8_t motion_moves = 2;
 constexpr std::int8_t motion_stops = 3;
@@ -62,7 +62,12 @@ std::vector<motion_goal_t> Axes::State::goals() const {
 }
 
 Done Axes::State::begin(const std::string& kind, const Values& values, const MotionBounds& bounds) {
+  jog_goes_on_ = false;
   if (Done fits = check(values, bounds); !fits) return fits;
+  if (!is_current()) return restarted();
+  if (sending_ == Sending::nothing) {
+    return obstacle(Obstacle::Kind::blocked, "the axes are not enabled: call enable() first");
+  }
   // taktd refuses a motion that comes from the image of a stop, or from an earlier one.
   const auto newer =
       wait_until([this] { return group.input().cycle() > stop_cycle_; }, options.longest);
@@ -88,16 +93,23 @@ Done Axes::State::begin(const std::string& kind, const Values& values, const Mot
   }
   events_.clear();
   has_motion_ = true;
+  jog_goes_on_ = kind == "jog";
   motion_begin_ = last_sent_ = Clock::now();
   if (group.send_motion(command)) return {};
   return obstacle(Obstacle::Kind::no_bus, "LCM did not take the command");
 }
 
 Done Axes::State::jog(const Values& velocities, const MotionBounds& bounds) {
-  if (Done begun = begin("jog", velocities, bounds); !begun) return begun;
-  const auto waited = wait_until([this] { return course() != Course::unanswered; }, answer_time);
-  if (waited && !*waited) return *waited;
-  return course() == Course::runs ? Done{} : ended();
+  Done begun = begin("jog", velocities, bounds);
+  if (begun) {
+    const auto waited = wait_until([this] { return course() != Course::unanswered; }, answer_time);
+    if (waited && !*waited) begun = *waited;
+  }
+  if (begun && course() == Course::runs) return {};
+  if (begun) begun = ended();
+  // An older motion may still run.
+  if (const Done stood = stop(); begun) begun = stood;
+  return begun;
 }
 
 Done Axes::State::wait(nanoseconds longest) {
@@ -185,24 +197,26 @@ void Axes::State::send_stop() {
   command.timeout_ms = static_cast<std::int32_t>(options.timeout.count());
   command.goals = goals();
   stop_cycle_ = group.input().cycle();
-  last_sent_ = Clock::now();
   group.send_motion(command);
 }
 
 Done Axes::State::stop() {
-  const auto is_open = [this] {
-    const Course now = course();
-    return moving() || now == Course::runs || now == Course::unanswered;
-  };
-  if (sending_ == Sending::nothing || !is_open()) return {};
-  const std::int64_t begin = group.input().cycle();
-  const auto stands = [&] {
-    if (Clock::now() - last_sent_ >= stop_pause) send_stop();
-    const bool never = course() == Course::unanswered && !moving() &&
-                       group.input().cycle() - begin > unanswered_cycles;
-    return never || !is_open();
-  };
+  jog_goes_on_ = false;
+  if (sending_ == Sending::nothing || (!has_motion_ && !moving())) return {};
+  // taktd refuses a stop from an old image, so the messages that wait come first.
+  const Done heard = step(Interruption::ignored);
+  if (!is_current()) return heard;
+  return stop_now();
+}
+
+Done Axes::State::stop_now() {
   send_stop();
+  const std::int64_t begin = stop_cycle_;
+  const auto stands = [&] {
+    const std::int64_t cycle = group.input().cycle();
+    if (cycle - stop_cycle_ >= cycles_between_stops) send_stop();
+    return cycle - begin > longest_begin && !moving();
+  };
   const auto waited = wait_until(stands, options.longest, Interruption::ignored);
   if (waited && !*waited) return *waited;
   if (!waited) return obstacle(Obstacle::Kind::time_over, "the axes still move");

@@ -49,11 +49,12 @@ Done Axes::State::find() {
   }
   last_image_ = Clock::now();
   const AxisControl& known = group.axes();
-  std::string names;
+  std::string all_names;
   for (Index i = 0; i < known.size(); ++i) {
-    names += (names.empty() ? "" : ", ") + known.name(i);
+    all_names += (all_names.empty() ? "" : ", ") + known.name(i);
     if (options.names.empty()) axes.push_back(i);
   }
+  session_ = group.input().session();
   for (const std::string& name : options.names) {
     Index i = 0;
     while (i < known.size() && known.name(i) != name) ++i;
@@ -63,7 +64,12 @@ Done Axes::State::find() {
     }
     return obstacle(Obstacle::Kind::wrong_use,
                     fmt::format("bus {} has no axis '{}', or it is named twice; the axes are: {}",
-                                group.bus(), name, names.empty() ? "none" : names));
+                                group.bus(), name, all_names.empty() ? "none" : all_names));
+  }
+  for (const Index axis : axes) {
+    const AxisSignals& signals = known.signals(axis);
+    names.push_back(known.name(axis));
+    units.push_back(group.input().signals()[signals.position.value_or(*signals.controlword)].unit);
   }
   if (!axes.empty()) return {};
   return obstacle(
@@ -78,10 +84,7 @@ Done Axes::State::step(Interruption interruption) {
     if (events_.size() == most_kept_events) events_.erase(events_.begin());
     events_.push_back(std::move(event));
   }
-  if (input == Input::restarted) {
-    sending_ = Sending::nothing;
-    return obstacle(Obstacle::Kind::restarted, "taktd has restarted");
-  }
+  if (input == Input::restarted || !is_current()) return restarted();
   const auto now = Clock::now();
   if (input == Input::fresh) {
     last_image_ = now;
@@ -100,6 +103,18 @@ Done Axes::State::step(Interruption interruption) {
   return {};
 }
 
+/// The axes may have other places in the layout of the new run, so that this object can't command
+/// them any more.
+Done Axes::State::restarted() {
+  session_ = 0;
+  sending_ = Sending::nothing;
+  return obstacle(Obstacle::Kind::restarted, "taktd has restarted");
+}
+
+bool Axes::State::is_current() const noexcept {
+  return session_ != 0 && group.input().session() == session_;
+}
+
 void Axes::State::keep_alive() {
   const auto due = std::min<nanoseconds>(longest_silence, options.timeout / signs_in_timeout);
   if (sending_ == Sending::nothing || Clock::now() - last_sent_ < due) return;
@@ -107,7 +122,7 @@ void Axes::State::keep_alive() {
   motion_command_t command{};
   command.kind = "alive";
   command.timeout_ms = static_cast<std::int32_t>(options.timeout.count());
-  command.goals = goals();
+  if (jog_goes_on_ && course() == Course::runs) command.goals = goals();
   group.send_motion(command);
 }
 

@@ -29,6 +29,9 @@ class Axes::State {
   /// Waits for the layout and the first image, and finds the axes in them.
   Done find();
   Done run(std::chrono::nanoseconds time);
+  /// Returns true while the layout in which the axes were found is that of the bus: taktd has not
+  /// restarted.
+  bool is_current() const noexcept;
 
   Done enable();
   Done disable();
@@ -47,7 +50,9 @@ class Axes::State {
 
   AxisGroup group;
   AxesOptions options;
-  std::vector<Index> axes;  // of the group
+  std::vector<Index> axes;         // of the group
+  std::vector<std::string> names;  // parallel to `axes`
+  std::vector<std::string> units;
 
  private:
   /// What this program sends without being asked.
@@ -68,7 +73,9 @@ class Axes::State {
   /// Waits until `reached` returns true. Returns std::nullopt if `longest` is over before.
   std::optional<Done> wait_until(const Condition& reached, std::chrono::nanoseconds longest,
                                  Interruption interruption = Interruption::obeyed);
-  /// A sign of life that names the axes, because one without names renews no jog.
+  Done restarted();
+  /// Sends a sign of life if one is due. It names the axes only for a jog that runs and has to go
+  /// on, because this renews the jog.
   void keep_alive();
   std::vector<motion_goal_t> goals() const;
   bool all(const AxisCondition& is) const;
@@ -87,11 +94,15 @@ class Axes::State {
   std::string reason(Course course) const;
   Done ended();
   void send_stop();
+  /// Repeats the stop until all axes stand and nothing that was begun before can still begin.
+  Done stop_now();
 
   Sending sending_ = Sending::nothing;
   DriveMode mode_ = DriveMode::cyclic_position;
-  std::int32_t id_ = 0;      // of the newest motion
-  bool has_motion_ = false;  // false before the first motion, and after a stop
+  std::int32_t id_ = 0;       // of the newest motion
+  bool has_motion_ = false;   // false before the first motion, and after a stop
+  bool jog_goes_on_ = false;  // the newest motion is a jog, and no call has ended it
+  std::int64_t session_ = 0;  // of the layout in which the axes were found
   Clock::time_point motion_begin_{};
   std::int64_t stop_cycle_ = -1;   // of the image from which the newest stop was sent
   Clock::time_point last_sent_{};  // the newest sign of life

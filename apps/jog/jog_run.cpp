@@ -66,9 +66,10 @@ Done JogRun::jog_by_keys() {
     const bool goes_on = done.error().kind == Obstacle::Kind::refused ||
                          done.error().kind == Obstacle::Kind::stopped;
     if (!goes_on) return done;
-    fmt::print("\n{}\n", printable_text(done.error().text));
+    std::fputs(fmt::format("\n{}\n", printable_text(done.error().text)).c_str(), stdout);
     direction_ = 0;
     dead_man_.release();
+    if (const Done stopped = axes_.stop(); !stopped) return stopped;
   }
   return axes_.stop();
 }

@@ -104,16 +104,17 @@ class Axes {
   /// cyclic synchronous position mode, which enable() sets again.
   Done set_mode(DriveMode mode);
 
-  /// Moves the axes to these positions, and waits until they have come to rest there. Without an
-  /// obstacle, all of them are there.
+  /// Moves the axes to these positions, and waits until the commanded positions are there and at
+  /// rest. The actual positions differ by the following errors.
   Done move(const Eigen::Ref<const Eigen::VectorXd>& positions, const MotionBounds& bounds = {});
-  /// Like move(), by distances from the commanded positions.
+  /// Like move(), by distances from the commanded positions in the cycle in which the move begins.
   Done move_by(const Eigen::Ref<const Eigen::VectorXd>& distances, const MotionBounds& bounds = {});
   /// Begins a move and returns at once. A new target is possible during a motion. See wait().
   Done begin_move(const Eigen::Ref<const Eigen::VectorXd>& positions,
                   const MotionBounds& bounds = {});
   /// Begins to keep these velocities, and returns when taktd has begun. The axes keep them until
-  /// stop(), until the end of their range, or until this program is silent.
+  /// stop(), until the end of their range, or until this program is silent. If the call fails, it
+  /// stops the axes.
   Done jog(const Eigen::Ref<const Eigen::VectorXd>& velocities, const MotionBounds& bounds = {});
   /// Stops the axes along their limits, and waits until they stand.
   Done stop();
@@ -130,7 +131,8 @@ class Axes {
   const std::string& unit(Eigen::Index axis) const;
   /// Returns true if at least one axis moves or stops, as taktd has reported last.
   bool moving() const;
-  /// Returns the actual positions (0x6064) of the newest image.
+  /// Returns the actual positions (0x6064) of the newest image. All values of this object are 0
+  /// once taktd has restarted.
   Eigen::VectorXd positions() const;
   /// Returns the actual velocities (0x606C) of the newest image; 0 where no PDO carries it.
   Eigen::VectorXd velocities() const;

@@ -93,6 +93,58 @@ TEST_F(AxesOnABus, StayAliveWhileACallWaits) {
   EXPECT_GE(daemon_.signs_of_life, before + 1);
 }
 
+TEST_F(AxesOnABus, RepeatTheStopAndRenewNoJogMeanwhile) {
+  Axes axes = open_enabled({"shoulder"});
+  ASSERT_TRUE(axes.jog(Eigen::VectorXd::Constant(1, 1.0)));
+  daemon_.ignored_stops = 3;
+  const int before = daemon_.signs_of_life;
+  ASSERT_TRUE(axes.stop());
+  EXPECT_FALSE(axes.moving());
+  EXPECT_EQ(daemon_.drives[0].motion.id, 0) << "taktd itself has no motion left";
+  ASSERT_TRUE(axes.run(short_time));
+  EXPECT_EQ(daemon_.signs_of_life, before) << "none of them names the axis of the jog";
+}
+
+TEST_F(AxesOnABus, StopAnOlderJogIfTheNewOneIsRefused) {
+  Axes axes = open_enabled({"shoulder"});
+  ASSERT_TRUE(axes.jog(Eigen::VectorXd::Constant(1, 1.0)));
+  daemon_.refuses = "the axis would leave its range of positions";
+  EXPECT_EQ(obstacle_of(axes.jog(Eigen::VectorXd::Constant(1, -1.0))).kind, Kind::refused);
+  EXPECT_EQ(daemon_.drives[0].motion.id, 0);
+  EXPECT_EQ(daemon_.commands.back().kind, "stop");
+}
+
+TEST_F(AxesOnABus, StopAMotionThatHasNotBegunYet) {
+  Axes axes = open_enabled();
+  ASSERT_TRUE(axes.begin_move(Eigen::Vector2d{50.0, 50.0}));
+  ASSERT_TRUE(axes.stop());
+  EXPECT_EQ(daemon_.commands.back().kind, "stop");
+  EXPECT_FALSE(axes.moving());
+}
+
+TEST_F(AxesOnABus, AreNotMovedByAProgramThatHasNotEnabledThem) {
+  daemon_.drives[0].statusword = daemon_.drives[1].statusword = 0x0237;
+  daemon_.active = true;
+  Axes axes = open();
+  const Obstacle why = obstacle_of(axes.jog(Eigen::Vector2d{1.0, 1.0}));
+  EXPECT_EQ(why.kind, Kind::blocked);
+  EXPECT_THAT(why.text, HasSubstr("call enable() first"));
+  EXPECT_TRUE(daemon_.commands.empty());
+}
+
+TEST_F(AxesOnABus, CommandNothingAfterARestartOfTaktd) {
+  Axes axes = open_enabled();
+  daemon_.session = 78;
+  EXPECT_EQ(obstacle_of(axes.run(100s)).kind, Kind::restarted);
+  const std::size_t before = daemon_.commands.size();
+  EXPECT_EQ(obstacle_of(axes.enable()).kind, Kind::restarted);
+  EXPECT_EQ(obstacle_of(axes.begin_move(Eigen::Vector2d{1.0, 1.0})).kind, Kind::restarted);
+  EXPECT_EQ(obstacle_of(axes.set_mode(DriveMode::cyclic_velocity)).kind, Kind::restarted);
+  EXPECT_EQ(daemon_.commands.size(), before);
+  EXPECT_EQ(axes.positions(), Eigen::Vector2d(0.0, 0.0));
+  EXPECT_EQ(axes.name(1), "elbow");
+}
+
 TEST_F(AxesOnABus, SayWhyTaktdRefusesAMotion) {
   Axes axes = open_enabled();
   daemon_.refuses = "the axis would leave its range of positions";

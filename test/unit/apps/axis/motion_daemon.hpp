@@ -32,6 +32,7 @@ struct MotionDaemon {
 
   std::array<Drive, 2> drives;
   std::int64_t cycle = 0;
+  std::int64_t session = test::session;  ///< another one after a restart
   bool has_motions = true;
   bool active = false;
   std::string refuses;  ///< the reason, if it refuses each motion
@@ -42,7 +43,8 @@ struct MotionDaemon {
   std::vector<motion_command_t> commands;  ///< without signs of life
   int signs_of_life = 0;
   int releases = 0;
-  bool cyclic = true;  ///< false: no further image comes
+  bool cyclic = true;     ///< false: no further image comes
+  int ignored_stops = 0;  ///< so many stops are lost on their way
 };
 
 class MotionDaemonTransport final : public Transport {
@@ -65,9 +67,14 @@ class MotionDaemonTransport final : public Transport {
   std::string url() const override { return "test"; }
 
   void serve(const MessageHandler& handler) override {
-    if (!std::exchange(laid_out_, true)) return send(handler, "LIFT_LAYOUT", two_axes());
     if (!daemon_.cyclic) return;
     ++daemon_.cycle;
+    if (daemon_.session != laid_out_ || daemon_.cycle % 100 == 0) {
+      laid_out_ = daemon_.session;
+      layout_t layout = two_axes();
+      layout.session = daemon_.session;
+      return send(handler, "LIFT_LAYOUT", layout);
+    }
     if (daemon_.each_cycle) daemon_.each_cycle(daemon_);
     for (MotionDaemon::Drive& drive : daemon_.drives) advance(drive);
     for (const event_t& event : std::exchange(events_, {})) send(handler, "LIFT_EVENT", event);
@@ -100,6 +107,7 @@ class MotionDaemonTransport final : public Transport {
       return;
     }
     daemon_.commands.push_back(command);
+    if (command.kind == "stop" && daemon_.ignored_stops-- > 0) return;
     for (const motion_goal_t& goal : command.goals) {
       MotionDaemon::Drive& drive = daemon_.drives[goal.node == "shoulder" ? 0 : 1];
       if (command.kind == "stop") {
@@ -115,7 +123,7 @@ class MotionDaemonTransport final : public Transport {
       }
       end(drive, 3);
       drive.motion.id = command.id;
-      drive.target = goal.position;
+      drive.target = goal.position + (command.kind == "move_by" ? drive.position : 0.0);
       drive.velocity = goal.velocity;
     }
   }
@@ -166,15 +174,18 @@ class MotionDaemonTransport final : public Transport {
 
   image_t shown_image() const {
     const auto& [shoulder, elbow] = daemon_.drives;
-    return image(daemon_.cycle,
-                 {shoulder.statusword, elbow.statusword, std::llround(shoulder.position * 1000.0),
-                  std::llround(elbow.position * 1000.0), shoulder.controlword, elbow.controlword});
+    image_t made =
+        image(daemon_.cycle,
+              {shoulder.statusword, elbow.statusword, std::llround(shoulder.position * 1000.0),
+               std::llround(elbow.position * 1000.0), shoulder.controlword, elbow.controlword});
+    made.session = daemon_.session;
+    return made;
   }
   motion_t shown_motion() const {
     motion_t made{};
     made.schema = message_schema;
     made.parts = 1;
-    made.session = session;
+    made.session = daemon_.session;
     made.cycle = daemon_.cycle;
     for (std::size_t i = 0; i < 2; ++i) {
       axis_motion_t axis = daemon_.drives[i].motion;
@@ -199,7 +210,7 @@ class MotionDaemonTransport final : public Transport {
 
   MotionDaemon& daemon_;
   std::vector<event_t> events_;
-  bool laid_out_ = false;
+  std::int64_t laid_out_ = 0;  // session of the newest layout
 };
 
 }  // namespace takt::test
