@@ -11,6 +11,7 @@ Each call returns when it is done, or raises Obstacle, which says in words what 
 While a call waits, it keeps the program alive for taktd. Between calls, motions and drives outlive a
 silence of `timeout`; then the axes stop along their limits, and the drives take the fallback of
 `on_timeout` in the network file. A program that has nothing to do calls run() instead of time.sleep().
+A jog goes on until stop(), until another motion, or until an exception ends a wait.
 
 How to try it on the simulated bus of share/demo/two_axes.yaml:
 
@@ -57,7 +58,9 @@ NOT_ENABLED, MOVES, STOPS = 0, 2, 3  # axis_motion_t::state
 DONE, STOPPED, REPLACED, REFUSED = 1, 2, 3, 4  # axis_motion_t::outcome
 ANSWER_TIME, REASON_TIME, IMAGE_TIME = 2.0, 0.1, 2.0  # seconds
 STOP_PAUSE, SILENCE = 0.05, 0.05  # seconds between two stops, and between two signs of life
-UNANSWERED_CYCLES = 100  # after a stop, a motion that taktd has not answered then counts as never begun
+# Cycles after the first stop. A motion begins three cycles after taktd has taken it, so one that is about to begin shows in
+# the first number of cycles, also if messages take a few cycles. One that taktd has not answered in the second never begins.
+SETTLED_CYCLES, UNANSWERED_CYCLES = 10, 100
 HELD_STATUSES = 20  # status_t (10 in a second) in sequence in which another program holds an axis before enable() gives up
 BOOT_READY = 2  # node_status_t::boot_state
 
@@ -77,7 +80,7 @@ class _Axis:
     def __init__(self, name: str, node: str, node_id: int, number: int):
         self.name, self.node, self.node_id, self.number = name, node, node_id, number
         self.places, self.signals = {}, {}  # of the objects of the first axis of a device
-        self.statusword, self.motion, self.held = None, None, 0
+        self.statusword, self.motion, self.motion_cycle, self.held = None, None, -1, 0
 
     @property
     def state(self) -> str:
@@ -112,10 +115,13 @@ class Axes:
         self.sender = f"{os.path.basename(sys.argv[0]) or 'python'} {os.getpid()}"
         self.instance = random.SystemRandom().randrange(1, 2**63)  # tells two senders apart
         self._number = random.randrange(1, 2**30)  # of the newest motion
-        self._has_motion, self._begun, self._stop_cycle = False, 0.0, -1
+        self._has_motion, self._begun = False, 0.0
+        self._may_move = False  # something was begun, and no stop since then has led to standing axes
+        self._jog_wanted = False  # only then signs of life name the axes, which renews a jog
+        self._stop_cycle, self._stop_sent = -1, 0.0
         self._axes, self._values, self._events, self._nodes = [], {}, [], {}
         self._session, self._hash, self._cycle, self._parts = None, None, -1, set()
-        self._restarted, self._commanding, self._last_sent = False, False, 0.0
+        self._restarted, self._commanding, self._alive_sent = False, False, 0.0
         self._mode, self._words = CYCLIC_SYNCHRONOUS_POSITION, None  # _words: the controlword for each state, while it changes
         self._link = lcm.LCM()  # LCM_DEFAULT_URL, else LCM's default
         for channel, handler in (("LAYOUT", self._on_layout), ("IMAGE", self._on_image), ("MOTION", self._on_motion),
@@ -171,7 +177,7 @@ class Axes:
 
     @property
     def moving(self) -> bool:
-        """At least one axis moves or stops."""
+        """At least one axis moves or stops, as taktd has reported last."""
         return any(axis.motion and axis.motion.state in (MOVES, STOPS) for axis in self._axes)
 
     # What the drives do.
@@ -191,6 +197,7 @@ class Axes:
 
     def disable(self) -> None:
         """Stops the axes, leads them to Switch on disabled, and gives their nodes up."""
+        self._jog_wanted = False
         if not self._commanding:
             return
         try:
@@ -252,11 +259,19 @@ class Axes:
         self._begin("move", positions, limits)
 
     def jog(self, *velocities: float, **limits: float | list[float]) -> None:
-        """Begins to keep these velocities, until stop() or the end of the range of positions."""
-        self._begin("jog", velocities, limits)
-        self._wait(lambda: self._course() != "unanswered", ANSWER_TIME)
-        if self._course() != "runs":
-            self._raise_end()
+        """Begins to keep these velocities, until stop() or the end of the range of positions. If it raises an exception,
+        the axes stop."""
+        try:
+            self._begin("jog", velocities, limits)
+            self._jog_wanted = True
+            self._wait(lambda: self._course() != "unanswered", ANSWER_TIME)
+            if self._course() != "runs":
+                self._raise_end()
+        except BaseException:
+            self._jog_wanted = False
+            if self._commanding and self._may_move:  # a jog before this one may go on
+                self._stop_now()
+            raise
 
     def wait(self, seconds: float = float("inf")) -> None:
         """Waits until the newest motion has ended."""
@@ -272,25 +287,32 @@ class Axes:
         self._wait(lambda: False, seconds)
 
     def stop(self) -> None:
-        """Stops the axes along their limits, and returns when they stand."""
-        is_open = lambda: self.moving or self._course() in ("runs", "unanswered")
-        if not self._commanding or not is_open():
+        """Stops the axes along their limits, and returns when taktd reports that their commanded positions stand."""
+        self._jog_wanted = False
+        if not self._commanding:
             return
-        begin = self._cycle
+        self._serve(0)  # the stop is for the newest image: one of an old image may be refused
+        if not self._may_move and not self.moving:
+            return
+        self._stop_now()
+        begin, pause = self._stop_cycle, 0.0  # the second stop comes with the next image
 
         def stands():
-            if time.monotonic() - self._last_sent > STOP_PAUSE:
+            nonlocal pause
+            if self._image_time > self._stop_sent and time.monotonic() - self._stop_sent >= pause:
                 self._stop_now()
-            never = self._course() == "unanswered" and not self.moving and self._cycle > begin + UNANSWERED_CYCLES
-            return never or not is_open()
-        self._stop_now()
+                pause = STOP_PAUSE
+            unclear = self._course() == "unanswered" and self._cycle <= begin + UNANSWERED_CYCLES
+            heard = all(axis.motion is None or axis.motion_cycle >= begin + SETTLED_CYCLES for axis in self._axes)
+            return heard and not self.moving and not unclear
         if not self._wait(stands, self.longest):
             raise Obstacle("time over", "the axes still move")
-        self._has_motion = False
+        self._has_motion = self._may_move = False
 
     # Below here: messages.
 
     def _begin(self, kind: str, values: tuple[float, ...], limits: dict) -> None:
+        self._jog_wanted = False
         self._check(values)
         if not self._wait(lambda: self._cycle > self._stop_cycle, self.longest):  # taktd refuses motions from before a stop
             raise Obstacle("time over", "no newer image has come")
@@ -306,8 +328,8 @@ class Axes:
                 setattr(goal, f"max_{name}", float(limit[place] if isinstance(limit, (list, tuple)) else limit))
         self._events.clear()
         self._number += 1
-        self._has_motion, self._begun = True, time.monotonic()
-        self._send(kind, goals)
+        self._has_motion, self._may_move, self._begun = True, True, time.monotonic()
+        self._send(kind, goals, self._number)
 
     def _check(self, values) -> None:
         if len(values) != len(self._axes):
@@ -343,6 +365,7 @@ class Axes:
         course = self._course()
         if course in ("none", "done"):
             return
+        self._jog_wanted = False
 
         def reason():
             told = self._event("motion_refused" if course == "refused" else "motion_stopped", f"motion {self._number} ")
@@ -392,21 +415,30 @@ class Axes:
     def _wait(self, reached: Callable[[], bool], seconds: float) -> bool:
         """Takes messages and sends what is due until `reached()`. False: the time is over before."""
         end = time.monotonic() + seconds
-        while True:
-            before = time.monotonic()
-            self._serve(0.005)
-            now = time.monotonic()
-            if self._restarted:
-                self._commanding = False
-                raise Obstacle("restarted", "taktd has restarted")
-            if before - self._image_time > max(IMAGE_TIME, self.timeout):
-                raise Obstacle("no bus", f"no image of bus {self.bus} has come for {before - self._image_time:.1f} s")
-            if self._commanding and now - self._last_sent > min(SILENCE, self.timeout / 4):
-                self._send("alive", self._goals())  # without names it renews no jog
-            if reached():
-                return True
-            if now >= end:
-                return False
+        try:
+            while True:
+                self._step()
+                if reached():
+                    return True
+                if time.monotonic() >= end:
+                    return False
+        except BaseException:
+            self._jog_wanted = False  # who catches it may wait again, which must not renew a jog
+            raise
+
+    def _step(self) -> None:
+        """Waits for a message for a short time, takes those that have come, and sends what is due."""
+        before = time.monotonic()
+        self._serve(0.005)
+        now = time.monotonic()
+        if self._restarted:
+            self._commanding = False
+            raise Obstacle("restarted", "taktd has restarted")
+        if before - self._image_time > max(IMAGE_TIME, self.timeout):
+            raise Obstacle("no bus", f"no image of bus {self.bus} has come for {before - self._image_time:.1f} s")
+        if self._commanding and now - self._alive_sent > min(SILENCE, self.timeout / 4):
+            self._alive_sent = now
+            self._send("alive", self._goals() if self._jog_wanted else [])
 
     def _serve(self, seconds: float) -> None:
         """Handles all messages that have come; waits for the first one at most for this time."""
@@ -438,16 +470,16 @@ class Axes:
         command.num_values = len(command.values)
         self._link.publish(f"{self.bus}_COMMAND", command.encode())
 
-    def _send(self, kind: str, goals: list[motion_goal_t]) -> None:
+    def _send(self, kind: str, goals: list[motion_goal_t], number: int = 0) -> None:
+        """`number`: of a motion. That of a stop or sign of life is 0, so that its refusal is not taken for that of a motion."""
         command = motion_command_t()
         self._fill(command)
-        command.kind, command.id, command.timeout_ms = kind, self._number, round(self.timeout * 1000)
+        command.kind, command.id, command.timeout_ms = kind, number, round(self.timeout * 1000)
         command.goals, command.num_goals = goals, len(goals)
-        self._last_sent = time.monotonic()
         self._link.publish(f"{self.bus}_MOTION_COMMAND", command.encode())
 
     def _stop_now(self) -> None:
-        self._stop_cycle = self._cycle
+        self._stop_cycle, self._stop_sent = self._cycle, time.monotonic()
         self._send("stop", self._goals())
 
     def _on_layout(self, channel: str, data: bytes) -> None:
@@ -492,7 +524,8 @@ class Axes:
         motion = motion_t.decode(data)
         reported = {(axis.node_id, axis.axis): axis for axis in motion.axes if motion.session == self._session}
         for axis in self._axes:
-            axis.motion = reported.get((axis.node_id, axis.number), axis.motion)
+            if (axis.node_id, axis.number) in reported:
+                axis.motion, axis.motion_cycle = reported[axis.node_id, axis.number], motion.cycle
 
     def _on_event(self, channel: str, data: bytes) -> None:
         event = event_t.decode(data)

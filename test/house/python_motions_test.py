@@ -9,38 +9,70 @@ sys.path[:0] = [sys.argv[1], str(pathlib.Path(__file__).resolve().parent.parent.
 import takt
 
 NEXT = {(0x250, 0x06): 0x231, (0x231, 0x07): 0x233, (0x233, 0x0F): 0x237, (0x237, 0x07): 0x233, (0x233, 0x06): 0x231,
-        (0x231, 0x00): 0x250, (0x218, 0x80): 0x250}  # statusword, controlword: next statusword
-LAYOUT = [(index, node, index == 0x6040) for index in (0x6041, 0x6064, 0x6040) for node in (5, 6)]
+        (0x231, 0x00): 0x250, (0x233, 0x00): 0x250, (0x237, 0x00): 0x250,
+        (0x218, 0x80): 0x250}  # statusword, controlword: next statusword
+LAYOUT = [(index, node, index in (0x6040, 0x6060)) for index in (0x6041, 0x6064, 0x6040, 0x6060) for node in (5, 6)]
 NAMES = {5: "shoulder", 6: "elbow"}
 STEP = 0.5  # of a move in a cycle
-SHORT, LONG = 0.3, 100.0  # seconds of calls that end by an obstacle, and of the others
+PERIOD, LEAD, SLOWING = 0.002, 3, 4  # s; cycles before the begin of a motion, and those of a stop
+SHORT, LONG = 0.3, 100.0  # seconds of calls that end by an obstacle, and of the others; the clock is that of the daemon
 failures = []
 
 
 class Drive:
     def __init__(self, node):
         self.node, self.statusword, self.controlword, self.position, self.target, self.velocity = node, 0x250, 0, 0.0, 0.0, 0.0
-        self.motion = takt.axis_motion_t()
+        self.motion, self.mode = takt.axis_motion_t(), 0
         self.motion.node_id, self.motion.axis = node, 1
+        self.pending = None  # a motion that is about to begin: its first cycle, command and goal
+        self.slowing, self.renewed, self.patience, self.stopped, self.newest = 0, 0, 0, -1, (-1, 0)
 
     def end(self, outcome):
         if self.motion.id:
             self.motion.ended_id, self.motion.id, self.motion.outcome = self.motion.id, 0, outcome
+        self.slowing = 0
+
+    def stop(self, command):
+        self.stopped = command.cycle
+        if self.pending:
+            self.motion.ended_id, self.motion.outcome, self.pending = self.pending[1].id, 2, None
+        if self.motion.id and not self.slowing:
+            self.slowing = SLOWING
+
+    def begin(self, command, goal, cycle):
+        self.end(3)
+        self.motion.id, self.velocity = command.id, goal.velocity
+        self.target = goal.position + (self.position if command.kind == "move_by" else 0.0)
+        self.renewed, self.patience = cycle, command.timeout_ms / 1000 / PERIOD
+
+    def objection(self, command):
+        if command.cycle <= self.stopped:
+            return "it is not newer than the stop of its sender"
+        copy = command.kind == "move_by" and self.newest >= (command.cycle, command.utime)
+        return "it may be a copy, which must not move the axis again" if copy else ""
 
 
 class Daemon:
-    """In the place of module lcm: each wait for messages is a cycle."""
+    """In the place of the modules lcm and time: each wait for messages is a cycle."""
 
     def __init__(self):
         self.drives, self.handlers, self.waiting, self.cycle = [Drive(5), Drive(6)], {}, [], 0
         self.motions, self.active, self.refuses, self.holder, self.sender = True, False, "", "", ""
         self.commands, self.signs, self.released, self.emcy, self.each_cycle = [], 0, 0, 0, lambda daemon: None
+        self.loses, self.mute_until, self.refuses_signs = lambda command: False, 0, False
+        self.delay, self.late = 0, []  # of motion commands on their way here, in cycles
 
     def LCM(self):
         return self
 
+    def monotonic(self):
+        return self.cycle * PERIOD
+
+    def time(self):
+        return 1.0  # a clock that stands still
+
     def subscribe(self, channel, handler):
-        self.handlers[channel.removeprefix("LIFT_")] = handler
+        self.handlers.setdefault(channel.removeprefix("LIFT_"), []).append(handler)
 
     def publish(self, channel, data):
         if channel == "LIFT_COMMAND":
@@ -48,28 +80,42 @@ class Daemon:
             self.sender, self.released = command.sender, self.released + command.release
             for place, value in zip(command.signals, command.values):
                 if not self.holder:
-                    self.drives[place - 4].controlword = value
+                    setattr(self.drives[place % 2], "controlword" if place < 6 else "mode", value)
         elif self.motions:
-            self.take(takt.motion_command_t.decode(data))
+            self.late.append((self.cycle + self.delay, takt.motion_command_t.decode(data)))
+            self.take_due()
         else:
             self.say("motion_refused", "taktd runs no motions: it was started without --motions")
 
+    def take_due(self):
+        while self.late and self.late[0][0] <= self.cycle:
+            self.take(self.late.pop(0)[1])
+
     def take(self, command):
         self.active = True
+        drives = [self.drives[0 if goal.node == "shoulder" else 1] for goal in command.goals]
         if command.kind == "alive":
             self.signs += command.num_goals > 0  # without goals it renews no jog
+            for drive in drives:
+                drive.renewed = self.cycle
+            if self.refuses_signs:
+                self.refuse(command, "it is older than its timeout")
             return
         self.commands.append(command)
-        for goal in command.goals:
-            drive = self.drives[0 if goal.node == "shoulder" else 1]
+        if self.loses(command):
+            return
+        why = self.refuses or next(filter(None, (drive.objection(command) for drive in drives)), "")
+        for drive, goal in zip(drives, command.goals):
             if command.kind == "stop":
-                drive.end(2)
-            elif self.refuses:
+                drive.stop(command)
+            elif why:
                 drive.motion.ended_id, drive.motion.outcome = command.id, 4
-                self.say("motion_refused", f"motion {command.id} of '{command.sender}' refused: {self.refuses}")
+                self.refuse(command, why)
             else:
-                drive.end(3)
-                drive.motion.id, drive.target, drive.velocity = command.id, goal.position, goal.velocity
+                drive.pending, drive.newest = (self.cycle + LEAD, command, goal), (command.cycle, command.utime)
+
+    def refuse(self, command, why):
+        self.say("motion_refused", f"motion {command.id} of '{command.sender}' refused: {why}")
 
     def say(self, kind, text, node=0):
         event = takt.event_t()
@@ -82,39 +128,51 @@ class Daemon:
         if not self.waiting:
             self.pass_cycle()
         channel, message = self.waiting.pop(0)
-        self.handlers[channel](f"LIFT_{channel}", message.encode())
+        for handler in self.handlers[channel]:
+            handler(f"LIFT_{channel}", message.encode())
         return 1
 
     def pass_cycle(self):
         self.cycle += 1
         self.each_cycle(self)
+        self.take_due()
         for drive in self.drives:
             self.advance(drive)
         if self.cycle % 10 == 0:
             self.waiting.append(("STATUS", self.status()))
         self.waiting += [("LAYOUT", layout())] if self.cycle % 50 == 1 else []
         self.waiting.append(("IMAGE", self.image()))
-        if self.active:
+        if self.active and self.cycle >= self.mute_until:
             self.waiting.append(("MOTION", self.motion()))
 
     def advance(self, drive):
         drive.statusword = NEXT.get((drive.statusword, drive.controlword), drive.statusword)
-        enabled, motion = drive.statusword == 0x237, drive.motion
+        enabled, motion = drive.statusword == 0x237 and drive.mode == 8, drive.motion
+        if drive.pending and self.cycle >= drive.pending[0]:
+            drive.begin(*drive.pending[1:], self.cycle)
+            drive.pending = None
         if motion.id and not enabled:
             self.say("motion_stopped", f"motion {motion.id} has stopped because of {NAMES[drive.node]}: the drive is in fault")
             drive.end(2)
+        if motion.id and drive.velocity and self.cycle > drive.renewed + drive.patience and not drive.slowing:
+            drive.slowing = SLOWING
+        if drive.slowing:
+            drive.slowing -= 1
+            if not drive.slowing:
+                drive.end(2)
         if motion.id:
             left = drive.target - drive.position
             drive.position += math.copysign(0.001 if drive.velocity else min(abs(left), STEP), drive.velocity or left)
             if not drive.velocity and drive.position == drive.target:
                 drive.end(1)
-        motion.state, motion.position = 0 if not enabled else 2 if motion.id else 1, drive.position
+        motion.state = 0 if not enabled else 3 if drive.slowing else 2 if motion.id else 1
+        motion.position = drive.position
 
     def image(self):
         image = takt.image_t()
         image.schema, image.parts, image.session, image.layout_hash, image.cycle = 2, 1, 7, 1, self.cycle
         image.values = ([drive.statusword for drive in self.drives] + [round(drive.position * 1000) for drive in self.drives] +
-                        [drive.controlword for drive in self.drives])
+                        [drive.controlword for drive in self.drives] + [drive.mode for drive in self.drives])
         image.num_values = len(image.values)
         return image
 
@@ -155,7 +213,7 @@ from takt_axes import Axes, Obstacle
 
 
 def on_a_bus(*names, longest=LONG):
-    daemon = takt_axes.lcm = Daemon()
+    daemon = takt_axes.lcm = takt_axes.time = Daemon()
     return daemon, Axes("lift", *names, longest=longest)
 
 
@@ -183,6 +241,10 @@ check("the axes move together to their targets", axes.positions == [2.0, -1.0] a
 check("a command has the limits", (goals[1].max_velocity, goals[1].max_acceleration, goals[1].max_jerk) == (3, 5, 0))
 axes.move_by(-0.5, 0.5)
 check("they move from where they are", axes.commanded_positions == [1.5, -0.5], axes.commanded_positions)
+daemon.refuses_signs = True
+check("a sign of life that is refused refuses no motion", obstacle(axes.move, 200.0, 0.0)[0] == "none" and
+      not daemon.signs)
+daemon.refuses_signs = False
 check("they want one value for each axis", obstacle(axes.move, 1.0)[0] == "wrong use")
 daemon.refuses = "the axis would leave its range of positions"
 kind, text = obstacle(axes.move, 200.0, 0.0)
@@ -204,6 +266,135 @@ with axes:
     check("a move comes from an image after the stop", daemon.commands[-1].cycle > daemon.commands[-2].cycle)
 check("the end of the block disables them", daemon.drives[1].statusword == 0x250 and daemon.released == 1)
 
+
+
+
+def jogs(velocity=1.0):
+    daemon, axes = on_a_bus("shoulder")
+    axes.enable()
+    axes.jog(velocity)
+    return daemon, axes
+
+
+def loses_first(number, kind):
+    """What loses the first messages of this kind."""
+    left = [number]
+
+    def loses(command):
+        left[0] -= command.kind == kind
+        return command.kind == kind and left[0] >= 0
+    return loses
+
+
+def stays(axes, after=0.0):
+    """Whether the axes stand after so many seconds, and go on doing so."""
+    axes.run(after)
+    before = axes.positions
+    axes.run(2.0)
+    return not axes.moving and axes.positions == before
+
+
+daemon, axes = jogs()
+axes.run(5.0)
+check("a jog outlives its timeout while a call waits", axes.moving and daemon.signs > 50, daemon.signs)
+signs, daemon.loses = daemon.signs, loses_first(3, "stop")
+axes.stop()
+stops = [command for command in daemon.commands if command.kind == "stop"]
+check("a stop is repeated until the axes stand", len(stops) == 4 and not axes.moving, len(stops))
+check("with a pause, and from newer images", all(b.cycle > a.cycle for a, b in zip(stops, stops[1:])) and
+      stops[-1].cycle >= stops[1].cycle + 50, [stop.cycle for stop in stops])
+check("a stop renews no jog", daemon.signs == signs, daemon.signs - signs)
+check("nor does anything after it", stays(axes) and daemon.signs == signs)
+axes.jog(1.0)
+signs, daemon.loses = daemon.signs, loses_first(3, "stop")
+axes.disable()
+check("the end renews no jog", daemon.signs == signs and daemon.drives[0].statusword == 0x250, daemon.signs - signs)
+
+daemon, axes = jogs()
+for _ in range(30):  # the program computes, while messages wait for it
+    daemon.pass_cycle()
+newest = daemon.cycle
+axes.stop()
+stop = next(command for command in daemon.commands if command.kind == "stop")
+check("a stop is from the newest image", stop.cycle >= newest, (stop.cycle, newest))
+
+daemon, axes = jogs()
+signs, daemon.refuses = daemon.signs, "no"
+check("a jog that is refused", obstacle(axes.jog, 2.0)[0] == "refused" and daemon.commands[-1].kind == "stop")
+daemon.refuses = ""
+check("ends the one before it", stays(axes, after=0.02) and daemon.signs == signs, daemon.signs - signs)
+daemon, axes = jogs()
+daemon.loses = lambda command: True
+kind, text = obstacle(axes.jog, 2.0)
+check("a jog without an answer", kind == "refused" and "not answered" in text and daemon.commands[-1].kind == "stop", text)
+signs = daemon.signs
+check("ends the one before it, also if the stop is lost", stays(axes, after=0.6) and daemon.signs == signs)
+for wrong in (lambda axes: axes.jog(1.0, 2.0), lambda axes: axes.jog(1.0, speed=1)):
+    daemon, axes = jogs()
+    try:
+        wrong(axes)
+    except (Obstacle, TypeError):
+        pass
+    signs = daemon.signs
+    check("so does a wrong use", daemon.commands[-1].kind == "stop" and stays(axes, after=0.02) and daemon.signs == signs)
+daemon, axes = jogs()
+daemon.loses = lambda command: command.kind == "move"
+axes.begin_move(5.0)
+signs = daemon.signs
+axes.run(2.0)
+check("another motion renews no jog", not axes.moving and daemon.signs == signs, daemon.signs - signs)
+
+
+def interrupt(daemon):
+    daemon.each_cycle = lambda daemon: None
+    raise KeyboardInterrupt
+
+
+daemon, axes = jogs()
+daemon.each_cycle = interrupt
+try:
+    axes.run(1.0)
+except KeyboardInterrupt:
+    pass
+signs = daemon.signs
+axes.run(2.0)
+check("after an exception nothing renews a jog", not axes.moving and daemon.signs == signs, daemon.signs - signs)
+
+daemon, axes = jogs()
+daemon.drives[0].statusword = 0x218
+kind, text = obstacle(axes.wait)
+signs = daemon.signs
+axes.run(2.0)
+check("nor after the end of the jog", kind == "stopped" and daemon.signs == signs, (kind, daemon.signs - signs))
+
+daemon, axes = on_a_bus("shoulder")
+axes.enable()
+axes.begin_move(50.0)
+daemon.refuses = "no"
+axes.begin_move(60.0)
+axes.run(0.0)
+check("a motion is about to begin while a newer one is refused", not axes.moving and daemon.drives[0].pending)
+daemon.loses, daemon.mute_until = loses_first(1, "stop"), daemon.cycle + 40
+axes.stop()
+check("a stop ends it", daemon.commands[-1].kind == "stop" and stays(axes) and axes.positions[0] < 5.0, axes.positions)
+check("and returns when newer motions are reported", daemon.cycle >= daemon.mute_until)
+daemon.refuses = ""
+axes.begin_move(50.0)
+daemon.refuses, daemon.loses = "no", loses_first(4, "stop")
+axes.begin_move(60.0)
+axes.run(0.0)
+axes.stop()
+check("also if it moves before a stop arrives", stays(axes) and 0.0 < axes.positions[0] < 50.0, axes.positions)
+daemon.refuses, daemon.delay, daemon.loses = "", 30, loses_first(2, "stop")
+axes.begin_move(500.0)
+axes.stop()
+check("also if taktd takes the motion late", stays(axes) and axes.positions[0] < 500.0, axes.positions)
+daemon.delay, daemon.loses = 0, loses_first(1, "move")
+axes.begin_move(-50.0)
+axes.stop()
+number = len(daemon.commands)
+axes.stop()
+check("a stop of axes that a stop has led to rest sends nothing", len(daemon.commands) == number and not axes.moving)
 
 def trip(daemon):
     if daemon.drives[0].position > 1.0:
