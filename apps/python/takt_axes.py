@@ -7,11 +7,12 @@
         axes.move(1.5, 0.5, velocity=3, acceleration=20)
         print(axes.positions)
 
-Each call returns when it is done, or raises Obstacle, which says in words what blocks which axis.
-While a call waits, it keeps the program alive for taktd. Between calls, motions and drives outlive a
-silence of `timeout`; then the axes stop along their limits, and the drives take the fallback of
-`on_timeout` in the network file. A program that has nothing to do calls run() instead of time.sleep().
-A jog goes on until stop(), until another motion, or until an exception ends a wait.
+Each call returns when it is done, or raises Obstacle, which says in words what blocks which axis. A
+move is done when the commanded positions are at its target: the actual positions lag behind them by
+the following error. While a call waits, it keeps the program alive for taktd. Between calls, motions
+and drives outlive a silence of `timeout`; then the axes stop along their limits, and the drives take
+the fallback of `on_timeout` in the network file. A program that has nothing to do calls run() instead
+of time.sleep(). A jog goes on until stop(), until another motion, or until an exception ends a wait.
 
 How to try it on the simulated bus of share/demo/two_axes.yaml:
 
@@ -51,6 +52,7 @@ STATES = ((0x4F, 0x00, "not ready to switch on", "bit 0 (ready to switch on)", 0
 # The controlword for each state on the way to Operation enabled, and back. Disable voltage is 0.
 ENABLING = {"switch on disabled": 0x06, "ready to switch on": 0x07, "switched on": 0x0F, "operation enabled": 0x0F}
 DISABLING = {"operation enabled": 0x07, "switched on": 0x06}
+KEEPING = {"ready to switch on": 0x06, "switched on": 0x07, "operation enabled": 0x0F}  # the state stays as it is
 DISABLED = ("switch on disabled", "not ready to switch on", "fault")
 FAULT_RESET = 0x80
 FAULTS = ("fault", "fault reaction active")
@@ -112,8 +114,9 @@ class Axes:
         if not 0.001 <= timeout <= 10.0:
             raise Obstacle("wrong use", f"a timeout of {timeout} s is not one of 1 ms to 10 s")
         self.bus, self.timeout, self.longest = bus.upper(), timeout, longest
-        self.sender = f"{os.path.basename(sys.argv[0]) or 'python'} {os.getpid()}"
-        self.instance = random.SystemRandom().randrange(1, 2**63)  # tells two senders apart
+        self.instance = random.SystemRandom().randrange(1, 2**63)  # tells two senders apart, also in one process
+        program = os.path.basename(sys.argv[0])[:32] or "python"
+        self.sender = f"{program} {os.getpid()} {self.instance & 0xFFFF_FFFF:08x}"
         self._number = random.randrange(1, 2**30)  # of the newest motion
         self._has_motion, self._begun = False, 0.0
         self._may_move = False  # something was begun, and no stop since then has led to standing axes
@@ -121,7 +124,8 @@ class Axes:
         self._stop_cycle, self._stop_sent = -1, 0.0
         self._axes, self._values, self._events, self._nodes = [], {}, [], {}
         self._session, self._hash, self._cycle, self._parts = None, None, -1, set()
-        self._restarted, self._commanding, self._alive_sent = False, False, 0.0
+        self._restarted, self._commanding, self._enabled = False, False, False
+        self._alive_sent, self._utime = 0.0, 0
         self._mode, self._words = CYCLIC_SYNCHRONOUS_POSITION, None  # _words: the controlword for each state, while it changes
         self._link = lcm.LCM()  # LCM_DEFAULT_URL, else LCM's default
         for channel, handler in (("LAYOUT", self._on_layout), ("IMAGE", self._on_image), ("MOTION", self._on_motion),
@@ -194,10 +198,11 @@ class Axes:
             why = no_motions() or self._why_not_ready()
             self.disable()
             raise Obstacle("blocked", why)
+        self._enabled = True
 
     def disable(self) -> None:
         """Stops the axes, leads them to Switch on disabled, and gives their nodes up."""
-        self._jog_wanted = False
+        self._jog_wanted = self._enabled = False
         if not self._commanding:
             return
         try:
@@ -215,24 +220,25 @@ class Axes:
                                                   for axis in self._axes if not over(axis)))
 
     def reset(self) -> None:
-        """Resets the faults of all axes."""
+        """Resets the faults of all axes. Axes that move stop first; those without a fault keep their states."""
         in_fault = lambda: any(axis.state in FAULTS for axis in self._axes)
         if not in_fault():
             return
-        self._commanding, self._words = True, {}  # bit 7 is low before its rising edge
+        self.stop()
+        self._commanding, self._words = True, KEEPING  # bit 7 is low before its rising edge
         self._wait(lambda: all(axis.state != "fault reaction active" for axis in self._axes), self.longest)
         self._wait(lambda: False, 0.1)
-        self._words = {"fault": FAULT_RESET}
+        self._words = KEEPING | {"fault": FAULT_RESET}
         good = self._wait(lambda: not in_fault(), self.longest)
         self._words = None
         if not good:
             raise Obstacle("blocked", self._why_not_ready())
 
     def set_mode(self, mode: int) -> None:
-        """Sets another mode of operation (0x6060), and waits until the drives show it. enable() sets cyclic synchronous
-        position again."""
+        """Stops the axes, sets another mode of operation (0x6060), and waits until the drives show it. The drives keep their
+        states. enable() sets cyclic synchronous position again."""
         self.stop()
-        self._mode, self._words, self._commanding = mode, self._words_now(), True
+        self._mode, self._words, self._commanding = mode, KEEPING, True
         shown = lambda axis: self._raw(axis, MODE_DISPLAY if MODE_DISPLAY in axis.places else MODE) == mode
         good = self._wait(lambda: all(map(shown, self._axes)), self.longest)
         self._words = None
@@ -243,16 +249,16 @@ class Axes:
     # Motions.
 
     def move(self, *positions: float, **limits: float | list[float]) -> None:
-        """Moves the axes to these positions, and returns when they have come to rest there. Limits: `velocity`,
-        `acceleration`, `jerk` and `following_error`, one for all axes or a list; where they are 0 or not given, those of
-        the network file apply."""
+        """Moves the axes to these positions, and returns when the commanded positions are there, at rest. The actual ones
+        lag behind them by the following error. Limits: `velocity`, `acceleration`, `jerk` and `following_error`, one for all
+        axes or a list; where they are 0 or not given, those of the network file apply."""
         self.begin_move(*positions, **limits)
         self.wait()
 
     def move_by(self, *distances: float, **limits: float | list[float]) -> None:
-        """Like move(), by distances from the commanded positions."""
-        self._check(distances)
-        self.move(*(start + way for start, way in zip(self.commanded_positions, distances)), **limits)
+        """Like move(), by distances from the commanded positions in the cycle in which the motion begins."""
+        self._begin("move_by", distances, limits)
+        self.wait()
 
     def begin_move(self, *positions: float, **limits: float | list[float]) -> None:
         """Begins a move and returns at once. A new target is possible during a motion. See wait()."""
@@ -274,7 +280,8 @@ class Axes:
             raise
 
     def wait(self, seconds: float = float("inf")) -> None:
-        """Waits until the newest motion has ended."""
+        """Waits until the newest motion has ended: a move, when the commanded positions are at its target. Does not stop it
+        when `seconds` are over."""
         def over():
             course = self._course()
             return course != "runs" and (course != "unanswered" or time.monotonic() > self._begun + ANSWER_TIME)
@@ -314,6 +321,8 @@ class Axes:
     def _begin(self, kind: str, values: tuple[float, ...], limits: dict) -> None:
         self._jog_wanted = False
         self._check(values)
+        if not self._enabled:
+            raise Obstacle("blocked", f"{', '.join(self.names)}: call enable() first")
         if not self._wait(lambda: self._cycle > self._stop_cycle, self.longest):  # taktd refuses motions from before a stop
             raise Obstacle("time over", "no newer image has come")
         if not self._ready():
@@ -450,11 +459,9 @@ class Axes:
         if self._words is not None and self._cycle != cycle:
             self._command()
 
-    def _words_now(self) -> dict[str, int]:
-        return ENABLING if all(axis.state == "operation enabled" for axis in self._axes) else {}
-
     def _fill(self, message) -> None:
-        message.utime, message.schema = int(time.time() * 1e6), SCHEMA
+        self._utime = max(self._utime + 1, int(time.time() * 1e6))  # a move_by needs a later one than each motion before
+        message.utime, message.schema = self._utime, SCHEMA
         message.session, message.cycle = self._session, self._cycle
         message.instance, message.sender = self.instance, self.sender
 

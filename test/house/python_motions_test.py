@@ -241,6 +241,16 @@ check("the axes move together to their targets", axes.positions == [2.0, -1.0] a
 check("a command has the limits", (goals[1].max_velocity, goals[1].max_acceleration, goals[1].max_jerk) == (3, 5, 0))
 axes.move_by(-0.5, 0.5)
 check("they move from where they are", axes.commanded_positions == [1.5, -0.5], axes.commanded_positions)
+axes.begin_move(3.0, -2.0)
+axes.move_by(0.25, 0.25)
+newest = daemon.commands[-2:]
+check("taktd itself adds the distances", newest[1].kind == "move_by" and newest[1].goals[0].position == 0.25)
+check("two motions have different times, also if the clock stands still", newest[0].utime < newest[1].utime)
+daemon.mute_until = daemon.cycle + 50
+axes.begin_move(2.0, 2.0)
+axes.run(20 * PERIOD)
+axes.move_by(0.25, 0.25)
+check("they move from where they are, not from where they were", axes.positions == [2.25, 2.25], axes.positions)
 daemon.refuses_signs = True
 check("a sign of life that is refused refuses no motion", obstacle(axes.move, 200.0, 0.0)[0] == "none" and
       not daemon.signs)
@@ -414,6 +424,26 @@ axes.reset()
 axes.enable()
 check("a reset ends it", daemon.drives[0].statusword == 0x237)
 
+daemon, axes = on_a_bus()
+seen = []
+axes.enable()
+axes.begin_move(0.0, 1000.0)
+axes.run(0.1)
+daemon.drives[0].statusword = 0x218
+axes.run(0.0)
+daemon.each_cycle = lambda daemon: seen.append((daemon.drives[0].controlword, daemon.drives[1].statusword,
+                                                daemon.drives[1].motion.state))
+axes.reset()
+axes.run(0.0)
+check("a reset leaves the other axis enabled", {word for _, word, _ in seen} == {0x237} and daemon.drives[0].statusword == 0x250)
+check("and stops it first", {state for word, _, state in seen if word == 0x80} == {1})
+daemon.drives[0].statusword = 0x218
+axes.run(0.0)
+seen.clear()
+axes.set_mode(1)
+axes.run(0.0)
+check("another mode leaves it enabled", {word for _, word, _ in seen} == {0x237} and daemon.drives[1].mode == 1)
+
 daemon, axes = on_a_bus("shoulder", longest=SHORT)
 daemon.drives[0].statusword = 0x240
 daemon.each_cycle = lambda daemon: setattr(daemon.drives[0], "statusword", 0x240)
@@ -421,6 +451,17 @@ kind, text = obstacle(axes.enable)
 check("the bits are named that keep a drive from being enabled", kind == "blocked" and "bit 6 (switch on disabled)" in text and
       "bit 4 (voltage enabled) is 0" in text, (kind, text))
 check("a drive that is not enabled does not move", obstacle(axes.move, 1.0)[0] == "blocked" and not daemon.commands)
+
+daemon, axes = on_a_bus("shoulder")
+axes.enable()
+other = Axes("lift", "shoulder")
+other.run(0.1)
+kind, text = obstacle(other.move, 1.0)
+check("a drive that another object has enabled does not move", (kind, text) == ("blocked", "shoulder: call enable() first"), text)
+check("two objects of one program have different names", other.sender != axes.sender and
+      other.sender.split()[:2] == axes.sender.split()[:2], other.sender)
+axes.disable()
+check("nor does one after disable()", "call enable() first" in obstacle(axes.jog, 1.0)[1])
 
 daemon, axes = on_a_bus()
 daemon.motions = False
