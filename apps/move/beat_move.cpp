@@ -12,8 +12,11 @@ namespace {
 
 /// Time between signs of life.
 constexpr std::chrono::milliseconds pause{50};
-/// Time between the last message and a stop.
+/// Time between two stops if no image comes.
 constexpr std::chrono::milliseconds stop_pause{10};
+/// taktd has taken a command after so many images. Its set-points are at most three cycles ahead of
+/// them.
+constexpr int images_to_stop = 20;
 /// The move stops if this program is silent for so long, as its set-points would end.
 constexpr std::int32_t timeout_ms = 1000;
 /// Values of axis_motion_t::state and axis_motion_t::outcome.
@@ -59,7 +62,7 @@ BeatMove::Course BeatMove::course() const {
 }
 
 void BeatMove::keep_alive() {
-  if (Clock::now() - sent_ < pause) return;
+  if (phase_ == Phase::stops || Clock::now() - sent_ < pause) return;
   motion_command_t command{};
   command.kind = "alive";
   send(std::move(command));
@@ -82,6 +85,7 @@ motion_command_t BeatMove::command_for(const char* kind) const {
 
 void BeatMove::begin(const Eigen::VectorXd& to, std::span<const MotionLimits> limits) {
   ++id_;
+  phase_ = Phase::lives;
   motion_command_t command = command_for("move");
   command.synchronisation = "phase";
   for (std::size_t i = 0; i < limits.size(); ++i) {
@@ -95,7 +99,29 @@ void BeatMove::begin(const Eigen::VectorXd& to, std::span<const MotionLimits> li
 }
 
 void BeatMove::stop() {
-  if (Clock::now() - sent_ >= stop_pause) send(command_for("stop"));
+  if (std::exchange(phase_, Phase::stops) == Phase::lives) {
+    stopped_images_ = 0;
+    stop_cycle_ = -1;
+  }
+  const std::int64_t cycle = group_.input().cycle();
+  if (cycle == stop_cycle_ && Clock::now() - sent_ < stop_pause) return;
+  if (cycle != stop_cycle_) ++stopped_images_;
+  stop_cycle_ = cycle;
+  send(command_for("stop"));
+}
+
+bool BeatMove::stands_after_stop() const {
+  return phase_ == Phase::stops && stopped_images_ > images_to_stop && !moving() &&
+         course() != Course::runs;
+}
+
+bool BeatMove::take_news() {
+  std::vector<Report> reports;
+  for (const AxisControl::Index i : numbers_of(group_.axes())) {
+    const auto motion = group_.motion(i).value_or(axis_motion_t{});
+    reports.emplace_back(motion.position, motion.time_left);
+  }
+  return std::exchange(reports_, reports) != reports;
 }
 
 Eigen::VectorXd BeatMove::positions() const {

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <span>
 #include <takt/axis.hpp>
+#include <utility>
+#include <vector>
 
 #include "apps/move/motion_limits.hpp"
 
@@ -26,14 +28,23 @@ class BeatMove {
 
   explicit BeatMove(AxisGroup& group);
 
-  /// Sends a sign of life if one is due.
+  /// Sends a sign of life if one is due. After a stop it sends none until a move begins.
   void keep_alive();
   /// Returns true if taktd reports that each axis follows motions.
   bool offered() const;
   /// Begins a move along a straight line, with limits for each axis. A newer move replaces it.
   void begin(const Eigen::VectorXd& to, std::span<const MotionLimits> limits);
-  /// Stops the axes along their limits. The caller repeats the call until moving() is false.
+  /// Stops the axes along their limits. The caller repeats the call until stands_after_stop(): it
+  /// sends once for each image, and every 10 ms without one.
   void stop();
+  /// Returns true if stop() has answered so many images that no earlier command is under way, and
+  /// if no axis moves. A move that taktd had not answered does not begin any more.
+  bool stands_after_stop() const;
+  /// Returns true if the reports of taktd differ from those of the last call. They differ in each
+  /// cycle while an axis moves.
+  bool take_news();
+  /// Returns the id of the newest move.
+  std::int32_t id() const noexcept { return id_; }
   /// Returns the commanded positions that taktd has reported last.
   Eigen::VectorXd positions() const;
   Course course() const;
@@ -41,6 +52,9 @@ class BeatMove {
 
  private:
   using Clock = std::chrono::steady_clock;
+  enum class Phase : std::uint8_t { lives, stops };
+  using Report = std::pair<double, double>;  // commanded position and time left of an axis
+
   motion_command_t command_for(const char* kind) const;
   void send(motion_command_t command);
   template <class Is>
@@ -48,7 +62,11 @@ class BeatMove {
 
   AxisGroup& group_;
   std::int32_t id_;
+  Phase phase_ = Phase::lives;
   Clock::time_point sent_{};
+  std::int64_t stop_cycle_ = -1;  // of the image from which the newest stop was sent
+  int stopped_images_ = 0;        // from which a stop was sent
+  std::vector<Report> reports_;   // at the last call of take_news()
 };
 
 }  // namespace takt

@@ -202,11 +202,12 @@ bool MoveRun::move() {
     if (!move) return false;
     progress_.say(fmt::format("moving all axes together, {:.2f} s{}", move->duration(),
                               beat_.offered() ? ", by taktd" : ""));
+    const double begin = bus_seconds();
     const bool good = beat_.offered() ? watch_beat(target(axes_.target_positions()))
                                       : follow("move", move->duration(),
                                                [&](double t) { return move->position(t); });
     if (!good) return false;
-    left -= move->duration();
+    left -= std::max(move->duration(), bus_seconds() - begin);
   }
   if (!options_.sine || stop_ != 0) return true;
   return swing(left);

@@ -42,7 +42,13 @@ class MoveRun {
   bool swing(double seconds);
   bool knows_beat();
   bool watch_beat(const Eigen::VectorXd& to);
-  BeatMove::Course watch_course();
+  void wait_before_begin();
+  std::string watch_course();
+  std::string objection(BeatMove::Course course, int begins, const Eigen::VectorXd& to);
+  std::string silence(double seconds) const;
+  double beat_end() const;
+  double bus_seconds(Input newest = Input::nothing) const;
+  double cycle_seconds() const;
   bool follow(const char* what, double duration, const Trajectory& trajectory);
   Hold take_input(Input input);
   void compare(const char* what);
@@ -75,6 +81,7 @@ class MoveRun {
   bool good_ = true;
   bool commanding_ = false;  // false while takt-move only listens until the devices answer
   bool restarted_ = false;
+  std::optional<double> beat_begin_;  // when taktd has begun the move, in bus_seconds()
   Hold holding_ = Hold::no;
   int stale_images_ = 0;
   int holds_ = 0;

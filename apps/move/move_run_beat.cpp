@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <chrono>
+#include <fmt/format.h>
+#include <limits>
 
 #include "apps/move/move_run.hpp"
 
@@ -7,8 +9,16 @@ namespace takt {
 namespace {
 
 constexpr std::chrono::milliseconds beat_tick{2};
-/// Longest wait for the answer of taktd, and for an image after a signal.
-constexpr std::chrono::seconds longest_answer{2};
+/// Longest wait for the answer of taktd and for news of it, seconds, and at least this number of
+/// periods.
+constexpr double longest_silence = 2.0;
+constexpr int silent_periods = 20;
+/// Longest wait for the event with the reason of a stop.
+constexpr int reason_images = 20;
+constexpr int most_new_begins = 3;
+/// Time before a move begins again, seconds. taktd discards the commands that come in the first
+/// 20 ms after a pause of its own, and does not answer them.
+constexpr double pause_before_begin = 0.1;
 constexpr int signal_again = 2;
 
 }  // namespace
@@ -19,6 +29,18 @@ std::vector<MotionLimits> MoveRun::limits() const {
   return limits;
 }
 
+/// Returns the time in seconds by the cycles of the bus, and by the clock of this machine since the
+/// newest image. `newest` is the result of the newest wait().
+double MoveRun::bus_seconds(Input newest) const {
+  if (newest == Input::fresh) return cycle_seconds();
+  return cycle_seconds() + std::chrono::duration<double>(group_.age()).count();
+}
+
+/// Returns the time of the newest image in seconds, by the cycles of the bus.
+double MoveRun::cycle_seconds() const {
+  return period() * static_cast<double>(group_.input().cycle());
+}
+
 /// Asks taktd whether it runs motions. Returns true after its answer: a report of all axes, or the
 /// event that refuses motions.
 bool MoveRun::knows_beat() {
@@ -26,43 +48,126 @@ bool MoveRun::knows_beat() {
   return beat_.offered() || progress_.has_said("motion_refused");
 }
 
-/// Lets taktd run the move to this point, and watches it. Where SYNC or this program pauses, taktd
-/// stops the axes; the move begins again while all of them are enabled. Returns false if it does
-/// not come to its end.
+/// Lets taktd run the move to this point, and watches it. A move that taktd has stopped because
+/// SYNC or this program paused begins again, a few times. Returns false if it does not come to its
+/// end.
 bool MoveRun::watch_beat(const Eigen::VectorXd& to) {
-  using Course = BeatMove::Course;
-  Course course = Course::stopped;
-  while (course == Course::stopped && stop_ == 0 && beat_.offered()) {
+  beat_begin_.reset();
+  for (int begins = 0; stop_ == 0; ++begins) {
+    if (begins > 0) {
+      ++holds_;
+      progress_.say(progress_.stop_reasons().of(beat_.id()) + ": the move begins again");
+      wait_before_begin();
+      if (restarted_) return false;
+      if (stop_ != 0) return true;
+    }
     beat_.begin(to, limits());
-    course = watch_course();
+    std::string why = watch_course();
     if (restarted_) return false;
     axes_.set_positions(beat_.positions());  // so that further commands are no jump
-    if (course == Course::stopped && stop_ == 0) ++holds_;
-  }
-  if (course == Course::done || stop_ != 0) return true;
-  progress_.say(course == Course::unanswered ? "taktd does not answer the move: stopping"
-                                             : "taktd has ended the move: stopping");
-  return false;
-}
-
-BeatMove::Course MoveRun::watch_course() {
-  using Course = BeatMove::Course;
-  const auto until = std::chrono::steady_clock::now() + longest_answer;
-  while (true) {
-    const Input input = group_.wait(beat_tick);
-    if (input == Input::restarted) take_input(input);
-    if (input == Input::fresh) compare("move");
-    const Course course = beat_.course();
-    const bool late = std::chrono::steady_clock::now() > until || stop_ != 0;
-    const bool lost = stop_ >= signal_again || (stop_ != 0 && group_.age() > longest_answer);
-    if (restarted_ || lost || (course == Course::unanswered && late)) return course;
-    if (course != Course::unanswered && course != Course::runs) return course;
-    if (stop_ == 0) {
-      beat_.keep_alive();
-    } else {
-      beat_.stop();
+    const BeatMove::Course course = beat_.course();
+    if (why.empty() && (stop_ != 0 || course == BeatMove::Course::done)) return true;
+    if (why.empty()) why = objection(course, begins, to);
+    if (!why.empty()) {
+      progress_.say(why + ": stopping");
+      return false;
     }
   }
+  return true;
+}
+
+void MoveRun::wait_before_begin() {
+  const double until = bus_seconds() + pause_before_begin;
+  while (stop_ == 0 && !restarted_) {
+    const Input input = group_.wait(beat_tick);
+    if (input == Input::fresh) compare("move");
+    if (input == Input::restarted) take_input(input);
+    if (bus_seconds(input) >= until) return;
+  }
+}
+
+/// Watches the move until it is over. Returns why this program has ended it; empty if taktd or a
+/// signal has ended it.
+std::string MoveRun::watch_course() {
+  using Course = BeatMove::Course;
+  const double longest = std::max(longest_silence, silent_periods * period());
+  const double begin = bus_seconds();
+  double news = begin;
+  std::string why;
+  while (true) {
+    const Input input = group_.wait(beat_tick);
+    if (input == Input::restarted) {
+      take_input(input);
+      return {};
+    }
+    if (input == Input::fresh) compare("move");
+    const double now = bus_seconds(input);
+    const Course course = beat_.course();
+    if (course == Course::done) return {};
+    if (course != Course::unanswered && course != Course::runs) return why;
+    const bool moves = course == Course::runs || beat_.moving();
+    if (input == Input::fresh && (beat_.take_news() || !moves)) news = now;
+    if (course == Course::runs && !beat_begin_) beat_begin_ = now;
+    if (now - news > longest) {
+      beat_.stop();  // taktd may hear this program although nothing comes back
+      return silence(now - cycle_seconds());
+    }
+    if (course == Course::unanswered && now - begin > longest) {
+      why = "taktd does not answer the move";
+    } else if (now > beat_end() && why.empty()) {
+      why = "the move does not end in the time of --for";
+    }
+    if (stop_ == 0 && why.empty()) {
+      beat_.keep_alive();
+      continue;
+    }
+    beat_.stop();
+    if (stop_ >= signal_again || beat_.stands_after_stop()) return why;
+  }
+}
+
+/// Returns when the move has to be over, in bus_seconds(). The images may be as late as the motion
+/// with set-points of this program allows.
+double MoveRun::beat_end() const {
+  if (!options_.seconds || !beat_begin_) return std::numeric_limits<double>::infinity();
+  return *beat_begin_ + *options_.seconds + longest_step();
+}
+
+/// Returns what is missing. The newest image came `seconds` ago.
+std::string MoveRun::silence(double seconds) const {
+  if (seconds < longest_silence / 2.0) {
+    return fmt::format("taktd has reported nothing new about the move for {:g} s", longest_silence);
+  }
+  return fmt::format(
+      "no image of bus {} has come for {:.1f} s (does taktd run, and is the network connected?)",
+      group_.bus(), seconds);
+}
+
+/// Returns why a move that taktd has ended does not begin again; empty if it may. `begins` is how
+/// often it has begun again.
+std::string MoveRun::objection(BeatMove::Course course, int begins, const Eigen::VectorXd& to) {
+  if (course == BeatMove::Course::refused) return "taktd has refused the move";
+  const StopReasons& reasons = progress_.stop_reasons();
+  for (int i = 0; i < reason_images && reasons.of(beat_.id()).empty(); ++i) {
+    const Input input = group_.wait(std::chrono::milliseconds{100});
+    progress_.states(group_);
+    if (input != Input::restarted) continue;
+    take_input(input);
+    break;
+  }
+  const std::string reason = reasons.of(beat_.id());
+  if (reason.empty()) return "taktd has stopped the move and has not said why";
+  if (!reasons.only_paused(beat_.id())) return reason;
+  if (!beat_.offered()) return reason + "; an axis is not enabled any more";
+  if (begins >= most_new_begins) {
+    return fmt::format("{}; the move has already begun again {} times", reason, begins);
+  }
+  if (!options_.seconds || !beat_begin_) return {};
+  const auto rest = SynchronisedMove::plan(beat_.positions(), to, limits());
+  const double sine = options_.sine ? 1.0 / options_.frequency : 0.0;
+  const double left = *options_.seconds - (bus_seconds() - *beat_begin_);
+  if (rest && rest->duration() + sine <= left) return {};
+  return reason + "; --for leaves no time to begin again";
 }
 
 }  // namespace takt

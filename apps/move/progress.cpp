@@ -30,6 +30,7 @@ void Progress::states(AxisGroup& group) {
                     axes.statusword(i)));
   }
   for (const event_t& event : group.take_events()) {
+    stop_reasons_.take(event);
     if (event.severity > 0 && !reported_recently(event)) say(event.text);
   }
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/move/following.hpp"
+#include "apps/move/stop_reasons.hpp"
 
 namespace takt {
 
@@ -25,6 +26,8 @@ class Progress {
   void states(AxisGroup& group);
   /// Returns true if states() has printed an event of this kind about the bus as a whole.
   bool has_said(const std::string& kind) const { return last_of_kind_.contains({0, kind}); }
+  /// Returns why taktd has stopped motions, by the events that states() has taken.
+  const StopReasons& stop_reasons() const noexcept { return stop_reasons_; }
   /// Prints the positions, at most four lines a second.
   void positions(const AxisControl& axes, const Following& following, std::string_view what);
   /// Sets the units, one for each axis.
@@ -39,6 +42,7 @@ class Progress {
   std::vector<State402> reported_;
   std::map<std::pair<std::int16_t, std::string>, Clock::time_point> last_of_kind_;
   std::vector<std::string> units_;
+  StopReasons stop_reasons_;
 };
 
 }  // namespace takt

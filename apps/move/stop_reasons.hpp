@@ -1,0 +1,25 @@
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <takt/event_t.hpp>
+
+namespace takt {
+
+/// Why taktd has stopped motions: the newest of its events `motion_stopped`.
+class StopReasons {
+ public:
+  /// Keeps the event if it has the reason of a stop.
+  void take(const event_t& event);
+  /// Returns what taktd has said about the stop of this motion. If it has given several reasons,
+  /// the first one counts that is not a pause. Empty if no event has come.
+  std::string of(std::int32_t id) const;
+  /// Returns true if taktd has given a reason, and if each reason is that the sender of the motion
+  /// was silent or that SYNC was missing. Only then may the motion begin again by itself.
+  bool only_paused(std::int32_t id) const;
+
+ private:
+  std::deque<std::string> texts_;
+};
+
+}  // namespace takt
