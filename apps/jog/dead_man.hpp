@@ -6,8 +6,8 @@
 namespace takt {
 
 /// Tells from the characters of a terminal for how long a key is held. A terminal does not report
-/// that a key is released. It repeats the key while it is held: for the first time after a delay
-/// (usually 250 to 660 ms), and then every 20 to 50 ms.
+/// that a key is released. It repeats the key while it is held. The first repetition comes after a
+/// delay of usually 250 to 660 ms, and the others follow every 20 to 50 ms.
 ///
 ///     released --press--> pressed --press--> held
 ///        ^                   | nothing for     | nothing for
@@ -16,8 +16,10 @@ class DeadMan {
  public:
   /// How long a key counts as held without a further character.
   struct Times {
-    Time first;  ///< after the first character; longer than the delay of the terminal
-    Time next;   ///< after each further one; longer than the time between repetitions
+    /// The longest wait for the second character. It is longer than the delay of the terminal.
+    Time first;
+    /// The longest wait for each later character. It is longer than the time between repetitions.
+    Time next;
   };
 
   explicit DeadMan(Times times) : times_{times} {}

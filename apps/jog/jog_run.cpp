@@ -93,7 +93,7 @@ void JogRun::take_keys(Keyboard& keyboard) {
   }
 }
 
-/// Writes the state of the axis over the same line of the terminal.
+/// Replaces the last line of the terminal by the state of the axis.
 void JogRun::show(std::string_view what) const {
   const std::string& unit = axes_.unit(0);
   const std::string line = fmt::format("{} {} at {:.4f} {}", axes_.name(0), what,

@@ -301,7 +301,7 @@ TEST(MotionStream, CubicCurvesThatEndWithoutVelocityAreDoneAtTheirLastPoint) {
   EXPECT_NEAR(bus.axis(0).position, 0.5, 1e-12);
 }
 
-/// A motion that is refused overtakes no points, although its message is younger.
+/// If a motion is refused, earlier points that arrive after it are still accepted.
 TEST(MotionStream, PointsArriveBehindARefusedMoveOfTheSameImage) {
   MotionBus bus;
   bus.enable();

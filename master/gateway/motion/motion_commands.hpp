@@ -19,9 +19,9 @@
 
 namespace takt {
 
-/// Turns motion_command_t and motion_stream_t messages into orders for the bus thread. The checks
-/// of Commands hold for them: session, sender, age, and who holds the nodes. A command takes effect
-/// for all of its axes or for none. Front thread.
+/// Turns motion_command_t and motion_stream_t messages into orders for the bus thread. The messages
+/// pass the same checks as set-points (see Commands): session, sender, age, and who holds the
+/// nodes. A command takes effect for all of its axes or for none. Front thread.
 class MotionCommands {
  public:
   MotionCommands(const BusPlan& plan, Commands& commands, SubmitMotion submit, NoticeSink announce);

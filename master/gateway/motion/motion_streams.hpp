@@ -43,7 +43,7 @@ class MotionStreams {
   /// left then.
   std::optional<MotionRefusal> add(const motion_stream_t& message, std::uint64_t cycle,
                                    std::uint64_t reported);
-  /// Forgets the streams that have ended, or have not begun in their cycle.
+  /// Drops the streams that have ended and those that did not begin in their cycle.
   void observe(const MotionSnapshot& snapshot);
   /// An order has ended or was refused.
   void on_end(std::uint32_t order) {

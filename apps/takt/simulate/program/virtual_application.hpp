@@ -16,7 +16,7 @@
 
 namespace takt {
 
-/// How a program moves its axes.
+/// The way in which a program moves its axes.
 enum class Commanding : std::uint8_t {
   set_points,  ///< by a set-point for each image
   motions,     ///< by motions that taktd runs, see MotionCommander

@@ -15,7 +15,7 @@ class GroupJudge {
  public:
   GroupJudge(const BusPlan& plan, Verdict& verdict) : plan_{plan}, verdict_{verdict} {}
 
-  /// One axis of a group, which stands.
+  /// An axis of a group. It stands before the motion begins.
   struct Member {
     std::size_t axis = 0;
     double from = 0;    ///< where it stands, in counts

@@ -32,7 +32,7 @@ struct MotionDaemon {
 
   std::array<Drive, 2> drives;
   std::int64_t cycle = 0;
-  std::int64_t session = test::session;  ///< another one after a restart
+  std::int64_t session = test::session;  ///< changes when taktd restarts
   bool has_motions = true;
   bool active = false;
   std::string refuses;  ///< the reason, if it refuses each motion
