@@ -28,6 +28,7 @@ Channels::Channels(const std::string& bus)
       command{channel_name(bus, "COMMAND")},
       motion{channel_name(bus, "MOTION")},
       motion_command{channel_name(bus, "MOTION_COMMAND")},
+      motion_gear{channel_name(bus, "MOTION_GEAR")},
       motion_stream{channel_name(bus, "MOTION_STREAM")},
       status{channel_name(bus, "STATUS")},
       sync{channel_name(bus, "SYNC")},
@@ -201,6 +202,7 @@ void Bridge::take_messages() {
 void Bridge::on_message(std::string_view channel, Bytes data) {
   if (channel == channels_.command) on_command(data);
   if (channel == channels_.motion_command) on_motion<motion_command_t>(channel, data);
+  if (channel == channels_.motion_gear) on_motion<motion_gear_t>(channel, data);
   if (channel == channels_.motion_stream) on_motion<motion_stream_t>(channel, data);
   if (channel == channels_.request) on_request(data);
   if (channel == channels_.transfer) on_transfer(data);

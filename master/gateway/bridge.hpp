@@ -30,11 +30,11 @@ namespace takt {
 /// The LCM channels of one bus.
 struct Channels {
   explicit Channels(const std::string& bus);
-  std::string image, layout, command, motion, motion_command, motion_stream, status, sync, pdos,
-      timing, event, request, reply, transfer, transfer_state;
+  std::string image, layout, command, motion, motion_command, motion_gear, motion_stream, status,
+      sync, pdos, timing, event, request, reply, transfer, transfer_state;
   /// Returns the channels that the daemon receives.
   std::vector<std::string> heard() const {
-    return {command, motion_command, motion_stream, request, transfer};
+    return {command, motion_command, motion_gear, motion_stream, request, transfer};
   }
 };
 
@@ -128,7 +128,7 @@ class Bridge {
   void on_command(Bytes data);
   void on_typed(std::string_view channel, Bytes data);
   void take_command(const command_t& command, std::optional<std::size_t> only_node = {});
-  /// A message about motions: motion_command_t or motion_stream_t.
+  /// A message about motions: motion_command_t, motion_gear_t or motion_stream_t.
   template <class T>
   void on_motion(std::string_view channel, Bytes data);
   void serve_motions();

@@ -15,6 +15,7 @@ void Bridge::on_motion(std::string_view channel, Bytes data) {
 }
 
 template void Bridge::on_motion<motion_command_t>(std::string_view channel, Bytes data);
+template void Bridge::on_motion<motion_gear_t>(std::string_view channel, Bytes data);
 template void Bridge::on_motion<motion_stream_t>(std::string_view channel, Bytes data);
 
 /// Plans what waits for the newest reports, and publishes them once a command has come. The bus

@@ -12,6 +12,7 @@
 #include <takt/image_t.hpp>
 #include <takt/layout_t.hpp>
 #include <takt/motion_command_t.hpp>
+#include <takt/motion_gear_t.hpp>
 #include <takt/motion_stream_t.hpp>
 #include <takt/motion_t.hpp>
 #include <takt/pdo_status_t.hpp>
@@ -72,8 +73,9 @@ consteval std::string_view message_layout() {
   if (std::same_as<T, image_t>) return "llhhhlllin(l)n(i)";
   if (std::same_as<T, layout_t>) return "lhhhllliiin(shsihbhhsdd)";
   if (std::same_as<T, motion_command_t>) return "lhllslissin(sbdddddd)";
+  if (std::same_as<T, motion_gear_t>) return "lhllsliisbsddsn(sbdddddd)(d)(d)(d)";
   if (std::same_as<T, motion_stream_t>) return "lhllsliin(sbdddddd)ln(dn(d)(d)n(d))";
-  if (std::same_as<T, motion_t>) return "lhhhlln(hbbiibddddddd)";
+  if (std::same_as<T, motion_t>) return "lhhhlln(hbbiibdddddddbd)";
   if (std::same_as<T, pdo_status_t>) return "lhhhlln(hhbibhllbibhllll)";
   if (std::same_as<T, sync_status_t>) return "lhlhshllllls";
   if (std::same_as<T, reply_t>) return "lhllsblsn(b)";

@@ -1,5 +1,5 @@
 // Nanoseconds of processor time that the motions of 120 axes take in one beat: while all move,
-// while all follow streams, and in the beat in which all stop.
+// while all follow streams or leaders, and in the beat in which all stop.
 #include <array>
 #include <benchmark/benchmark.h>
 #include <vector>
@@ -107,6 +107,52 @@ void streaming(benchmark::State& state) {
   }
 }
 BENCHMARK(streaming)->Unit(benchmark::kMicrosecond);
+
+/// All axes follow counters that turn with a constant velocity and a noise of some counts.
+struct GearedAxes {
+  GearedAxes() : motions{axes, period}, inputs(axes) {
+    for (AxisInput& input : inputs) input.condition = AxisCondition::enabled;
+    run();
+    for (std::size_t i = 0; i < axes; ++i) {
+      MotionOrder order;
+      order.id = 1;
+      order.axis = order.group = static_cast<std::uint8_t>(i);
+      order.ending = Ending::gear;
+      order.begin = cycle + 1;
+      order.stop = limits;
+      order.timeout = 1'000'000'000;
+      order.gear = {.kind = LeaderKind::measured,
+                    .match = PhaseMatch::at,
+                    .scale = 1e-4,
+                    .filter_time = 0.02,
+                    .lock_window = 1e-3};
+      motions.take(order);
+    }
+    for (int i = 0; i < 2000; ++i) run();
+  }
+
+  std::span<const AxisReport> run() {
+    ++cycle;
+    const auto counts = static_cast<std::int64_t>(3 * cycle + cycle * 7919 % 5);
+    for (AxisInput& input : inputs) {
+      input.leader = {.age = LeaderSample::Age::fresh, .counts = counts};
+    }
+    return motions.run(cycle, inputs);
+  }
+
+  AxisMotions motions;
+  std::vector<AxisInput> inputs;
+  CycleNumber cycle = 0;
+};
+
+void geared(benchmark::State& state) {
+  GearedAxes geared;
+  for (auto _ : state) {
+    const auto reports = geared.run();
+    for (std::size_t i = 0; i < axes; ++i) geared.inputs[i].actual = reports[i].commanded;
+  }
+}
+BENCHMARK(geared)->Unit(benchmark::kMicrosecond);
 
 void all_stop(benchmark::State& state) {
   const MovingAxes moving;

@@ -3,6 +3,7 @@
 #include <string>
 #include <takt/image_t.hpp>
 #include <takt/motion_command_t.hpp>
+#include <takt/motion_gear_t.hpp>
 #include <takt/motion_stream_t.hpp>
 #include <takt/motion_t.hpp>
 #include <utility>
@@ -126,6 +127,24 @@ class MotionBus final : public AxesInVirtualTime {
     message.goals = {goal("shoulder", shoulder), goal("elbow", elbow)};
     send(message);
   }
+  /// A gear of the elbow behind this leader, with the limits of goal().
+  motion_gear_t gear(std::int32_t id, const std::string& leader, double ratio) {
+    motion_gear_t message{};
+    message.schema = message_schema;
+    message.session = session;
+    message.instance = 5;
+    message.sender = "test";
+    message.cycle = lcm.cycle;
+    message.id = id;
+    message.leader = leader;
+    message.goals = {goal("elbow", 0.0)};
+    message.numerator = {ratio};
+    message.denominator = {1.0};
+    message.max_phase_error = {0.0};
+    message.num_goals = 1;
+    return message;
+  }
+  void send(const motion_gear_t& message) { lcm.send(bridge.channels().motion_gear, message); }
   /// Points of these nodes, with the limits of goal().
   void send_stream(std::int32_t id, const std::vector<std::string>& nodes, std::int64_t first,
                    const std::vector<motion_point_t>& points) {

@@ -101,6 +101,7 @@ std::vector<LcmChannel> lcm_channels(const BusPlan& plan, const LcmOptions& opti
   if (!motion_axes(plan).empty()) {
     channels.push_back({channel("MOTION_COMMAND"), "takt.motion_command_t",
                         "motions that taktd runs: move, jog, stop"});
+    channels.push_back({channel("MOTION_GEAR"), "takt.motion_gear_t", "axes that follow a leader"});
     channels.push_back({channel("MOTION_STREAM"), "takt.motion_stream_t",
                         "points that axes follow, sent in advance"});
     channels.push_back({channel("MOTION"), "takt.motion_t",

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "master/gateway/motion/gear_jobs.hpp"
 #include "master/gateway/motion/motion_goals.hpp"
 
 namespace takt {
@@ -148,6 +149,27 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
   if (job) jobs_.start(std::move(*job));
 }
 
+void MotionCommands::take(const motion_gear_t& gear, const CommandContext& context) {
+  const motion_command_t command = command_of(gear);
+  if (!commands_.admits(header_of(command), context)) return;
+  const auto axes = axes_of(command, context);
+  if (!axes) return;
+  if (axes->empty()) return refuse(command, {.why = "it names no axis"}, context);
+  if (!has_timeout(command, context) || !is_newest(command, *axes, context)) return;
+  auto job = motion_job(command, *axes, limits_, plan_.cycle.period);
+  if (!job) return answers_.refuse(motion_name(command), *axes, job.error(), context);
+  auto tasks = gear_tasks(gear, *axes, {plan_, axes_, limits_});
+  if (!tasks) return answers_.refuse(motion_name(command), *axes, tasks.error(), context);
+  job->gears = std::move(*tasks);
+  const auto claim = claim_of(command, *axes, context);
+  if (!claim) return;
+  active_ = true;
+  note_motion(*job, command, *axes, claim->sender, context);
+  if (!jobs_.prepare(*job, context)) return;
+  hold(command, *axes, *claim, context);
+  jobs_.start(std::move(*job));
+}
+
 void MotionCommands::take(const motion_stream_t& stream, const CommandContext& context) {
   const motion_command_t command = command_of(stream);
   if (!commands_.admits(header_of(command), context)) return;
@@ -275,7 +297,7 @@ void MotionCommands::take_stop(const motion_command_t& command, std::span<const 
 bool MotionCommands::is_newest(const motion_command_t& command, std::span<const std::size_t> axes,
                                const CommandContext& context) {
   const bool is_stream = command.kind == "stream";
-  if (!is_motion(command) && !is_stream) return true;
+  if (!is_motion(command) && !is_stream && command.kind != "gear") return true;
   const bool goes_on = is_stream && streams_.runs(command.instance, command.id);
   const auto now = static_cast<std::int64_t>(context.cycle);
   for (const std::size_t axis : axes) {

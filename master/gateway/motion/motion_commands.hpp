@@ -19,9 +19,9 @@
 
 namespace takt {
 
-/// Turns motion_command_t and motion_stream_t messages into orders for the bus thread. The messages
-/// pass the same checks as set-points (see Commands): session, sender, age, and who holds the
-/// nodes. A command takes effect for all of its axes or for none. Front thread.
+/// Turns motion_command_t, motion_gear_t and motion_stream_t messages into orders for the bus
+/// thread. The messages pass the same checks as set-points (see Commands): session, sender, age,
+/// and who holds the nodes. A command takes effect for all of its axes or for none. Front thread.
 class MotionCommands {
  public:
   MotionCommands(const BusPlan& plan, Commands& commands, SubmitMotion submit, NoticeSink announce);
@@ -30,6 +30,7 @@ class MotionCommands {
   /// moved follows its actual position while its drive is not enabled.
   void watch() { watched_ = watched_ || submit_({.kind = motion::MessageKind::watch}); }
   void take(const motion_command_t& command, const CommandContext& context);
+  void take(const motion_gear_t& gear, const CommandContext& context);
   void take(const motion_stream_t& stream, const CommandContext& context);
   /// Takes the newest reports, and plans what waits for them.
   void observe(const MotionSnapshot& snapshot, const CommandContext& context);

@@ -44,6 +44,24 @@ std::expected<motion::AxisGoal, MotionRefusal> axis_goal(const motion_goal_t& go
       .max_following_error = *following_error};
 }
 
+/// The fields that a message of another type has in common with a command.
+template <class T>
+motion_command_t command_of(const T& message, const std::string& kind) {
+  motion_command_t command{};
+  command.utime = message.utime;
+  command.schema = message.schema;
+  command.session = message.session;
+  command.instance = message.instance;
+  command.sender = message.sender;
+  command.cycle = message.cycle;
+  command.id = message.id;
+  command.kind = kind;
+  command.timeout_ms = message.timeout_ms;
+  command.goals = message.goals;
+  command.num_goals = message.num_goals;
+  return command;
+}
+
 }  // namespace
 
 bool is_motion_timeout(std::int32_t milliseconds) noexcept {
@@ -59,19 +77,10 @@ std::uint64_t cycles_in(Time span, Time period) noexcept {
   return period <= Time{0} ? 1 : static_cast<std::uint64_t>((span + period - Time{1}) / period);
 }
 
+motion_command_t command_of(const motion_gear_t& gear) { return command_of(gear, "gear"); }
+
 motion_command_t command_of(const motion_stream_t& stream) {
-  motion_command_t command{};
-  command.utime = stream.utime;
-  command.schema = stream.schema;
-  command.session = stream.session;
-  command.instance = stream.instance;
-  command.sender = stream.sender;
-  command.cycle = stream.cycle;
-  command.id = stream.id;
-  command.kind = "stream";
-  command.timeout_ms = stream.timeout_ms;
-  command.goals = stream.goals;
-  command.num_goals = stream.num_goals;
+  motion_command_t command = command_of(stream, "stream");
   for (std::size_t i = 0; i < command.goals.size() && !stream.points.empty(); ++i) {
     const auto& positions = stream.points.front().position;
     command.goals[i].position = i < positions.size() ? positions[i] : 0.0;

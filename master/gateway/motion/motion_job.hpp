@@ -26,13 +26,14 @@ struct MotionRefusal {
   std::optional<std::size_t> axis{};
 };
 
-/// A move or a jog on its way to the bus thread.
+/// A move, a jog or a gear on its way to the bus thread.
 struct MotionJob {
   MotionName name{};
   std::int64_t instance = 0;  ///< of its sender
   Time until{};               ///< it is refused if it has no orders by then
   motion::GroupGoal group{};
   std::vector<motion::AxisGoal> goals{};
+  std::vector<motion::GearTask> gears{};      ///< of a gear: one for each goal; else empty
   std::vector<motion::MotionOrder> orders{};  ///< planned, and not sent yet
   unsigned tries = 0;
   std::uint32_t order = 0;        ///< id of its orders; 0 while it waits to be planned

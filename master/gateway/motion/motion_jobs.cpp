@@ -73,16 +73,29 @@ motion::CycleNumber MotionJobs::next_begin(const CommandContext& context) const 
 
 /// Returns false if the job is refused. It has no orders if it has to wait for the next report.
 bool MotionJobs::plan(MotionJob& job, const CommandContext& context) {
-  const auto orders = planner_.plan(job.group, job.goals, next_begin(context));
+  const motion::CycleNumber begin = next_begin(context);
+  const auto orders = job.gears.empty()
+                          ? planner_.plan(job.group, job.goals, begin)
+                          : planner_.begin_gear(job.group, job.goals, job.gears, begin);
   if (orders) {
     take_orders(job, *orders);
     return true;
   }
   const motion::PlanFault fault = orders.error().fault;
-  const bool waits = fault == motion::PlanFault::no_report || fault == motion::PlanFault::busy;
+  if (fault == motion::PlanFault::geared) release_gears(job);
+  const bool waits = fault == motion::PlanFault::no_report || fault == motion::PlanFault::busy ||
+                     fault == motion::PlanFault::geared;
   if (waits && ++job.tries < most_tries) return true;
   refuse_plan(job, orders.error(), context);
   return false;
+}
+
+/// A motion can only be planned from a state that is known in advance, so the gears of its axes end
+/// before it begins.
+void MotionJobs::release_gears(const MotionJob& job) {
+  for (const motion::AxisGoal& goal : job.goals) {
+    submit_({.kind = motion::MessageKind::release, .axis = goal.axis});
+  }
 }
 
 void MotionJobs::take_orders(MotionJob& job, std::span<const motion::MotionOrder> orders) {

@@ -12,8 +12,8 @@
 
 namespace takt {
 
-/// Brings moves and jogs to the bus thread: it plans them, and plans them again if their orders
-/// came too late. Front thread.
+/// Brings moves, jogs and gears to the bus thread: it plans them, and plans them again if their
+/// orders came too late. Front thread.
 class MotionJobs {
  public:
   /// Keeps references to the arguments except the last one. `axes` are the motion_axes() of the
@@ -53,6 +53,7 @@ class MotionJobs {
  private:
   motion::CycleNumber next_begin(const CommandContext& context) const noexcept;
   bool plan(MotionJob& job, const CommandContext& context);
+  void release_gears(const MotionJob& job);
   void take_orders(MotionJob& job, std::span<const motion::MotionOrder> orders);
   void refuse_plan(const MotionJob& job, const motion::PlanRefusal& refusal,
                    const CommandContext& context);

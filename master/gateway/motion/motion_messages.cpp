@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-constexpr std::size_t axes_a_message = 16;  // 77 bytes each
+constexpr std::size_t axes_a_message = 14;  // 86 bytes each
 
 axis_motion_t to_message(const MotionAxis& axis, const motion::AxisReport& report,
                          const ShownMotion& shown, double period) {
@@ -26,6 +26,8 @@ axis_motion_t to_message(const MotionAxis& axis, const motion::AxisReport& repor
   message.actual_velocity = report.actual.velocity;
   message.following_error = report.following_error;
   message.time_left = static_cast<double>(report.cycles_left) * period;
+  message.gear = static_cast<std::int8_t>(report.gear);
+  message.phase_error = report.phase_error;
   return message;
 }
 

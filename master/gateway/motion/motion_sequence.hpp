@@ -35,15 +35,15 @@ class MotionSequence {
     }
     return {};
   }
-  /// The same for a message that begins a motion. A `move_by` or the begin of a stream must be
-  /// newer than each motion from the same image, because a copy of it would move the axis again.
+  /// The same for a message that begins a motion. A `move_by`, a gear or the begin of a stream must
+  /// be newer than each motion from the same image, because a copy of it would move the axis again.
   std::string_view objection(const motion_command_t& move, std::int64_t now) const noexcept {
     if (const std::string_view why = stop_objection(move, now); !why.empty()) return why;
     if (move_.instance != move.instance || move_.cycle != move.cycle) return {};
     if (move.utime < move_.utime) {
       return "a newer motion of its sender from the same image has overtaken it";
     }
-    const bool moves_again = move.kind == "move_by" || move.kind == "stream";
+    const bool moves_again = move.kind == "move_by" || move.kind == "stream" || move.kind == "gear";
     if (moves_again && move.utime == move_.utime) {
       return "it may be a copy, which must not move the axis again: its utime is not later than "
              "that of the last motion of its sender from the same image";

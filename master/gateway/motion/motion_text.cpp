@@ -44,6 +44,8 @@ std::string_view text(const motion::PlanRefusal& refusal) noexcept {
       return "the axis runs another motion";
     case streaming:
       return "the axis follows a stream: stop it first";
+    case geared:
+      return "the axis follows a gear, which ends first";
     case moving:
       return "the axis moves: a stream begins at rest";
     case other_start:
@@ -134,6 +136,10 @@ std::string_view text(motion::StopCause cause) noexcept {
       return "an NMT command stops the drive";
     case application:
       return "its sender has stopped it";
+    case leader_lost:
+      return "the leader of its gear has failed, or its position is missing";
+    case phase_error:
+      return "the phase error of its gear is above its limit";
   }
   return "for an unknown reason";
 }

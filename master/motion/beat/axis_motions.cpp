@@ -1,6 +1,7 @@
 #include "master/motion/beat/axis_motions.hpp"
 
 #include <algorithm>
+#include <bitset>
 #include <limits>
 
 namespace takt::motion {
@@ -67,12 +68,61 @@ std::span<const AxisReport> AxisMotions::run(CycleNumber cycle,
   observe(cycle, inputs);
   stop_groups();
   begin_orders(cycle);
-  for (std::size_t i = 0; i < runners_.size(); ++i) {
-    reports_[i] = runners_[i].run(cycle);
-  }
+  run_axes(cycle, inputs);
   stop_split_streams();
   for (AxisRunner& runner : runners_) runner.forget_ended();
   return reports_;
+}
+
+/// A gear runs after its leader, whose state of this cycle it needs. The axes of a ring of gears
+/// have no such order: they run as if their leaders were lost.
+void AxisMotions::run_axes(CycleNumber cycle, std::span<const AxisInput> inputs) noexcept {
+  std::bitset<max_axes> waiting;
+  for (std::size_t i = 0; i < runners_.size(); ++i) {
+    const bool waits = runners_[i].has_gear() && runners_[i].gear().kind == LeaderKind::commanded;
+    waiting[i] = waits;
+    if (waits) continue;
+    if (runners_[i].has_gear()) follow(i, cycle, inputs);
+    reports_[i] = runners_[i].run(cycle);
+  }
+  for (bool advances = true; advances && waiting.any();) {
+    advances = false;
+    for (std::size_t i = 0; i < runners_.size(); ++i) {
+      const std::size_t leader = runners_[i].gear().leader_axis;
+      if (!waiting[i] || (leader < runners_.size() && waiting[leader])) continue;
+      follow(i, cycle, inputs);
+      reports_[i] = runners_[i].run(cycle);
+      waiting[i] = false;
+      advances = true;
+    }
+  }
+  for (std::size_t i = 0; waiting.any() && i < runners_.size(); ++i) {
+    if (!waiting[i]) continue;
+    const StopCause cause = runners_[i].follow(cycle, {.state = {}, .is_lost = true}, {});
+    if (cause != StopCause::none) add_stop(i, cause);
+    reports_[i] = runners_[i].run(cycle);
+    waiting[i] = false;
+  }
+}
+
+/// If the axis has to stop, the others of its group do so in the next cycle.
+void AxisMotions::follow(std::size_t axis, CycleNumber cycle,
+                         std::span<const AxisInput> inputs) noexcept {
+  AxisRunner& runner = runners_[axis];
+  const GearTask& task = runner.gear();
+  LeaderState leader;
+  if (task.leader_axis < runners_.size()) {
+    const AxisReport& report = reports_[task.leader_axis];
+    const AxisCondition condition = inputs[task.leader_axis].condition;
+    leader.state = report.commanded;
+    leader.is_lost = task.kind == LeaderKind::commanded
+                         ? report.state == AxisState::unpowered
+                         : condition == AxisCondition::fault || condition == AxisCondition::lost;
+  } else {
+    leader.is_lost = task.kind == LeaderKind::commanded;
+  }
+  const StopCause cause = runner.follow(cycle, leader, inputs[axis].leader);
+  if (cause != StopCause::none) add_stop(axis, cause);
 }
 
 /// All axes of a stream end in the same cycle. If one axis has ended while another goes on, the

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,15 @@ class AxisMotions {
   void stop_axis(std::uint8_t axis, StopCause cause) noexcept;
   /// Does the same for all axes.
   void stop_all(StopCause cause) noexcept;
+
+  /// The axis ends its gear, and keeps its velocity until its next motion begins, or stops soon.
+  void release_gear(std::uint8_t axis) noexcept {
+    if (axis < runners_.size()) runners_[axis].release_gear();
+  }
+  /// The signal whose sample the gear of the axis needs in the run() of this cycle; empty if none.
+  std::optional<std::uint16_t> leader_signal(std::size_t axis, CycleNumber cycle) const noexcept {
+    return runners_[axis].leader_signal(cycle);
+  }
 
   /// Runs one cycle. `inputs` has one element for each axis. The result has one, too; it is valid
   /// until the next call.
@@ -83,6 +93,8 @@ class AxisMotions {
   void stop_groups() noexcept;
   void begin_orders(CycleNumber cycle) noexcept;
   void stop_split_streams() noexcept;
+  void run_axes(CycleNumber cycle, std::span<const AxisInput> inputs) noexcept;
+  void follow(std::size_t axis, CycleNumber cycle, std::span<const AxisInput> inputs) noexcept;
   Outcome objection_of(std::size_t axis, CycleNumber cycle) noexcept;
   CycleNumber silence_of(std::uint8_t sender, CycleNumber cycle) const noexcept;
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "master/motion/beat/gear_player.hpp"
 #include "master/motion/beat/motion_order.hpp"
 
 namespace takt::motion {
@@ -26,6 +27,7 @@ struct AxisInput {
   /// The position that the drive is commanded, if others have commanded it. Empty: it is the
   /// commanded position of the last report.
   std::optional<double> set_point;
+  LeaderSample leader{};  ///< of the gear of the axis, if its leader is measured
 };
 
 enum class AxisState : std::uint8_t { unpowered, standing, moving, stopping };
@@ -48,6 +50,8 @@ enum class StopCause : std::uint8_t {
   ordered_stop,     ///< of the master
   nmt_command,      ///< the master stops the axis, because NMT ends its PDO exchange
   application,      ///< it asked for the stop
+  leader_lost,      ///< the leader of a gear has failed, or its position is missing
+  phase_error,      ///< of a gear, above its limit
 };
 
 /// The first stop of a group since the motion of the axis began: why, and which axis was the cause.
@@ -117,13 +121,16 @@ struct AxisReport {
   CycleNumber cycles_left = 0;   ///< until the end of the profile that runs
   /// The sender of the newest motion is alive, or the axis moves: the drive has to stay enabled.
   bool kept_alive = false;
+  GearPhase gear = GearPhase::none;  ///< of the gear that the axis follows
+  double phase_error = 0.0;          ///< commanded position minus that which the gear wants
   Stop stop;
   EndedOrders ended;  ///< in this cycle
 
   /// Not the orders that have ended: they are told in the cycle in which they end.
   template <class Archive>
   void keep(Archive& archive) noexcept {
-    archive(state, commanded, actual, following_error, running, cycles_left, kept_alive, stop);
+    archive(state, commanded, actual, following_error, running, cycles_left, kept_alive, gear,
+            phase_error, stop);
   }
 };
 

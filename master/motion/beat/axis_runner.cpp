@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "master/motion/beat/stop_profile.hpp"
+#include "master/motion/position_range.hpp"
 
 namespace takt::motion {
 namespace {
@@ -50,9 +51,9 @@ bool is_same(const State& a, const State& b, const Limits& limits) noexcept {
          has_same_motion(a, b, limits);
 }
 
-/// A stream ends with points that are not known yet.
+/// A stream ends with points that are not known yet, and a gear with a stop.
 bool ends_as_it_says(const MotionOrder& order) noexcept {
-  if (order.ending == Ending::points) return true;
+  if (order.ending == Ending::points || order.ending == Ending::gear) return true;
   const State end = order.profile.end(order.from);
   const double velocity = order.ending == Ending::cruise ? end.velocity : 0.0;
   return has_same_motion(end, {.velocity = velocity}, order.stop);
@@ -88,6 +89,7 @@ Outcome AxisRunner::objection(CycleNumber cycle) noexcept {
   if (report_.state == AxisState::stopping) return Outcome::is_stopping;
   const bool is_stream = waiting_->ending == Ending::points;
   if (is_stream && report_.state != AxisState::standing) return Outcome::is_stopping;
+  if (waiting_->ending == Ending::gear) return Outcome::none;
   if (!ends_as_it_says(*waiting_)) return Outcome::no_rest;
   return is_same(waiting_->from, commanded_at(cycle), waiting_->stop) ? Outcome::none
                                                                       : Outcome::other_start;
@@ -96,7 +98,11 @@ Outcome AxisRunner::objection(CycleNumber cycle) noexcept {
 void AxisRunner::begin(CycleNumber cycle) noexcept {
   if (report_.state == AxisState::moving) end(Outcome::replaced);
   const MotionOrder& order = *waiting_;
-  source_ = order.ending == Ending::points ? Source::points : Source::profile;
+  source_ = source_of(order.ending);
+  if (source_ == Source::gear) {
+    gear_.begin(order.gear, order.stop);
+    range_ = widened(order.gear.range, report_.commanded.position);
+  }
   player_ = ProfilePlayer{order.profile, order.from, order.ending};
   began_ = cycle;
   stop_limits_ = order.stop;
@@ -185,17 +191,61 @@ void AxisRunner::leave_group() noexcept {
   report_.kept_alive = false;
 }
 
+/// Returns true if a stop that begins in this state stays inside the range of the gear. The bound
+/// of its length is enough where the ends are far away.
+bool AxisRunner::can_stop_from(const State& state) const noexcept {
+  const Limits& limits = stop_limits_;
+  const double least = std::min(limits.max_acceleration, -limits.min_acceleration);
+  const double most = std::max(limits.max_acceleration, -limits.min_acceleration);
+  const double acceleration = std::abs(state.acceleration);
+  const double speed = std::abs(state.velocity) + acceleration * acceleration / (2 * limits.jerk);
+  const double reach = speed * (speed / least + (acceleration + most) / limits.jerk);
+  if (state.position - reach >= range_.min && state.position + reach <= range_.max) return true;
+  return stays_inside(range_, stop_profile(state, limits), state);
+}
+
+/// A gear that begins in this cycle needs its sample in it.
+std::optional<std::uint16_t> AxisRunner::leader_signal(CycleNumber cycle) const noexcept {
+  const MotionOrder* next = due(cycle);
+  const bool begins = next != nullptr && next->ending == Ending::gear;
+  if (!begins && !has_gear()) return std::nullopt;
+  const GearTask& task = begins ? next->gear : gear();
+  return task.kind == LeaderKind::measured ? std::optional{task.signal} : std::nullopt;
+}
+
+StopCause AxisRunner::follow(CycleNumber cycle, const LeaderState& leader,
+                             const LeaderSample& sample) noexcept {
+  const CycleNumber cycles = std::max<CycleNumber>(cycle - std::min(last_run_, cycle), 1);
+  geared_ =
+      gear_.step(report_.commanded, leader, sample, static_cast<double>(cycles) * period_, period_);
+  StopCause cause = StopCause::none;
+  if (gear_.has_lost_leader()) {
+    cause = StopCause::leader_lost;
+  } else if (gear_.is_off()) {
+    cause = StopCause::phase_error;
+  } else if (gear_.is_forgotten()) {
+    cause = StopCause::application;
+  } else if (!can_stop_from(geared_)) {
+    cause = StopCause::end_of_range;
+  }
+  if (cause != StopCause::none) stop({.cause = cause, .axis = axis_});
+  return cause;
+}
+
 const AxisReport& AxisRunner::run(CycleNumber cycle) noexcept {
   has_taken_ = false;
-  last_run_ = cycle;
   report_.cycles_left = 0;
+  report_.gear = has_gear() ? gear_.phase() : GearPhase::none;
+  report_.phase_error = has_gear() ? gear_.phase_error() : 0.0;
   if (report_.state == AxisState::unpowered) {
+    last_run_ = cycle;
     report_.commanded = {.position = report_.actual.position};
     report_.following_error = 0.0;
     return report_;
   }
-  report_.commanded = commanded_at(cycle);
-  if (report_.state == AxisState::standing) return report_;
+  report_.commanded = has_gear() ? geared_ : commanded_at(cycle);
+  last_run_ = cycle;
+  if (report_.state == AxisState::standing || has_gear()) return report_;
   end_or_count_down(cycle);
   return report_;
 }
@@ -226,6 +276,9 @@ bool AxisRunner::points_end_at_rest() const noexcept {
 
 State AxisRunner::commanded_at(CycleNumber cycle) noexcept {
   if (report_.state == AxisState::standing) return report_.commanded;
+  if (source_ == Source::gear) {
+    return gear_.released(report_.commanded, static_cast<double>(cycle - last_run_) * period_);
+  }
   return source_ == Source::points ? stream_.at(time_at(cycle)) : player_.at(time_at(cycle));
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "master/motion/beat/axis_report.hpp"
+#include "master/motion/beat/gear_player.hpp"
 #include "master/motion/beat/motion_order.hpp"
 #include "master/motion/beat/profile_player.hpp"
 #include "master/motion/beat/stream_player.hpp"
@@ -76,6 +77,22 @@ class AxisRunner {
     if (sender != named_.sender) return std::numeric_limits<CycleNumber>::max();
     return cycle - std::min(named_.cycle, cycle);
   }
+  /// Ends the gear of the axis: it keeps its velocity until the next motion begins.
+  void release_gear() noexcept {
+    if (has_gear()) gear_.release();
+  }
+  /// Returns true if the axis follows a leader.
+  bool has_gear() const noexcept {
+    return report_.state == AxisState::moving && source_ == Source::gear;
+  }
+  /// The gear that the axis follows.
+  const GearTask& gear() const noexcept { return gear_.task(); }
+  /// The signal of which follow() needs a sample in this cycle; empty if none.
+  std::optional<std::uint16_t> leader_signal(CycleNumber cycle) const noexcept;
+  /// Makes the next step of the gear, before run(). If the axis must stop, it begins its stop at
+  /// once, and the cause is returned.
+  StopCause follow(CycleNumber cycle, const LeaderState& leader,
+                   const LeaderSample& sample) noexcept;
   /// Gives the commanded state of the cycle.
   const AxisReport& run(CycleNumber cycle) noexcept;
   /// Forgets which orders have ended. Called before the orders of the next cycle are taken.
@@ -105,8 +122,9 @@ class AxisRunner {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(report_, source_, player_, stream_, named_, began_, stop_limits_, timeout_, latest_stop_,
-          max_following_error_, waiting_, newest_, last_run_, has_taken_, follows_);
+    state(report_, source_, player_, stream_, gear_, geared_, range_.min, range_.max, named_,
+          began_, stop_limits_, timeout_, latest_stop_, max_following_error_, waiting_, newest_,
+          last_run_, has_taken_, follows_);
     state.position(group_, max_axes);
     state.position(sender_, max_axes + 1);
   }
@@ -114,13 +132,18 @@ class AxisRunner {
  private:
   static constexpr std::uint8_t no_sender = max_axes;
   /// Where the states of a motion come from.
-  enum class Source : std::uint8_t { profile, points };
+  enum class Source : std::uint8_t { profile, points, gear };
+  static constexpr Source source_of(Ending ending) noexcept {
+    if (ending == Ending::points) return Source::points;
+    return ending == Ending::gear ? Source::gear : Source::profile;
+  }
 
   State commanded_at(CycleNumber cycle) noexcept;
   double time_at(CycleNumber cycle) const noexcept {
     return static_cast<double>(cycle - began_) * period_;
   }
   bool points_end_at_rest() const noexcept;
+  bool can_stop_from(const State& state) const noexcept;
   StopCause cause_of_motion(CycleNumber cycle, const Silence& silence) const noexcept;
   void end_or_count_down(CycleNumber cycle) noexcept;
   void end(Outcome outcome) noexcept;
@@ -134,6 +157,9 @@ class AxisRunner {
   Source source_ = Source::profile;
   ProfilePlayer player_;
   StreamPlayer stream_;  ///< of the motion that runs, or of an order that waits
+  GearPlayer gear_;      ///< of the motion that runs
+  State geared_;         ///< the state of this cycle, while the axis follows a gear
+  PositionRange range_;  ///< of the gear
   LifeSign named_;       ///< the newest message that has named the axis
   CycleNumber began_ = 0;
   CycleNumber last_run_ = 0;  ///< the cycle of the commanded state

@@ -9,13 +9,14 @@ namespace takt::motion {
 
 /// What a message of the front thread is about.
 enum class MessageKind : std::uint8_t {
-  heard,   ///< the sender is alive
-  order,   ///< `order` waits for its first cycle
-  stop,    ///< the axis and its group stop along their limits
-  left,    ///< this sender may not command the axis any longer
-  watch,   ///< the axes are read from now on, although nobody moves them
-  renew,   ///< the sender has named the axis, so a jog of it may go on
-  points,  ///< more points of the stream that the axis follows, or is about to follow
+  heard,    ///< the sender is alive
+  order,    ///< `order` waits for its first cycle
+  stop,     ///< the axis and its group stop along their limits
+  left,     ///< this sender may not command the axis any longer
+  watch,    ///< the axes are read from now on, although nobody moves them
+  renew,    ///< the sender has named the axis, so a jog of it may go on
+  release,  ///< the axis ends its gear, and keeps its velocity until the next motion begins
+  points,   ///< more points of the stream that the axis follows, or is about to follow
 };
 
 /// A message of the front thread about motions. Plain data.
@@ -23,7 +24,7 @@ struct MotionMessage {
   MessageKind kind = MessageKind::heard;
   std::uint8_t sender = 0;  ///< of `heard`, `left` and `renew`
   CycleNumber cycle = 0;    ///< of `heard` and `renew`: the cycle whose image the sender has seen
-  std::uint8_t axis = 0;    ///< of `stop`, `left`, `renew` and `points`
+  std::uint8_t axis = 0;    ///< of `stop`, `left`, `renew`, `release` and `points`
   MotionOrder order{};      ///< of `order`
   StreamPoints points{};    ///< of `points`
 

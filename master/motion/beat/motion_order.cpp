@@ -25,7 +25,7 @@ bool is_sound(const MotionOrder& order) noexcept {
   };
   return order.id != 0 && order.axes != 0 && order.sender < max_axes && is_finite(order.from) &&
          std::ranges::all_of(order.profile.segments(), good) && permit_stop(order.stop) &&
-         order.max_following_error > 0.0;
+         order.max_following_error > 0.0 && (order.ending != Ending::gear || is_sound(order.gear));
 }
 
 }  // namespace takt::motion

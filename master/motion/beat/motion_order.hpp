@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "master/motion/beat/gear_task.hpp"
 #include "master/motion/limits.hpp"
 #include "master/motion/profile.hpp"
 
@@ -21,6 +22,7 @@ enum class Ending : std::uint8_t {
   rest,    ///< it stands at the end position
   cruise,  ///< it keeps the velocity of the end until it is stopped (jog)
   points,  ///< it follows a stream of points instead of a profile, and ends with the last of them
+  gear,    ///< it follows a leader instead of a profile, until it is stopped
 };
 
 /// The newest message of a sender: the cycle whose image it had seen.
@@ -45,9 +47,11 @@ struct MotionOrder {
   std::uint8_t axes = 1;  ///< number of orders with this id
   std::uint8_t sender = 0;  ///< less than max_axes
   Ending ending = Ending::rest;
-  CycleNumber begin = 0;    ///< the axis is at `from` in this cycle
-  State from;               ///< must be what the axis is commanded in the cycle `begin`
-  Profile profile;          ///< of the motion that starts at `from`; not used with Ending::points
+  CycleNumber begin = 0;  ///< the axis is at `from` in this cycle
+  /// Must be what the axis is commanded in the cycle `begin`; not used with Ending::gear.
+  State from;
+  Profile profile;          ///< of the motion that starts at `from`; only of `rest` and `cruise`
+  GearTask gear{};          ///< of Ending::gear
   Limits stop;              ///< of a stop
   CycleNumber timeout = 0;  ///< periods for which the motion outlives the silence of its sender
   /// The axis is stopped at the latest from the state that it has so many cycles after `begin`, see
@@ -58,7 +62,8 @@ struct MotionOrder {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(id, axes, ending, begin, from, profile, stop, timeout, latest_stop, max_following_error);
+    state(id, axes, ending, begin, from, profile, gear, stop, timeout, latest_stop,
+          max_following_error);
     state.position(axis, max_axes);
     state.position(group, max_axes);
     state.position(sender, max_axes);

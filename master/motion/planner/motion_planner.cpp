@@ -83,7 +83,23 @@ std::expected<State, PlanFault> MotionPlanner::state_at(const Axis& axis, CycleN
   const TaggedOrder* running = axis.find(axis.report.running);
   if (running == nullptr) return std::unexpected{PlanFault::foreign};
   if (running->order.ending == Ending::points) return std::unexpected{PlanFault::streaming};
+  if (running->order.ending == Ending::gear) {
+    return released_at(axis.report, running->order.stop, cycle);
+  }
   return state_of(running->order, cycle, period_);
+}
+
+/// The state of an axis whose gear is released. An axis whose gear is not released yet counts as if
+/// it were, so that a motion that is impossible is refused before the gear ends.
+State MotionPlanner::released_at(const AxisReport& report, const Limits& limits,
+                                 CycleNumber cycle) const {
+  const GearServo servo{limits};
+  State state = report.commanded;
+  CycleNumber now = cycle_;
+  for (; now < cycle && state.acceleration != 0.0; ++now) {
+    state = servo.step_to_cruise(state, period_);
+  }
+  return advanced(state, static_cast<double>(cycle - std::min(now, cycle)) * period_, 0.0);
 }
 
 std::expected<CycleNumber, PlanRefusal> MotionPlanner::begin_of(std::span<const AxisGoal> goals,
@@ -182,6 +198,12 @@ std::expected<std::span<const MotionOrder>, PlanRefusal> MotionPlanner::plan(
   if (!first) return std::unexpected{first.error()};
   if (const auto set = set_tasks(group, goals, *first); !set) return std::unexpected{set.error()};
   if (const auto set = set_orders(group, goals, *first); !set) return std::unexpected{set.error()};
+  for (const AxisGoal& goal : goals) {
+    const GearPhase gear = axes_[goal.axis].report.gear;
+    if (gear == GearPhase::approaching || gear == GearPhase::locked) {
+      return std::unexpected{PlanRefusal{.fault = PlanFault::geared, .axis = goal.axis}};
+    }
+  }
   return number_orders(group.tag);
 }
 
@@ -209,6 +231,38 @@ std::expected<std::span<const MotionOrder>, PlanRefusal> MotionPlanner::begin_st
                        .begin = begin,
                        .from = *from,
                        .profile = {},
+                       .stop = goal.limits,
+                       .timeout = group.timeout,
+                       .max_following_error = goal.max_following_error});
+  }
+  return number_orders(group.tag);
+}
+
+std::expected<std::span<const MotionOrder>, PlanRefusal> MotionPlanner::begin_gear(
+    const GroupGoal& group, std::span<const AxisGoal> goals, std::span<const GearTask> tasks,
+    CycleNumber begin) {
+  const auto refused = [](PlanFault fault, std::uint8_t axis) {
+    return std::unexpected{PlanRefusal{.fault = fault, .axis = axis}};
+  };
+  if (cycle_ == 0) return refused(PlanFault::no_report, 0);
+  const auto first = begin_of(goals, begin);
+  if (!first) return std::unexpected{first.error()};
+  orders_.clear();
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const AxisGoal& goal = goals[i];
+    const AxisState state = axes_[goal.axis].report.state;
+    if (state == AxisState::unpowered) return refused(PlanFault::not_enabled, goal.axis);
+    if (state == AxisState::stopping) return refused(PlanFault::stopping, goal.axis);
+    orders_.push_back({.id = id_ + 1,
+                       .axis = goal.axis,
+                       .group = goals.front().axis,
+                       .axes = static_cast<std::uint8_t>(goals.size()),
+                       .sender = group.sender,
+                       .ending = Ending::gear,
+                       .begin = *first,
+                       .from = {},
+                       .profile = {},
+                       .gear = tasks[i],
                        .stop = goal.limits,
                        .timeout = group.timeout,
                        .max_following_error = goal.max_following_error});

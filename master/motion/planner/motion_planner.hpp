@@ -60,6 +60,7 @@ enum class PlanFault : std::uint8_t {
   stopping,     ///< the axis must come to rest first
   foreign,      ///< the axis runs a motion that this planner does not know
   streaming,    ///< the axis follows a stream, and must be stopped first
+  geared,       ///< the axis follows a gear: release it, and plan again after the next report
   moving,       ///< the axis must be at rest before it follows a stream
   other_start,  ///< the stream does not begin where the axis stands, or not at rest
   impossible,   ///< see `defect`
@@ -106,6 +107,11 @@ class MotionPlanner {
   /// have no motion yet: the points follow.
   std::expected<std::span<const MotionOrder>, PlanRefusal> begin_stream(
       const GroupGoal& group, std::span<const AxisGoal> goals, CycleNumber begin);
+  /// Makes the orders of a gear, which begins in `begin` in any state of the axes. `tasks` has one
+  /// element for each goal.
+  std::expected<std::span<const MotionOrder>, PlanRefusal> begin_gear(
+      const GroupGoal& group, std::span<const AxisGoal> goals, std::span<const GearTask> tasks,
+      CycleNumber begin);
 
  private:
   struct Axis {
@@ -119,6 +125,7 @@ class MotionPlanner {
     std::vector<TaggedOrder> sent;  ///< the newest orders, at most `most_sent`
   };
 
+  State released_at(const AxisReport& report, const Limits& limits, CycleNumber cycle) const;
   std::expected<State, PlanFault> state_at(const Axis& axis, CycleNumber cycle) const;
   std::expected<CycleNumber, PlanRefusal> begin_of(std::span<const AxisGoal> goals,
                                                    CycleNumber begin) const;

@@ -72,6 +72,7 @@ class MotionStage {
   void accept(const motion::MotionMessage& message, motion::CycleNumber cycle) noexcept;
   void run_beat(OutputMoment moment, bool stopping) noexcept;
   void tell_ends() noexcept;
+  motion::LeaderSample sample_of(std::uint16_t signal) const noexcept;
 
   L& front_;
   BusMachines<S>& bus_;
@@ -102,6 +103,9 @@ void MotionStage<L, S>::accept(const motion::MotionMessage& message,
     case motion::MessageKind::renew:
       motions_.renew_jog(message.axis, {message.sender, std::min(message.cycle, cycle)});
       break;
+    case motion::MessageKind::release:
+      motions_.release_gear(message.axis);
+      break;
     case motion::MessageKind::points:
       motions_.add_points(message.axis, message.points);
       break;
@@ -124,6 +128,8 @@ void MotionStage<L, S>::run_beat(OutputMoment moment, bool stopping) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const bool exchanging = bus_.exchanging[axes_[i].node_index()];
     inputs_[i] = axes_[i].read(bus_.pdos, exchanging, motions_.reports()[i]);
+    const auto leader = motions_.leader_signal(i, moment.cycle);
+    if (leader) inputs_[i].leader = sample_of(*leader);
   }
   const auto reports = motions_.run(moment.cycle, inputs_);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -134,6 +140,18 @@ void MotionStage<L, S>::run_beat(OutputMoment moment, bool stopping) noexcept {
   }
   tell_ends();
   front_.exchange().motion_board.write(moment.cycle, reports);
+}
+
+/// The number of the signal comes from the front thread or from a recording, so it is checked.
+template <FrontLink L, Services S>
+motion::LeaderSample MotionStage<L, S>::sample_of(std::uint16_t signal) const noexcept {
+  using Age = motion::LeaderSample::Age;
+  if (signal >= bus_.plan.layout.inputs) return {.age = Age::lost};
+  const bool exchanging = bus_.exchanging[bus_.plan.layout.signals[signal].node_index];
+  if (!exchanging) return {.age = Age::lost};
+  const WorkingImage& image = bus_.pdos.image();
+  return {.age = image.is_stale(signal) ? Age::missing : Age::fresh,
+          .counts = image.values[signal]};
 }
 
 template <FrontLink L, Services S>

@@ -1,0 +1,76 @@
+#pragma once
+#include "master/motion/beat/gear_servo.hpp"
+#include "master/motion/beat/gear_task.hpp"
+#include "master/motion/beat/leader_estimate.hpp"
+
+namespace takt::motion {
+
+/// How far an axis has come with its gear.
+enum class GearPhase : std::uint8_t {
+  none,         ///< it has no gear
+  approaching,  ///< it is on the way to the moving state of its leader
+  locked,       ///< it has the position that the gear wants, up to the lock window
+  released,     ///< it keeps its velocity until the next motion takes over
+};
+
+/// The state of the leader in a cycle. A measured one has a sample instead.
+struct LeaderState {
+  State state;
+  bool is_lost = false;
+};
+
+/// Makes an axis follow a leader, step by step. It allocates nothing.
+class GearPlayer {
+ public:
+  /// The axis keeps its velocity for so many cycles after a release.
+  static constexpr std::uint8_t most_released = 20;
+
+  void begin(const GearTask& task, const Limits& limits) noexcept;
+  const GearTask& task() const noexcept { return task_; }
+  /// Returns the state of the axis one step after `from`. `time` is the length of the step in s, a
+  /// small multiple of `period`.
+  State step(const State& from, const LeaderState& leader, const LeaderSample& sample, double time,
+             double period) noexcept;
+  /// The axis follows its leader no longer.
+  void release() noexcept { phase_ = GearPhase::released; }
+  /// Returns the state one step after `from` of an axis that was released.
+  State released(const State& from, double time) const noexcept {
+    return servo_.step_to_cruise(from, time);
+  }
+
+  GearPhase phase() const noexcept { return phase_; }
+  double phase_error() const noexcept { return error_; }  ///< of the last step
+  /// Returns true if the leader was lost before the last step.
+  bool has_lost_leader() const noexcept { return lost_; }
+  /// Returns true if the phase error is too large.
+  bool is_off() const noexcept;
+  /// Returns true if no motion has taken over in time after a release.
+  bool is_forgotten() const noexcept { return released_ > most_released; }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(task_, limits_, estimate_, last_, offset_, error_, phase_, matched_, started_, locked_,
+          lost_, released_);
+    servo_ = GearServo{limits_};
+  }
+
+ private:
+  State follow(const State& from, const LeaderState& leader, double time) noexcept;
+  void judge(const State& axis, const State& target, double time) noexcept;
+
+  GearTask task_;
+  Limits limits_;
+  GearServo servo_;
+  LeaderEstimate estimate_;
+  State last_;           ///< target of the last step
+  double offset_ = 0.0;  ///< of the positions
+  double error_ = 0.0;
+  GearPhase phase_ = GearPhase::none;
+  bool matched_ = false;  ///< the offset is known
+  bool started_ = false;  ///< the last target is known
+  bool locked_ = false;   ///< the axis was locked since the begin
+  bool lost_ = false;
+  std::uint8_t released_ = 0;  ///< steps since the release
+};
+
+}  // namespace takt::motion

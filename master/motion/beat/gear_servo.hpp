@@ -1,0 +1,53 @@
+#pragma once
+#include "master/motion/limits.hpp"
+#include "master/motion/profile.hpp"
+
+namespace takt::motion {
+
+/// The next step of an axis that catches up with a moving target. In each step the jerk is constant
+/// and inside its limit, so velocity, acceleration and jerk keep their limits between the steps,
+/// too. If the axis begins outside a limit, it returns inside as fast as the others permit.
+///
+/// A step towards a position compares the axis with its target in the state in which both have come
+/// to the velocity that the target will have at the end of its acceleration, with a jerk that is
+/// `jerk_for_settling` of the limit: the distance that then remains must become 0, without a change
+/// of its sign. So the axis approaches in almost the shortest time and does not overshoot a target
+/// of constant velocity. As soon as three steps within the limits lead exactly to the target, the
+/// axis takes them. A target that moves within the limits is then followed without error.
+///
+/// Each step computes at most `most_trials` + 2 of these distances.
+class GearServo {
+ public:
+  /// The parts of the limits with which the way of a catch-up is planned. The rest is for the
+  /// difference between steps and a continuous motion.
+  static constexpr double jerk_for_settling = 0.9;
+  static constexpr double acceleration_for_settling = 0.95;
+  static constexpr int most_trials = 8;
+
+  GearServo() noexcept = default;
+  explicit GearServo(const Limits& limits) noexcept : limits_{limits} {}
+
+  /// Returns the state `period` seconds after `from`, at the time of `target`, on the way to the
+  /// position, velocity and acceleration of the target. `target_jerk` is that of the target.
+  State step_to_position(const State& from, const State& target, double target_jerk,
+                         double period) const noexcept;
+  /// The same on the way to its velocity and acceleration alone.
+  State step_to_velocity(const State& from, const State& target, double period) const noexcept;
+  /// The same on the way to the acceleration 0, with the velocity that results.
+  State step_to_cruise(const State& from, double period) const noexcept;
+
+ private:
+  /// The accelerations that the axis may have after the next step.
+  struct Room {
+    double min = 0.0;
+    double max = 0.0;
+  };
+  Room room_after(const State& from, double period) const noexcept;
+  double distance_to_settle(double velocity, double acceleration) const noexcept;
+  double catching_up(const State& from, const State& target, const Room& room,
+                     double period) const noexcept;
+
+  Limits limits_;
+};
+
+}  // namespace takt::motion

@@ -1,0 +1,67 @@
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "master/motion/position_range.hpp"
+
+namespace takt::motion {
+
+/// What a gear follows.
+enum class LeaderKind : std::uint8_t {
+  commanded,  ///< the commanded position of another axis, in the same cycle
+  measured,   ///< a position in the image of the bus
+};
+
+/// Whether a gear has a phase of its own.
+enum class PhaseMatch : std::uint8_t {
+  here,  ///< the velocities are matched, and the phase is the one that the axis has then
+  at,    ///< position = ratio * position of the leader + offset
+};
+
+/// What the bus thread needs to run a gear, besides the limits. Plain data.
+struct GearTask {
+  LeaderKind kind = LeaderKind::commanded;
+  PhaseMatch match = PhaseMatch::here;
+  std::uint8_t leader_axis = 0xFF;  ///< of `commanded`; of `measured` one whose fault matters
+  std::uint16_t signal = 0;         ///< of `measured`: its number in the image
+  std::uint8_t bits = 32;           ///< width of this signal
+  double modulo = 0.0;              ///< counts after which the signal wraps; 0: only at its width
+  double scale = 1.0;               ///< unit of the leader per count
+  double zero = 0.0;                ///< position of the leader at the count 0
+  double filter_time = 0.0;         ///< of `measured`, s, see LeaderEstimate
+  double lead = 0.0;                ///< s by which a measured position is older than the set-point
+  double ratio = 1.0;               ///< of the velocities
+  double offset = 0.0;              ///< of PhaseMatch::at
+  double lock_window = 0.0;         ///< phase error up to which the axis counts as locked
+  double max_phase_error = std::numeric_limits<double>::infinity();  ///< once it was locked
+  PositionRange range{};  ///< in which a stop must be possible at any time
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(kind, match, leader_axis, signal, bits, modulo, scale, zero, filter_time, lead, ratio,
+          offset, lock_window, max_phase_error, range.min, range.max);
+  }
+};
+
+/// Returns true if all numbers of the gear are finite where they must be.
+inline bool is_sound(const GearTask& task) noexcept {
+  const auto finite = [](auto... numbers) { return (std::isfinite(numbers) && ...); };
+  return finite(task.modulo, task.scale, task.zero, task.filter_time, task.lead, task.ratio,
+                task.offset, task.lock_window) &&
+         task.modulo >= 0.0 && task.filter_time >= 0.0 && task.lead >= 0.0 &&
+         task.lock_window >= 0.0 && task.max_phase_error > 0.0 && task.bits >= 1 && task.bits <= 64;
+}
+
+/// What the image says about a measured leader in a cycle.
+struct LeaderSample {
+  enum class Age : std::uint8_t {
+    fresh,
+    missing,  ///< the signal was not received in this cycle
+    lost,     ///< its node does not exchange PDOs
+  };
+  Age age = Age::lost;
+  std::int64_t counts = 0;
+};
+
+}  // namespace takt::motion
