@@ -73,6 +73,18 @@ Done Axes::jog(const Eigen::Ref<const Eigen::VectorXd>& velocities, const Motion
   return state_->jog(velocities, bounds);
 }
 
+Done Axes::gear(const Gear& gear, const MotionBounds& bounds) { return state_->gear(gear, bounds); }
+
+Done Axes::wait_locked(std::chrono::nanoseconds longest) { return state_->wait_locked(longest); }
+bool Axes::locked() const { return state_->locked(); }
+
+Eigen::VectorXd Axes::phase_errors() const {
+  return of_each(*state_, [&](Eigen::Index axis) {
+    const auto motion = state_->group.motion(axis);
+    return motion ? motion->phase_error : 0.0;
+  });
+}
+
 Eigen::Index Axes::size() const noexcept { return state_->size(); }
 bool Axes::moving() const { return state_->moving(); }
 AxisGroup& Axes::group() noexcept { return state_->group; }

@@ -33,21 +33,6 @@ double value_of(const Eigen::VectorXd& values, Eigen::Index axis) {
 
 }  // namespace
 
-/// Returns an obstacle if the number of values does not fit the axes.
-Done Axes::State::check(const Values& values, const MotionBounds& bounds) const {
-  if (values.size() != size()) {
-    return obstacle(Obstacle::Kind::wrong_use,
-                    fmt::format("{} values for {} axes", values.size(), size()));
-  }
-  for (const Eigen::VectorXd* bound :
-       {&bounds.velocity, &bounds.acceleration, &bounds.jerk, &bounds.following_error}) {
-    if (bound->size() <= 1 || bound->size() == size()) continue;
-    return obstacle(Obstacle::Kind::wrong_use,
-                    fmt::format("{} bounds for {} axes", bound->size(), size()));
-  }
-  return {};
-}
-
 /// The names of all axes, as taktd knows them.
 std::vector<motion_goal_t> Axes::State::goals() const {
   std::vector<motion_goal_t> named;
@@ -61,9 +46,26 @@ std::vector<motion_goal_t> Axes::State::goals() const {
   return named;
 }
 
-Done Axes::State::begin(const std::string& kind, const Values& values, const MotionBounds& bounds) {
+std::vector<motion_goal_t> Axes::State::goals_within(const MotionBounds& bounds) const {
+  std::vector<motion_goal_t> found = goals();
+  for (Index i = 0; i < size(); ++i) {
+    motion_goal_t& goal = found[static_cast<std::size_t>(i)];
+    goal.max_velocity = value_of(bounds.velocity, i);
+    goal.max_acceleration = value_of(bounds.acceleration, i);
+    goal.max_jerk = value_of(bounds.jerk, i);
+    goal.max_following_error = value_of(bounds.following_error, i);
+  }
+  return found;
+}
+
+Done Axes::State::wait_for_begin(const MotionBounds& bounds) {
   jog_goes_on_ = false;
-  if (Done fits = check(values, bounds); !fits) return fits;
+  for (const Eigen::VectorXd* bound :
+       {&bounds.velocity, &bounds.acceleration, &bounds.jerk, &bounds.following_error}) {
+    if (bound->size() <= 1 || bound->size() == size()) continue;
+    return obstacle(Obstacle::Kind::wrong_use,
+                    fmt::format("{} bounds for {} axes", bound->size(), size()));
+  }
   if (!is_current()) return restarted();
   if (sending_ == Sending::nothing) {
     return obstacle(Obstacle::Kind::blocked, "the axes are not enabled: call enable() first");
@@ -78,35 +80,48 @@ Done Axes::State::begin(const std::string& kind, const Values& values, const Mot
     return obstacle(Obstacle::Kind::blocked,
                     why_not_ready_text() + (fallback.empty() ? "" : "; ") + fallback);
   }
+  return {};
+}
+
+std::int32_t Axes::State::note_begin() {
+  events_.clear();
+  has_motion_ = true;
+  motion_begin_ = last_sent_ = Clock::now();
+  return ++id_;
+}
+
+Done Axes::State::begin(const std::string& kind, const Values& values, const MotionBounds& bounds) {
+  jog_goes_on_ = false;
+  if (values.size() != size()) {
+    return obstacle(Obstacle::Kind::wrong_use,
+                    fmt::format("{} values for {} axes", values.size(), size()));
+  }
+  if (Done ready = wait_for_begin(bounds); !ready) return ready;
   motion_command_t command{};
   command.kind = kind;
-  command.id = ++id_;
   command.timeout_ms = static_cast<std::int32_t>(options.timeout.count());
-  command.goals = goals();
+  command.goals = goals_within(bounds);
   for (Index i = 0; i < size(); ++i) {
     motion_goal_t& goal = command.goals[static_cast<std::size_t>(i)];
     (kind == "jog" ? goal.velocity : goal.position) = values(i);
-    goal.max_velocity = value_of(bounds.velocity, i);
-    goal.max_acceleration = value_of(bounds.acceleration, i);
-    goal.max_jerk = value_of(bounds.jerk, i);
-    goal.max_following_error = value_of(bounds.following_error, i);
   }
-  events_.clear();
-  has_motion_ = true;
+  command.id = note_begin();
   jog_goes_on_ = kind == "jog";
-  motion_begin_ = last_sent_ = Clock::now();
   if (group.send_motion(command)) return {};
   return obstacle(Obstacle::Kind::no_bus, "LCM did not take the command");
 }
 
+Done Axes::State::wait_for_answer() {
+  const auto waited = wait_until([this] { return course() != Course::unanswered; }, answer_time);
+  if (waited && !*waited) return *waited;
+  if (course() == Course::runs) return {};
+  return ended();
+}
+
 Done Axes::State::jog(const Values& velocities, const MotionBounds& bounds) {
   Done begun = begin("jog", velocities, bounds);
-  if (begun) {
-    const auto waited = wait_until([this] { return course() != Course::unanswered; }, answer_time);
-    if (waited && !*waited) begun = *waited;
-  }
+  if (begun) begun = wait_for_answer();
   if (begun && course() == Course::runs) return {};
-  if (begun) begun = ended();
   // An older motion may still run.
   if (const Done stood = stop(); begun) begun = stood;
   return begun;

@@ -16,8 +16,8 @@ inline std::unexpected<Obstacle> obstacle(Obstacle::Kind kind, std::string text)
   return std::unexpected{Obstacle{.kind = kind, .text = std::move(text)}};
 }
 
-/// What an Axes knows and does. Its code is in three files: waiting (axes_state.cpp), the states of
-/// the drives (axes_drives.cpp) and motions (axes_motions.cpp).
+/// What an Axes knows and does. Its code is in four files: waiting (axes_state.cpp), the states of
+/// the drives (axes_drives.cpp), motions (axes_motions.cpp) and gears (axes_gear.cpp).
 class Axes::State {
  public:
   using Clock = std::chrono::steady_clock;
@@ -39,6 +39,9 @@ class Axes::State {
   Done set_mode(DriveMode wanted);
 
   Done begin(const std::string& kind, const Values& values, const MotionBounds& bounds);
+  Done gear(const Gear& gear, const MotionBounds& bounds);
+  Done wait_locked(std::chrono::nanoseconds longest);
+  bool locked() const;
   Done jog(const Values& velocities, const MotionBounds& bounds);
   Done wait(std::chrono::nanoseconds longest);
   Done stop();
@@ -88,7 +91,14 @@ class Axes::State {
   bool all_ready() const;
   std::string why_not_ready_text() const;
 
-  Done check(const Values& values, const MotionBounds& bounds) const;
+  /// Waits until a motion may begin, or returns why none may.
+  Done wait_for_begin(const MotionBounds& bounds);
+  /// Returns the goals of all axes with these limits.
+  std::vector<motion_goal_t> goals_within(const MotionBounds& bounds) const;
+  /// Returns the id of a motion that begins now.
+  std::int32_t note_begin();
+  /// Waits until taktd has answered a motion that goes on. If it does not go on, returns why.
+  Done wait_for_answer();
   Course course() const;
   Course course_of(Index axis) const;
   std::string reason(Course course) const;

@@ -60,6 +60,9 @@ class AxisGroup::State {
   bool publish(command_t& command);
   template <class Message>
   bool send(const std::string& channel, Message& message);
+  /// The same for a message about motions, from the newest image.
+  template <class Message>
+  bool send_goals(const std::string& channel, Message& message);
   std::optional<axis_motion_t> motion_of(const AxisSignals& signals) const;
   std::chrono::nanoseconds age() const { return Clock::now() - arrival; }
   std::chrono::nanoseconds period() const { return std::chrono::nanoseconds{input.period_ns()}; }
@@ -77,6 +80,7 @@ class AxisGroup::State {
   std::string secured_channel;
   std::string motion_channel;
   std::string motion_command_channel;
+  std::string motion_gear_channel;
   std::string event_channel;
   std::string status_channel;
   ImageInput input;
@@ -119,6 +123,7 @@ void AxisGroup::State::listen_to(std::string_view name) {
   status_channel = channel_name(bus, "STATUS");
   motion_channel = channel_name(bus, "MOTION");
   motion_command_channel = channel_name(bus, "MOTION_COMMAND");
+  motion_gear_channel = channel_name(bus, "MOTION_GEAR");
   lcm->subscribe(motion_channel);
   lcm->subscribe(image_channel);
   lcm->subscribe(event_channel);
@@ -226,6 +231,16 @@ bool AxisGroup::State::send(const std::string& channel, Message& message) {
   return lcm->publish(secured_channel, seal->seal(channel, bytes, message.session, now));
 }
 
+template <class Message>
+bool AxisGroup::State::send_goals(const std::string& channel, Message& message) {
+  commands = true;
+  message.schema = message_schema;
+  message.session = input.session();
+  message.cycle = input.cycle();
+  message.num_goals = static_cast<std::int32_t>(message.goals.size());
+  return send(channel, message);
+}
+
 Input AxisGroup::wait(std::chrono::nanoseconds longest) {
   State& state = *state_;
   const auto until = State::Clock::now() + longest;
@@ -271,12 +286,11 @@ bool AxisGroup::send_controls(std::span<const AxisControl::Index> axes) {
 }
 
 bool AxisGroup::send_motion(motion_command_t& command) {
-  state_->commands = true;
-  command.schema = message_schema;
-  command.session = state_->input.session();
-  command.cycle = state_->input.cycle();
-  command.num_goals = static_cast<std::int32_t>(command.goals.size());
-  return state_->send(state_->motion_command_channel, command);
+  return state_->send_goals(state_->motion_command_channel, command);
+}
+
+bool AxisGroup::send_gear(motion_gear_t& gear) {
+  return state_->send_goals(state_->motion_gear_channel, gear);
 }
 
 bool AxisGroup::release() {

@@ -1,4 +1,4 @@
-"""Axes of a bus whose motions taktd runs: enable, move, jog, stop. This program may be late.
+"""Axes of a bus whose motions taktd runs: enable, move, jog, gear, stop. This program may be late.
 
     from takt_axes import Axes
 
@@ -33,7 +33,8 @@ import time
 from collections.abc import Callable
 
 import lcm
-from takt import command_t, event_t, image_t, layout_t, motion_command_t, motion_goal_t, motion_t, status_t
+from takt import (command_t, event_t, image_t, layout_t, motion_command_t, motion_gear_t, motion_goal_t, motion_t,
+                  status_t)
 
 SCHEMA = 2  # of the LCM messages that this module knows
 CONTROLWORD, STATUSWORD, MODE, MODE_DISPLAY, POSITION, VELOCITY = 0x6040, 0x6041, 0x6060, 0x6061, 0x6064, 0x606C
@@ -57,6 +58,7 @@ DISABLED = ("switch on disabled", "not ready to switch on", "fault")
 FAULT_RESET = 0x80
 FAULTS = ("fault", "fault reaction active")
 NOT_ENABLED, MOVES, STOPS = 0, 2, 3  # axis_motion_t::state
+LOCKED = 2  # axis_motion_t::gear
 DONE, STOPPED, REPLACED, REFUSED = 1, 2, 3, 4  # axis_motion_t::outcome
 ANSWER_TIME, REASON_TIME, IMAGE_TIME = 2.0, 0.1, 2.0  # seconds
 STOP_PAUSE, SILENCE = 0.05, 0.05  # seconds between two stops, and between two signs of life
@@ -279,6 +281,55 @@ class Axes:
                 self._stop_now()
             raise
 
+    def gear(self, leader: str, *, signal: str = "", ratio: float | list[float] = 1.0,
+             phase: float | list[float] | None = None, modulo: float = 0.0, filter_time: float = 0.0,
+             max_phase_error: float | list[float] = 0.0, **limits: float | list[float]) -> None:
+        """Begins to follow the commanded position of the axis `leader`, or the input `signal` of the node `leader`
+        ("position_value" of an encoder), and returns when taktd has begun. The axes follow until stop() or until another
+        motion; a move() takes over without a stop. `ratio`: units of an axis per unit of the leader. Without `phase`, the
+        velocities are matched; with it, the positions become ratio * position of the leader + phase. `modulo`: value at
+        which the signal begins again. `filter_time`: of the estimate of its velocity, 0 for 20 ms. `max_phase_error`: the
+        axes stop above it, once they were locked; 0: they fall behind and catch up. See `locked`."""
+        def each(value):
+            return [float(one) for one in (value if isinstance(value, (list, tuple)) else [value] * len(self._axes))]
+        message = motion_gear_t()
+        message.numerator, message.denominator = each(ratio), each(1.0)
+        message.max_phase_error = each(max_phase_error)
+        for values in (message.numerator, message.max_phase_error):
+            self._check(values)
+        message.goals = self._ready_goals("gear", each(0.0 if phase is None else phase), limits)
+        message.num_goals = len(message.goals)
+        node, _, number = leader.partition(".")
+        message.leader, message.leader_axis = (leader, 0) if signal or not number.isdecimal() else (node, int(number))
+        message.signal, message.modulo, message.filter_time = signal, float(modulo), float(filter_time)
+        message.phase = "here" if phase is None else "at"
+        self._note_begin()
+        message.id, message.timeout_ms = self._number, round(self.timeout * 1000)
+        self._fill(message)
+        self._link.publish(f"{self.bus}_MOTION_GEAR", message.encode())
+        self._wait(lambda: self._course() != "unanswered", ANSWER_TIME)
+        if self._course() != "runs":
+            self._raise_end()
+
+    @property
+    def locked(self) -> bool:
+        """True if all axes follow their leader with the position that their gear wants."""
+        return all(axis.motion is not None and axis.motion.gear == LOCKED for axis in self._axes)
+
+    @property
+    def phase_errors(self) -> list[float]:
+        """Of gears: how far each axis is ahead of the position that its gear wants."""
+        return [axis.motion.phase_error if axis.motion else 0.0 for axis in self._axes]
+
+    def wait_locked(self, seconds: float) -> None:
+        """Waits until the gears of all axes are locked."""
+        def over():
+            return self.locked or self._course() != "runs"
+        if not self._wait(over, seconds):
+            raise Obstacle("time over", "the axes have not reached the state of their leader")
+        if not self.locked:
+            self._raise_end()
+
     def wait(self, seconds: float = float("inf")) -> None:
         """Waits until the newest motion has ended: a move, when the commanded positions are at its target. Does not stop it
         when `seconds` are over."""
@@ -319,6 +370,17 @@ class Axes:
     # Below here: messages.
 
     def _begin(self, kind: str, values: tuple[float, ...], limits: dict) -> None:
+        goals = self._ready_goals(kind, values, limits)
+        self._note_begin()
+        self._send(kind, goals, self._number)
+
+    def _note_begin(self) -> None:
+        self._events.clear()
+        self._number += 1
+        self._has_motion, self._may_move, self._begun = True, True, time.monotonic()
+
+    def _ready_goals(self, kind: str, values, limits: dict) -> list[motion_goal_t]:
+        """The goals of a motion, which may begin now."""
         self._jog_wanted = False
         self._check(values)
         if not self._enabled:
@@ -335,10 +397,7 @@ class Axes:
                 if not hasattr(goal, f"max_{name}"):
                     raise TypeError(f"unknown limit {name}")
                 setattr(goal, f"max_{name}", float(limit[place] if isinstance(limit, (list, tuple)) else limit))
-        self._events.clear()
-        self._number += 1
-        self._has_motion, self._may_move, self._begun = True, True, time.monotonic()
-        self._send(kind, goals, self._number)
+        return goals
 
     def _check(self, values) -> None:
         if len(values) != len(self._axes):

@@ -52,6 +52,16 @@ class Drive:
         return "it may be a copy, which must not move the axis again" if copy else ""
 
 
+def as_command(gear):
+    """A gear is a jog whose axes are locked at once."""
+    command = takt.motion_command_t()
+    command.kind, command.id, command.cycle, command.utime = "gear", gear.id, gear.cycle, gear.utime
+    command.sender, command.timeout_ms, command.goals = gear.sender, gear.timeout_ms, gear.goals
+    for goal in command.goals:
+        goal.velocity = 1.0
+    return command
+
+
 class Daemon:
     """In the place of the modules lcm and time: each wait for messages is a cycle."""
 
@@ -60,6 +70,7 @@ class Daemon:
         self.motions, self.active, self.refuses, self.holder, self.sender = True, False, "", "", ""
         self.commands, self.signs, self.released, self.emcy, self.each_cycle = [], 0, 0, 0, lambda daemon: None
         self.loses, self.mute_until, self.refuses_signs = lambda command: False, 0, False
+        self.gears = []
         self.delay, self.late = 0, []  # of motion commands on their way here, in cycles
 
     def LCM(self):
@@ -81,6 +92,10 @@ class Daemon:
             for place, value in zip(command.signals, command.values):
                 if not self.holder:
                     setattr(self.drives[place % 2], "controlword" if place < 6 else "mode", value)
+        elif channel == "LIFT_MOTION_GEAR":
+            self.gears.append(takt.motion_gear_t.decode(data))
+            self.late.append((self.cycle + self.delay, as_command(self.gears[-1])))
+            self.take_due()
         elif self.motions:
             self.late.append((self.cycle + self.delay, takt.motion_command_t.decode(data)))
             self.take_due()
@@ -166,7 +181,8 @@ class Daemon:
             if not drive.velocity and drive.position == drive.target:
                 drive.end(1)
         motion.state = 0 if not enabled else 3 if drive.slowing else 2 if motion.id else 1
-        motion.position = drive.position
+        follows = motion.id and self.gears and self.gears[-1].id == motion.id
+        motion.gear, motion.position = 2 if follows else 0, drive.position
 
     def image(self):
         image = takt.image_t()
@@ -241,6 +257,25 @@ check("the axes move together to their targets", axes.positions == [2.0, -1.0] a
 check("a command has the limits", (goals[1].max_velocity, goals[1].max_acceleration, goals[1].max_jerk) == (3, 5, 0))
 axes.move_by(-0.5, 0.5)
 check("they move from where they are", axes.commanded_positions == [1.5, -0.5], axes.commanded_positions)
+daemon, axes = on_a_bus()
+axes.enable()
+axes.gear("wheel", signal="position_value", ratio=[0.5, -2], phase=3.0, modulo=4096, velocity=4)
+axes.wait_locked(LONG)
+gear = daemon.gears[0]
+check("axes follow the input of a node", axes.locked and (gear.leader, gear.signal, gear.phase) == ("wheel", "position_value", "at"))
+check("a gear has its numbers", (gear.numerator, gear.modulo, gear.goals[1].position, gear.goals[1].max_velocity)
+      == ((0.5, -2.0), 4096.0, 3.0, 4.0), gear.numerator)
+axes.stop()
+check("a stop ends a gear", not axes.locked and not axes.moving)
+axes.gear("gantry.2")
+check("an axis of a device can lead", (daemon.gears[1].leader, daemon.gears[1].leader_axis, daemon.gears[1].phase)
+      == ("gantry", 2, "here"))
+axes.stop()
+daemon.refuses = "its leader 'wheel' is no node of the bus"
+check("a refused gear says why", obstacle(axes.gear, "wheel")[0] == "refused")
+daemon.refuses = ""
+daemon, axes = on_a_bus()
+axes.enable()
 axes.begin_move(3.0, -2.0)
 axes.move_by(0.25, 0.25)
 newest = daemon.commands[-2:]

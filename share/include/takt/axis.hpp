@@ -14,6 +14,7 @@
 #include <takt/image_input.hpp>
 #include <takt/lcm.hpp>
 #include <takt/motion_command_t.hpp>
+#include <takt/motion_gear_t.hpp>
 #include <takt/node_status_t.hpp>
 #include <vector>
 
@@ -94,6 +95,9 @@ class AxisGroup {
   /// fills in the rest. Returns false if LCM did not take the message. Axes (`<takt/motion.hpp>`)
   /// calls this function.
   bool send_motion(motion_command_t& command);
+  /// Sends a gear in the same way. The caller fills in the leader, the ratios, `id`, `phase`,
+  /// `timeout_ms` and `goals`.
+  bool send_gear(motion_gear_t& gear);
 
   /// Returns the axes, which wait() keeps up to date. There are none before the first layout.
   AxisControl& axes() noexcept;

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// Motions of CiA 402 axes that taktd runs (`taktd --motions`): enable, move, jog, stop. The bus
-/// thread of taktd gives the drives their set-points, so the program may be late.
+/// Motions of CiA 402 axes that taktd runs (`taktd --motions`): enable, move, jog, gear, stop. The
+/// bus thread of taktd gives the drives their set-points, so the program may be late.
 #include <Eigen/Core>
 #include <chrono>
 #include <cstdint>
@@ -67,6 +67,29 @@ struct MotionBounds {
   Eigen::VectorXd following_error = {};  ///< unit; the axes stop above it. None or 0: not watched
 };
 
+/// A leader that axes follow, and how. See Axes::gear(). Vectors have one value for each axis, or
+/// one for all axes.
+struct Gear {
+  /// Name of the axis whose commanded position leads, as in AxesOptions::names; with `signal`, the
+  /// name of a node.
+  std::string leader = {};
+  /// Name of the input of the node that leads instead: "position_value" of an encoder (0x6004),
+  /// "position_actual_value" of a drive.
+  std::string signal = {};
+  /// Units of the axis per unit of the leader. Negative: the axis turns the other way. None: 1.
+  Eigen::VectorXd ratio = {};
+  /// The positions become ratio * position of the leader + phase. None: only the velocities are
+  /// matched, and each axis keeps the phase that it has then.
+  Eigen::VectorXd phase = {};
+  /// Value at which the signal begins again, in its unit. 0: it only wraps with its number of bits.
+  double modulo = 0.0;
+  /// Time constant of the estimate of the velocity of a signal. 0: 20 ms.
+  std::chrono::nanoseconds filter_time{0};
+  /// The axes stop above this phase error, once they were locked. None or 0: they fall behind, and
+  /// catch up.
+  Eigen::VectorXd max_phase_error = {};
+};
+
 /// Axes of one bus whose motions taktd runs. Each call returns when it has done its work, or says
 /// in words what blocks it.
 ///
@@ -116,6 +139,12 @@ class Axes {
   /// stop(), until the end of their range, or until this program is silent. If the call fails, it
   /// stops the axes.
   Done jog(const Eigen::Ref<const Eigen::VectorXd>& velocities, const MotionBounds& bounds = {});
+  /// Begins to follow a leader, and returns when taktd has begun. The axes approach the moving
+  /// state of the leader within their limits, and follow it until stop(), until another motion
+  /// begins, or until this program is silent. move() takes over without a stop. See wait_locked().
+  Done gear(const Gear& gear, const MotionBounds& bounds = {});
+  /// Waits until all axes have the positions that their gears want.
+  Done wait_locked(std::chrono::nanoseconds longest);
   /// Stops the axes along their limits, and waits until they stand.
   Done stop();
   /// Waits until the newest motion has ended. Does not stop it if `longest` is over.
@@ -140,6 +169,10 @@ class Axes {
   Eigen::VectorXd commanded_positions() const;
   /// Returns the following errors, commanded minus actual position, as taktd has reported last.
   Eigen::VectorXd following_errors() const;
+  /// Returns true if the gears of all axes are locked, as taktd has reported last.
+  bool locked() const;
+  /// Returns how far each axis is ahead of the position that its gear wants.
+  Eigen::VectorXd phase_errors() const;
   /// Returns the group below: its image, its events, and the states of its drives.
   AxisGroup& group() noexcept;
 

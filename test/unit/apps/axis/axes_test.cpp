@@ -85,6 +85,51 @@ TEST_F(AxesOnABus, JogUntilTheyStop) {
   EXPECT_GT(daemon_.commands.back().cycle, daemon_.commands.rbegin()[1].cycle);
 }
 
+TEST_F(AxesOnABus, FollowALeaderUntilTheyStop) {
+  Axes axes = open_enabled();
+  const Gear gear{.leader = "wheel",
+                  .signal = "position_value",
+                  .ratio = Eigen::Vector2d{0.5, -2.0},
+                  .phase = Eigen::VectorXd::Constant(1, 3.0),
+                  .modulo = 4096.0,
+                  .filter_time = 50ms};
+  ASSERT_TRUE(axes.gear(gear, {.velocity = Eigen::VectorXd::Constant(1, 4.0)}));
+  ASSERT_TRUE(axes.wait_locked(100s));
+  EXPECT_TRUE(axes.locked());
+  ASSERT_EQ(daemon_.gears.size(), 1U);
+  const motion_gear_t& sent = daemon_.gears[0];
+  EXPECT_EQ(sent.leader, "wheel");
+  EXPECT_EQ(sent.signal, "position_value");
+  EXPECT_EQ(sent.phase, "at");
+  EXPECT_EQ(sent.modulo, 4096.0);
+  EXPECT_EQ(sent.filter_time, 0.05);
+  EXPECT_EQ(sent.numerator, (std::vector<double>{0.5, -2.0}));
+  EXPECT_EQ(sent.goals.at(1).position, 3.0);
+  EXPECT_EQ(sent.goals.at(1).max_velocity, 4.0);
+  ASSERT_TRUE(axes.stop());
+  EXPECT_FALSE(axes.locked());
+  EXPECT_FALSE(axes.moving());
+}
+
+TEST_F(AxesOnABus, NameTheAxisOfADeviceThatLeads) {
+  Axes axes = open_enabled({"elbow"});
+  ASSERT_TRUE(axes.gear({.leader = "gantry.2"}));
+  EXPECT_EQ(daemon_.gears.at(0).leader, "gantry");
+  EXPECT_EQ(daemon_.gears.at(0).leader_axis, 2);
+  EXPECT_EQ(daemon_.gears.at(0).phase, "here");
+  EXPECT_EQ(daemon_.gears.at(0).numerator, std::vector<double>{1.0});
+}
+
+TEST_F(AxesOnABus, SayWhyTaktdRefusesAGear) {
+  Axes axes = open_enabled();
+  daemon_.refuses = "its leader 'wheel' is no node of the bus";
+  const Obstacle why = obstacle_of(axes.gear({.leader = "wheel"}));
+  EXPECT_EQ(why.kind, Kind::refused);
+  EXPECT_THAT(why.text, HasSubstr("is no node of the bus"));
+  EXPECT_EQ(obstacle_of(axes.gear({.leader = "wheel", .ratio = Eigen::Vector3d{1, 2, 3}})).kind,
+            Kind::wrong_use);
+}
+
 TEST_F(AxesOnABus, StayAliveWhileACallWaits) {
   Axes axes = open_enabled({"shoulder"});
   ASSERT_TRUE(axes.jog(Eigen::VectorXd::Constant(1, 1.0)));

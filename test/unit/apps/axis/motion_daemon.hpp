@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <takt/motion_command_t.hpp>
+#include <takt/motion_gear_t.hpp>
 #include <takt/motion_t.hpp>
 #include <utility>
 #include <vector>
@@ -41,6 +42,7 @@ struct MotionDaemon {
   std::int32_t last_emcy = 0;
   std::function<void(MotionDaemon&)> each_cycle;
   std::vector<motion_command_t> commands;  ///< without signs of life
+  std::vector<motion_gear_t> gears;
   int signs_of_life = 0;
   int releases = 0;
   bool cyclic = true;     ///< false: no further image comes
@@ -53,6 +55,7 @@ class MotionDaemonTransport final : public Transport {
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override {
     if (channel == "LIFT_COMMAND") take(*decode<command_t>(data));
+    if (channel == "LIFT_MOTION_GEAR") take(*decode<motion_gear_t>(data));
     if (channel != "LIFT_MOTION_COMMAND") return true;
     if (daemon_.has_motions) {
       take(*decode<motion_command_t>(data));
@@ -128,6 +131,18 @@ class MotionDaemonTransport final : public Transport {
     }
   }
 
+  /// A gear is a jog whose axes are locked at once.
+  void take(const motion_gear_t& gear) {
+    daemon_.gears.push_back(gear);
+    motion_command_t command{};
+    command.kind = "gear";
+    command.id = gear.id;
+    command.sender = gear.sender;
+    command.goals = gear.goals;
+    for (motion_goal_t& goal : command.goals) goal.velocity = 1.0;
+    take(command);
+  }
+
   void say(const std::string& kind, const std::string& text) {
     event_t event{};
     event.schema = message_schema;
@@ -168,6 +183,8 @@ class MotionDaemonTransport final : public Transport {
       drive.position += drive.velocity != 0.0 ? std::copysign(0.001, drive.velocity) : way;
       if (drive.velocity == 0.0 && drive.position == drive.target) end(drive, 1);
     }
+    const bool follows = !daemon_.gears.empty() && daemon_.gears.back().id == drive.motion.id;
+    drive.motion.gear = follows && drive.motion.id != 0 ? 2 : 0;
     drive.motion.state = !enabled ? 0 : drive.motion.id != 0 ? 2 : 1;
     drive.motion.position = drive.position;
   }
