@@ -140,6 +140,7 @@ ROOMS = {
                     "eds_parser/report eds_parser/network_file master master/units master/wire master/core master/explain "
                     "master/rt master/rt/exchange master/rt/journal " + LINUX + " " + SIM),
     "apps/move": ("takt-move", "apps/axis apps/command_line master/motion master/lcm"),
+    "apps/follow": ("takt-follow", "apps/axis apps/command_line master/lcm"),
     "apps/jog": ("takt-jog", "apps/axis apps/command_line master/lcm"),
     "apps/takt/live": ("commands for a running daemon: status, top, timing, EMCY, record",
                        "apps/command_line master/core master/explain master/gateway/message master/gateway/notice "

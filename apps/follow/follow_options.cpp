@@ -1,0 +1,102 @@
+#include "apps/follow/follow_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "apps/command_line/duration.hpp"
+#include "apps/command_line/known_words.hpp"
+#include "apps/command_line/live_arguments.hpp"
+
+namespace takt {
+namespace {
+
+std::optional<double> number(std::string_view text) {
+  double value = 0.0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool good = read.ec == std::errc{} && read.ptr == text.data() + text.size();
+  return good && std::isfinite(value) ? std::optional{value} : std::nullopt;
+}
+
+/// Reads "1.5", "-1/3" or "2:1".
+std::optional<double> ratio_of(std::string_view text) {
+  const std::size_t split = text.find_first_of("/:");
+  if (split == std::string_view::npos) return number(text);
+  const auto above = number(text.substr(0, split));
+  const auto below = number(text.substr(split + 1));
+  if (!above || !below || *below == 0.0) return std::nullopt;
+  return *above / *below;
+}
+
+std::string no_ratio(const std::string& text) {
+  return ratio_of(text) ? std::string{} : text + " is neither a number nor two, such as 1/3";
+}
+
+std::string not_finite(const std::string& text) {
+  return number(text) ? std::string{} : text + " is not a finite number";
+}
+
+void add_time(CLI::App& app, const std::string& name, Time& time, const std::string& what) {
+  app.add_option_function<std::string>(
+         name, [&time](const std::string& text) { time = parse_duration(text).value_or(time); },
+         what)
+      ->check(duration_error);
+}
+
+void add_limit(CLI::App& app, const std::string& name, double& limit, const std::string& what) {
+  app.add_option(name, limit, what)->check(CLI::PositiveNumber & CLI::Validator{not_finite, ""});
+}
+
+}  // namespace
+
+ParsedFollow parse_follow(int argc, char** argv) {
+  FollowOptions options;
+  CLI::App app{"Lets an axis follow an encoder or another axis. taktd computes the motion.",
+               "takt-follow"};
+  app.footer(
+      "Ctrl-C stops the axis and disables it.\n"
+      "Example:  takt-follow follow --axis slide --leader wheel --signal position_value \\\n"
+      "              --ratio 1/4096 --velocity 5 --acceleration 40\n"
+      "Lengths are in the unit of the axis (rad, m; counts if no unit is configured).\n"
+      "Exit codes: 0 the axis was stopped and disabled, 1 something blocks it, 2 wrong use,\n"
+      "3 no message of a daemon came.");
+  app.set_version_flag("--version", "takt-follow " TAKT_VERSION);
+  app.add_option("bus", options.bus, "name of the bus (default: the first bus whose daemon sends)");
+  app.add_option("--axis", options.axis, "axis that follows (default: the only axis of the bus)");
+  app.add_option("--leader", options.leader, "axis that leads, or the node of --signal")
+      ->required();
+  app.add_option("--signal", options.signal,
+                 "input of the leader to follow, for example position_value (default: the "
+                 "commanded position of the axis)");
+  app.add_option_function<std::string>(
+         "--ratio",
+         [&](const std::string& text) { options.ratio = ratio_of(text).value_or(options.ratio); },
+         "units of the axis per unit of the leader, for example 0.5, -1/3 (1)")
+      ->check(no_ratio);
+  app.add_option("--phase", options.phase,
+                 "catch up the position ratio * leader + PHASE (default: match the velocities)")
+      ->check(not_finite);
+  add_limit(app, "--modulo", options.modulo, "value at which the signal begins again");
+  add_time(app, "--filter", options.filter_time,
+           "time constant of the estimate of the signal's velocity, up to 10s (20ms)");
+  add_limit(app, "--max-phase-error", options.max_phase_error,
+            "stop if the axis falls behind by more (default: catch up)");
+  add_limit(app, "--velocity", options.velocity,
+            "velocity limit, unit/s (default: that of the network file)");
+  add_limit(app, "--acceleration", options.acceleration, "acceleration limit, unit/s^2 (the same)");
+  add_limit(app, "--jerk", options.jerk, "jerk limit, unit/s^3 (the same)");
+  add_time(app, "--timeout", options.timeout,
+           "taktd stops the axis if this program is silent for so long, up to 10s (500ms)");
+  app.add_option_function<std::string>(
+         "--for", [&](const std::string& text) { options.seconds = parse_duration(text); },
+         "follow for this time once the axis is locked, then stop")
+      ->check(duration_error);
+  add_time(app, "--wait", options.wait, "longest wait for the daemon and the drive (10s)");
+  app.add_option("--lcm-url", options.lcm.url, "LCM URL of the daemon; default: LCM_DEFAULT_URL");
+  add_key_options(app, options.lcm.keys, options.lcm.check_images);
+  const auto exit_code = parse_arguments(app, argc, argv);
+  return {options, exit_code};
+}
+
+}  // namespace takt
