@@ -150,7 +150,16 @@ constexpr Key<SimSpec> sim_keys[] = {
     key<&SimSpec::firmware>("firmware", "unknown", "The firmware of the simulated device."),
     key<read_quirks>("quirks", {.type = KeyType::list, .words = sim_quirks}, "none",
                      "Faults and special features, which [faults.md](faults.md) describes."),
+    key<read_mechanics>("mechanics", {.type = KeyType::map, .parts = mechanics_rows}, "none",
+                        "What stands behind each axis of a `drive402`; `{}`: a servo motor of "
+                        "400 W with a load. See [simulation.md](simulation.md)."),
 };
+
+void check_sim(const KeyInput& in, const SimSpec& sim) {
+  if (!sim.mechanics || sim.model.empty() || sim.model == "drive402") return;
+  in.error("wrong-type", in.what(), ": `mechanics` belongs to the model `drive402`, not to `",
+           sim.model, "`");
+}
 
 void read_rpdos(const KeyInput& in, NodeSpec& node) {
   const std::size_t errors = in.report().errors();
@@ -297,7 +306,7 @@ constexpr Key<NodeSpec> node_keys[] = {
     map_key<&NodeSpec::on_timeout, timeout_keys, check_timeout>(
         "on_timeout", "drives `quick_stop`, others `hold`, after 50 ms",
         "What outputs do when their command has become too old."),
-    map_key<&NodeSpec::sim, sim_keys>("sim", "by 0x1000", "For the simulation."),
+    map_key<&NodeSpec::sim, sim_keys, check_sim>("sim", "by 0x1000", "For the simulation."),
     also<NodeSpec, ros_keys<NodeSpec>>(),
     foreign<NodeSpec>("switching_state homing_timeout_seconds",
                       "it is for the ROS 2 drive driver; in takt applications switch modes and do "

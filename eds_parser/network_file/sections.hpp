@@ -58,6 +58,9 @@ void read_units(const KeyInput& in, NodeSpec& node);
 KeyRows units_rows();
 void read_limits(const KeyInput& in, NodeSpec& node);
 KeyRows limits_rows();
+/// Reads `mechanics` of `sim`, and checks that the parameters fit together.
+void read_mechanics(const KeyInput& in, SimSpec& sim);
+KeyRows mechanics_rows();
 
 /// Reads `heartbeat_consumer`. Other programs take each number except 0 as true, and some files
 /// state a time in ms here, so any number is accepted.

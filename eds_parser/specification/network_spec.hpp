@@ -12,6 +12,7 @@
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/firmware.hpp"
 #include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/mechanics.hpp"
 #include "eds_parser/table/run_options.hpp"
 #include "eds_parser/table/sdo_access.hpp"
 
@@ -171,6 +172,8 @@ struct SimSpec {
   std::string model;
   Sourced<Firmware> firmware;
   std::vector<std::string> quirks;
+  /// Positions are in the unit of `units: position`; a `turn` of 0 means the default.
+  std::optional<MechanicsTable> mechanics{};
 };
 
 struct NodeSpec {

@@ -8,6 +8,7 @@
 
 #include "eds_parser/table/data_type.hpp"
 #include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/mechanics.hpp"
 
 namespace takt {
 
@@ -39,6 +40,8 @@ struct DeviceTable {
   std::string model;                    ///< "drive402", "io401", "lenze8400", "plain" ...
   std::vector<std::string> quirks;      ///< "late_bootup", ...
   std::string firmware{};               ///< "15.02.00"; empty = the newest that the model knows
+  /// What stands behind the axes of a `drive402`; none: its motors are simple lags.
+  std::optional<MechanicsTable> mechanics{};
 };
 
 }  // namespace takt

@@ -1,9 +1,11 @@
 #include "eds_parser/plan/device/device_compiler.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/dictionary/profile_of.hpp"
+#include "eds_parser/plan/device/device_mechanics.hpp"
 #include "eds_parser/specification/device_data.hpp"
 #include "eds_parser/table/pdo_number.hpp"
 
@@ -76,6 +78,11 @@ DeviceTable compile_device(const NodeSource& node) {
     if (node.data != nullptr && node.data->revision_is_firmware) {
       set_value(table, {0x1018, 3}, std::uint64_t{parts[0]} << 16 | parts[1]);
     }
+  }
+  if (node.spec->sim.mechanics && table.model == "drive402") {
+    table.mechanics = compile_mechanics(node);
+    const double rated = table.mechanics->motor.rated_torque * 1000;  // mN m
+    set_value(table, {0x6076, 0}, static_cast<std::uint64_t>(std::llround(rated)));
   }
   if (*node.spec->serial_number != 0) set_value(table, {0x1018, 4}, *node.spec->serial_number);
   return table;

@@ -20,7 +20,10 @@ bool has_quirk(const DeviceTable& table, std::string_view quirk) {
 
 std::unique_ptr<Model> make_model(const DeviceTable& table, ObjectStore& store, EmcyProducer& emcy,
                                   Random random) {
-  if (table.model == "drive402") return std::make_unique<Drive402>(store, emcy, random);
+  if (table.model == "drive402") {
+    const MechanicsTable* const mechanics = table.mechanics ? &*table.mechanics : nullptr;
+    return std::make_unique<Drive402>(store, emcy, random, mechanics);
+  }
   if (table.model == "encoder406") return std::make_unique<Encoder406>(store, emcy, random);
   const bool loopback = has_quirk(table, "loopback");
   if (table.model == "io401") return std::make_unique<Io401>(store, emcy, random, loopback);

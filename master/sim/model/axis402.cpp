@@ -16,14 +16,20 @@ bool stays_in_quick_stop(std::int64_t option) noexcept { return option >= 5 && o
 
 }  // namespace
 
-Axis402::Axis402(ObjectStore& store, EmcyProducer& emcy, Random random, std::uint8_t number)
+Axis402::Axis402(ObjectStore& store, EmcyProducer& emcy, Random random, std::uint8_t number,
+                 const MechanicsTable* mechanics)
     : objects_{store, static_cast<std::uint16_t>(0x800 * number)},
       emcy_{emcy},
       number_{number},
       profile_{objects_},
-      homing_{objects_, random} {
+      homing_{objects_, random},
+      points_{objects_} {
   motor_.position = static_cast<double>(objects_.position_actual.get());
   rated_acceleration_ = std::max(4 * objects_.profile_acceleration.positive_or(0), 1e6);
+  if (mechanics == nullptr) return;
+  servo_ = std::make_unique<AxisServo>(objects_, *mechanics, random.fork(1));
+  servo_->shift(motor_.position);
+  homing_.use(*servo_);
 }
 
 void Axis402::reset(Time now) noexcept {
@@ -35,6 +41,9 @@ void Axis402::reset(Time now) noexcept {
   following_error_ = settled_ = target_waits_ = false;
   demand_ = {motor_.position, 0};
   time_ = now;
+  releases_ = blocked_ = interpolates_ = false;
+  if (servo_) points_.clear();
+  if (servo_) servo_->reset(now);
   last_sync_ = sync_distance_ = Time{};
   initialised_at_ = now + initialisation;
   publish();
@@ -42,7 +51,8 @@ void Axis402::reset(Time now) noexcept {
 
 /// True if nothing changes until an object is written.
 bool Axis402::idle() const noexcept {
-  return settled_ && !is_powered(state_) && motor_.stands() && state_ != DriveState::not_ready;
+  if (!settled_ || is_powered(state_) || state_ == DriveState::not_ready) return false;
+  return servo_ ? servo_->servo().rests() : motor_.stands();
 }
 
 void Axis402::outputs(Time now) noexcept {
@@ -65,6 +75,11 @@ double Axis402::interpolation_period() const noexcept {
   if (sync_distance_ > Time{} && sync_distance_ < std::chrono::seconds{1}) {
     return static_cast<double>(sync_distance_.count()) * 1e-9;
   }
+  return reported_period();
+}
+
+/// Returns the interpolation time period 0x60C2, in seconds.
+double Axis402::reported_period() const noexcept {
   const auto exponent = std::clamp<std::int64_t>(objects_.period_exponent.get(), -9, 0);
   const double reported = static_cast<double>(objects_.period_value.get()) *
                           std::pow(10.0, static_cast<double>(exponent));
@@ -75,11 +90,15 @@ void Axis402::take_cyclic_target(double period) noexcept {
   if (state_ != DriveState::operation_enabled) return;
   const bool interpolated = mode_ == DriveMode::interpolated_position;
   if (mode_ != DriveMode::cyclic_position && !interpolated) return;
-  if (interpolated && (controlword_ & 0x10) == 0) return;
+  if (interpolated && !servo_ && (controlword_ & 0x10) == 0) return;
   const Slot& slot = interpolated ? objects_.interpolation_target : objects_.target_position;
   bool limited = false;
   const double wanted = static_cast<double>(slot.get() + objects_.position_offset.get());
   const double target = within_limits(objects_, wanted, limited);
+  if (interpolated && servo_) {
+    if (last_sync_ == time_ || target != points_.newest()) points_.add(target);
+    return;
+  }
   cyclic_.take(demand_, target, period, objects_.max_profile_velocity.positive_or(1e12));
 }
 
@@ -107,6 +126,10 @@ void Axis402::follow_mode() noexcept {
 void Axis402::start_mode() noexcept {
   published_ = never;
   if (!is_powered(state_)) demand_ = {motor_.position, 0};
+  if (servo_ && is_powered(state_)) meet_motion();
+  if (servo_ && mode_ == DriveMode::profile_position) demand_.velocity = 0;
+  if (servo_) points_.clear();
+  interpolates_ = false;
   profile_.start(demand_);
   homing_.start();
   cyclic_.start(demand_);
@@ -121,12 +144,29 @@ void Axis402::follow_controlword() noexcept {
   const bool stays = stays_in_quick_stop(objects_.quick_stop_option.get());
   const DriveState next = commanded(state_, command_of(controlword_), stays);
   settled_ = next == state_;
+  releases_ = waits_for_brake(next);
+  if (releases_) return;
   go(next);
   if (state_ != DriveState::operation_enabled) return;
   if (mode_ == DriveMode::profile_position) {
     profile_.on_controlword(before, controlword_, demand_, motor_.position);
   }
   if (mode_ == DriveMode::homing) homing_.on_controlword(before, controlword_, demand_);
+  if (mode_ == DriveMode::interpolated_position) {
+    constexpr std::uint16_t enables = 0x10;
+    if ((~before & controlword_ & enables) != 0) interpolates_ = true;
+    if ((controlword_ & enables) == 0) interpolates_ = false;
+  }
+}
+
+/// True while the axis has to wait for its brake before it is enabled.
+bool Axis402::waits_for_brake(DriveState next) const noexcept {
+  return servo_ && next == DriveState::operation_enabled && !servo_->servo().released();
+}
+
+/// Makes a demand of the motion as it is, after the demand has followed the motion or left it.
+void Axis402::meet_motion() noexcept {
+  demand_ = servo_ ? servo_->demand() : Demand{motor_.position, motor_.velocity};
 }
 
 /// Enters the next state. Some transitions out of Operation enabled first stop the motor on a ramp.
@@ -138,6 +178,7 @@ void Axis402::go(DriveState next) noexcept {
   const bool disables = next == DriveState::switched_on && objects_.disable_option.get() != 0;
   const bool shuts_down = next == DriveState::ready && objects_.shutdown_option.get() != 0;
   if (disables || shuts_down || next == state_) {
+    if (servo_ && next != stopping_to_ && next != state_ && !controls_position()) meet_motion();
     stopping_to_ = next;
     return;
   }
@@ -153,7 +194,7 @@ void Axis402::enter(DriveState next) noexcept {
   stopping_to_ = DriveState::operation_enabled;
   if (!is_powered(next) || !was_powered) demand_ = {motor_.position, 0};
   const bool brakes = next == DriveState::quick_stop || next == DriveState::fault_reaction;
-  if (brakes) demand_ = {motor_.position, motor_.velocity};
+  if (brakes) meet_motion();
   if (next == DriveState::operation_enabled) start_mode();
 }
 

@@ -1,13 +1,17 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 
+#include "eds_parser/table/mechanics.hpp"
 #include "eds_parser/table/time.hpp"
 #include "master/sim/dictionary/abort.hpp"
 #include "master/sim/model/axis_objects.hpp"
+#include "master/sim/model/axis_servo.hpp"
 #include "master/sim/model/cyclic_position.hpp"
 #include "master/sim/model/drive_state.hpp"
 #include "master/sim/model/homing.hpp"
 #include "master/sim/model/motion.hpp"
+#include "master/sim/model/point_buffer.hpp"
 #include "master/sim/model/profile_position.hpp"
 #include "master/sim/random.hpp"
 #include "master/sim/service/emcy_producer.hpp"
@@ -27,11 +31,13 @@ enum class DriveMode : std::int8_t {
   cyclic_torque = 10,
 };
 
-/// One axis of a drive: state machine, modes, motor.
+/// One axis of a drive: state machine, modes, motor. The motor is a simple lag, or a servo with its
+/// mechanics.
 class Axis402 {
  public:
-  /// `number` counts from 0.
-  Axis402(ObjectStore& store, EmcyProducer& emcy, Random random, std::uint8_t number);
+  /// `number` counts from 0. Without `mechanics` (nullptr), the motor is a simple lag.
+  Axis402(ObjectStore& store, EmcyProducer& emcy, Random random, std::uint8_t number,
+          const MechanicsTable* mechanics = nullptr);
   Axis402(const Axis402&) = delete;
   Axis402& operator=(const Axis402&) = delete;
 
@@ -48,6 +54,8 @@ class Axis402 {
 
  private:
   bool idle() const noexcept;
+  bool waits_for_brake(DriveState next) const noexcept;
+  void meet_motion() noexcept;
   /// The first manufacturer byte of an EMCY is the number of the axis, counted from 1.
   EmcyProducer::Detail axis_detail() const noexcept {
     return {static_cast<std::uint8_t>(number_ + 1)};
@@ -65,8 +73,20 @@ class Axis402 {
   void step(Time span) noexcept;
   void step_enabled(double h) noexcept;
   void step_mode(double h) noexcept;
+  bool blocks(double h) noexcept;
+  void step_points(double h) noexcept;
+  bool next_point() noexcept;
+  double stop_ramp() const noexcept;
+  double reported_period() const noexcept;
+  double wanted_direction() const noexcept;
   void step_torque(double h) noexcept;
   void step_stopping(double h) noexcept;
+  void step_unpowered(double h) noexcept;
+  void follow_position(double h) noexcept;
+  void follow_velocity(double target, double limit, double h) noexcept;
+  void read_servo() noexcept;
+  bool stands() const noexcept;
+  double strongest() const noexcept;
   void stop_has_ended() noexcept;
   void supervise_following_error(Time span) noexcept;
   void supervise_target(Time span) noexcept;
@@ -88,15 +108,20 @@ class Axis402 {
   ProfilePosition profile_;
   Homing homing_;
   CyclicPosition cyclic_;
+  PointBuffer points_;
   Motor motor_;
   Demand demand_;
-  double rated_acceleration_ = 0;  ///< acceleration at rated torque
+  std::unique_ptr<AxisServo> servo_;  ///< nullptr: the motor is a simple lag
+  double rated_acceleration_ = 0;     ///< acceleration at rated torque
   DriveState state_ = DriveState::not_ready;
   DriveState stopping_to_ = DriveState::operation_enabled;  ///< state after the ramp to standstill
   DriveMode mode_ = DriveMode::none;
   std::uint16_t controlword_ = 0;
   std::uint16_t fault_code_ = 0;
-  bool settled_ = false;  ///< the controlword requests no further transition
+  bool settled_ = false;       ///< the controlword requests no further transition
+  bool releases_ = false;      ///< the axis has torque, and is enabled when its brake has opened
+  bool blocked_ = false;       ///< the axis is at the end of its way, and its set-points lead on
+  bool interpolates_ = false;  ///< with mechanics: the points of the buffer are being followed
   bool following_error_ = false;
   bool on_target_ = false;
   bool target_waits_ = false;

@@ -8,13 +8,18 @@ namespace takt::sim {
 namespace {
 
 constexpr Time longest_step = std::chrono::milliseconds{2};
+constexpr Time longest_servo_step = std::chrono::milliseconds{1};
 constexpr Time::rep most_steps = 2000;
 constexpr std::uint16_t following_error_code = 0x8611;
 constexpr std::uint16_t halt_bit = 0x100;
 constexpr double default_ramp = 1e6;
 constexpr double fastest = 2e9;
+constexpr double unlimited = 1e15;
 constexpr double friction = 0.02;  // times the rated torque
-constexpr double peak = 10;        // times the rated torque
+
+constexpr Time::rep steps_in(Time span, Time step) noexcept {
+  return std::clamp<Time::rep>((span.count() + step.count() - 1) / step.count(), 1, most_steps);
+}
 
 std::int64_t rounded(double value) noexcept {
   return static_cast<std::int64_t>(value + std::copysign(0.5, value));
@@ -29,8 +34,8 @@ void Axis402::advance(Time now) noexcept {
     time_ = now;
     return;
   }
-  const Time::rep steps = std::clamp<Time::rep>(
-      (span.count() + longest_step.count() - 1) / longest_step.count(), 1, most_steps);
+  const Time::rep steps =
+      servo_ ? steps_in(span, longest_servo_step) : steps_in(span, longest_step);
   const Time from = time_;
   for (Time::rep i = 1; i <= steps; ++i) {
     const Time end = i == steps ? now : from + span * i / steps;
@@ -51,7 +56,7 @@ void Axis402::step(Time span) noexcept {
     follow_controlword();
   }
   if (!is_powered(state_)) {
-    motor_.coast(rated_acceleration_ / 4, h);
+    step_unpowered(h);
     demand_ = {motor_.position, 0};
     return;
   }
@@ -67,10 +72,10 @@ void Axis402::step(Time span) noexcept {
 void Axis402::step_enabled(double h) noexcept {
   if (halted()) {
     ramp_velocity(demand_, 0, {.acceleration = 0, .deceleration = stop_deceleration()}, h);
-    motor_.follow_position(demand_, peak * rated_acceleration_, h);
-    return;
+    const bool by_velocity = servo_ && mode_ == DriveMode::profile_velocity;
+    return by_velocity ? follow_velocity(demand_.velocity, unlimited, h) : follow_position(h);
   }
-  step_mode(h);
+  if (!servo_ || !blocks(h)) step_mode(h);
 }
 
 bool Axis402::halted() const noexcept {
@@ -80,7 +85,6 @@ bool Axis402::halted() const noexcept {
 }
 
 void Axis402::step_mode(double h) noexcept {
-  const double limit = peak * rated_acceleration_;
   switch (mode_) {
     case DriveMode::profile_position:
       profile_.step(demand_, ramps(), h);
@@ -90,23 +94,24 @@ void Axis402::step_mode(double h) noexcept {
         const double shift = homing_.shift();
         demand_.position += shift;
         motor_.position += shift;
+        if (servo_) servo_->shift(shift);
       }
       break;
     case DriveMode::cyclic_position:
     case DriveMode::interpolated_position:
+      if (servo_ && mode_ == DriveMode::interpolated_position) {
+        step_points(h);
+        break;
+      }
       cyclic_.step(demand_, h);
       break;
     case DriveMode::profile_velocity:
       ramp_velocity(demand_, static_cast<double>(objects_.target_velocity.get()), ramps(), h);
-      motor_.follow_velocity(demand_.velocity, limit, h);
-      demand_.position = motor_.position;
-      return;
+      return follow_velocity(demand_.velocity, strongest(), h);
     case DriveMode::cyclic_velocity: {
       const auto target = objects_.target_velocity.get() + objects_.velocity_offset.get();
-      demand_.velocity = static_cast<double>(target);
-      motor_.follow_velocity(demand_.velocity, objects_.max_acceleration.positive_or(limit), h);
-      demand_.position = motor_.position;
-      return;
+      const double limit = objects_.max_acceleration.positive_or(servo_ ? unlimited : strongest());
+      return follow_velocity(static_cast<double>(target), limit, h);
     }
     case DriveMode::profile_torque:
     case DriveMode::cyclic_torque:
@@ -114,24 +119,29 @@ void Axis402::step_mode(double h) noexcept {
     case DriveMode::none:
       break;
   }
-  motor_.follow_position(demand_, limit, h);
+  follow_position(h);
 }
 
 void Axis402::step_torque(double h) noexcept {
   const auto torque =
       static_cast<double>(objects_.target_torque.get() + objects_.torque_offset.get());
+  if (servo_) {
+    servo_->follow_torque(torque / 1000, mode_ == DriveMode::profile_torque, time_);
+    read_servo();
+    demand_ = {motor_.position, motor_.velocity};
+    return;
+  }
   const double drag = friction * rated_acceleration_ * std::tanh(motor_.velocity / 100);
   const double speed = motor_.velocity + (torque / 1000 * rated_acceleration_ - drag) * h;
-  motor_.follow_velocity(std::clamp(speed, -fastest, fastest), peak * rated_acceleration_, h);
+  motor_.follow_velocity(std::clamp(speed, -fastest, fastest), strongest(), h);
   demand_ = {motor_.position, motor_.velocity};
 }
 
 void Axis402::step_stopping(double h) noexcept {
   const double deceleration = stop_deceleration();
   ramp_velocity(demand_, 0, {.acceleration = deceleration, .deceleration = deceleration}, h);
-  motor_.follow_position(demand_, peak * rated_acceleration_, h);
-  const bool still = demand_.velocity == 0 && std::abs(motor_.velocity) < 1;
-  if (!still) return;
+  follow_position(h);
+  if (demand_.velocity != 0 || !stands()) return;
   motor_.velocity = 0;
   stop_has_ended();
 }
@@ -156,7 +166,7 @@ double Axis402::stop_deceleration() const noexcept {
   if (state_ == DriveState::fault_reaction) option = objects_.fault_option.get();
   if (stopping_to_ != DriveState::operation_enabled) option = 1;
   if (option <= 1) return slow;
-  return option == 2 ? quick : peak * rated_acceleration_;
+  return option == 2 ? quick : strongest();
 }
 
 Ramps Axis402::ramps() const noexcept {
@@ -192,7 +202,7 @@ void Axis402::supervise_following_error(Time span) noexcept {
 void Axis402::supervise_target(Time span) noexcept {
   bool there = false;
   if (halted()) {
-    there = std::abs(motor_.velocity) < 1;
+    there = stands();
   } else if (mode_ == DriveMode::profile_position) {
     const double off = std::abs(demand_.position - motor_.position);
     there = profile_.arrived() && off <= static_cast<double>(objects_.position_window.get()) + 0.5;
@@ -220,11 +230,11 @@ std::uint16_t Axis402::mode_bits() const noexcept {
     case DriveMode::homing:
       return homing_.status_bits(demand_.velocity == 0);
     case DriveMode::interpolated_position:
-      return (controlword_ & 0x10) != 0 ? 0x1000 : 0;
+      return (servo_ ? interpolates_ : (controlword_ & 0x10) != 0) ? 0x1000 : 0;
     case DriveMode::cyclic_position:
     case DriveMode::cyclic_velocity:
     case DriveMode::cyclic_torque:
-      return 0x1000;  // drive follows the command value
+      return blocked_ ? 0 : 0x1000;  // drive follows the command value
     case DriveMode::profile_torque:
       return 0x0400;
     case DriveMode::none:
@@ -243,6 +253,7 @@ std::uint16_t Axis402::statusword() const noexcept {
                            ? profile_.limited()
                            : mode_ == DriveMode::cyclic_position && cyclic_.limited();
   if (limited && state_ == DriveState::operation_enabled) word |= 0x0800;
+  if (servo_ && (blocked_ || servo_->servo().limited())) word |= 0x0800;
   if (following_error_) word |= 0x2000;
   return static_cast<std::uint16_t>(word);
 }
@@ -259,6 +270,9 @@ void Axis402::publish_state() noexcept {
 
 void Axis402::publish_motion() noexcept {
   published_ = time_;
+  const std::uint32_t inputs = servo_ ? servo_->sensors().inputs() : 0;
+  objects_.digital_inputs.set(inputs | (homing_.on_switch() ? 4U : 0U));
+  if (servo_) return servo_->publish(demand_, is_powered(state_), time_);
   const std::int64_t actual = rounded(motor_.position);
   const std::int64_t wanted = rounded(demand_.position);
   objects_.position_actual.set(actual);
@@ -268,7 +282,6 @@ void Axis402::publish_motion() noexcept {
   objects_.following_error.set(wanted - actual);
   objects_.velocity_actual.set(rounded(motor_.velocity));
   objects_.velocity_demand.set(rounded(demand_.velocity));
-  objects_.digital_inputs.set(homing_.on_switch() ? 4 : 0);
   publish_torque();
 }
 

@@ -75,9 +75,14 @@ class AxisObjects {
   Slot velocity_threshold;
   Slot target_velocity;
   Slot target_torque;
+  Slot max_torque;
+  Slot max_current;
   Slot torque_demand;
+  Slot rated_torque;
   Slot torque_actual;
   Slot current_actual;
+  Slot max_motor_speed;
+  Slot torque_slope;
   Slot homing_method;
   Slot homing_speed_switch;
   Slot homing_speed_zero;
@@ -86,12 +91,24 @@ class AxisObjects {
   Slot velocity_offset;
   Slot torque_offset;
   Slot interpolation_target;
+  Slot buffer_max_size;
+  Slot buffer_size;
+  Slot buffer_position;
+  Slot buffer_clear;
   Slot period_value;
   Slot period_exponent;
   Slot max_acceleration;
+  Slot positive_torque_limit;
+  Slot negative_torque_limit;
   Slot positioning_option;
   Slot following_error;
   Slot digital_inputs;
+  Slot probe_function;
+  Slot probe_status;
+  Slot probe_1_rising;
+  Slot probe_1_falling;
+  Slot probe_2_rising;
+  Slot probe_2_falling;
 };
 
 }  // namespace takt::sim

@@ -32,6 +32,10 @@ class CyclicPosition {
     if (left_ <= 1e-9) left_ = 0;
   }
   bool limited() const noexcept { return limited_; }
+  /// Seconds until the demand reaches the set-point; 0 if it has reached it.
+  double left() const noexcept { return left_; }
+  /// The velocity between the last two set-points.
+  double slope() const noexcept { return slope_; }
 
  private:
   double end_ = 0;

@@ -4,11 +4,13 @@
 
 namespace takt::sim {
 
-Drive402::Drive402(ObjectStore& store, EmcyProducer& emcy, Random random) : Model{emcy} {
+Drive402::Drive402(ObjectStore& store, EmcyProducer& emcy, Random random,
+                   const MechanicsTable* mechanics)
+    : Model{emcy} {
   for (std::uint8_t axis = 0; axis < 8; ++axis) {
     const auto controlword = static_cast<std::uint16_t>(0x6040 + 0x800 * axis);
     if (store.find({controlword, 0}) == nullptr) continue;
-    axes_.push_back(std::make_unique<Axis402>(store, emcy, random.fork(axis), axis));
+    axes_.push_back(std::make_unique<Axis402>(store, emcy, random.fork(axis), axis, mechanics));
   }
 }
 

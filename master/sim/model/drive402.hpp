@@ -11,7 +11,9 @@ namespace takt::sim {
 /// above 0x6040. CiA 402-2.
 class Drive402 final : public Model {
  public:
-  Drive402(ObjectStore& store, EmcyProducer& emcy, Random random);
+  /// Without `mechanics` (nullptr), the motors are simple lags.
+  Drive402(ObjectStore& store, EmcyProducer& emcy, Random random,
+           const MechanicsTable* mechanics = nullptr);
 
   void reset(Time now) noexcept override;
   void advance(Time now) noexcept override;

@@ -28,7 +28,7 @@ bool is_current_position(std::int64_t method) noexcept { return method == 35 || 
 
 void Homing::on_controlword(std::uint16_t before, std::uint16_t now,
                             const Demand& demand) noexcept {
-  const bool running = stage_ == Stage::seek || stage_ == Stage::leave;
+  const bool running = stage_ == Stage::seek || stage_ == Stage::leave || stage_ == Stage::search;
   if ((now & start_bit) == 0 && running) stage_ = Stage::idle;
   if ((~before & now & start_bit) == 0) return;
   const std::int64_t method = objects_.homing_method.get();
@@ -37,12 +37,39 @@ void Homing::on_controlword(std::uint16_t before, std::uint16_t now,
     stage_ = Stage::stop;
     return;
   }
+  if (begins_search(method)) return;
   const auto direction = direction_of(method);
   stage_ = direction ? Stage::seek : Stage::failed;
   direction_ = direction.value_or(1.0);
   const double way = objects_.homing_speed_switch.positive_or(default_speed);
   const double part = 1.0 / 3.0 + static_cast<double>(random_.below(1000)) / 1500.0;
   switch_at_ += direction_ * way * part;
+}
+
+/// Begins a search with the sensors of the axis if they suffice for the method.
+bool Homing::begins_search(std::int64_t method) noexcept {
+  const auto how = homing_method(method);
+  if (servo_ == nullptr || !how) return false;
+  if (how->needs_switch && !servo_->sensors().has(how->seeks)) return false;
+  search_.begin(*how, servo_->sensors());
+  stage_ = Stage::search;
+  return true;
+}
+
+void Homing::search(Demand& demand, const Ramps& ramps, double h) noexcept {
+  const SearchSpeeds speeds{.fast = objects_.homing_speed_switch.positive_or(default_speed),
+                            .slow = objects_.homing_speed_zero.positive_or(default_speed / 10)};
+  switch (search_.step(servo_->sensors(), demand, speeds, ramps, h)) {
+    case SwitchSearch::Result::running:
+      return;
+    case SwitchSearch::Result::found:
+      reference_ = search_.reference() + servo_->origin();
+      stage_ = Stage::stop;
+      return;
+    case SwitchSearch::Result::failed:
+      stage_ = Stage::failed;
+      return;
+  }
 }
 
 bool Homing::step(Demand& demand, double deceleration, double h) noexcept {
@@ -52,6 +79,9 @@ bool Homing::step(Demand& demand, double deceleration, double h) noexcept {
     case Stage::seek:
     case Stage::leave:
       return seek(demand, ramps, h);
+    case Stage::search:
+      search(demand, ramps, h);
+      return false;
     case Stage::stop:
       ramp_velocity(demand, 0, ramps, h);
       if (demand.velocity != 0) return false;
@@ -99,6 +129,7 @@ std::uint16_t Homing::status_bits(bool stands) const noexcept {
       return stands ? error | reached : error;
     case Stage::seek:
     case Stage::leave:
+    case Stage::search:
     case Stage::stop:
       return 0;
   }

@@ -2,17 +2,22 @@
 #include <cstdint>
 
 #include "master/sim/model/axis_objects.hpp"
+#include "master/sim/model/axis_servo.hpp"
 #include "master/sim/model/motion.hpp"
+#include "master/sim/model/switch_search.hpp"
 #include "master/sim/random.hpp"
 
 namespace takt::sim {
 
-/// Homing mode. The switch that a method seeks lies ahead at a random distance, a third of a second
-/// to one second away at search speed. CiA 402-2; methods 1-14, 17-30, 33-35, 37.
+/// Homing mode. A method seeks the switch and the index pulse that the mechanics of the axis have.
+/// Without mechanics, or if they lack the switch, it lies ahead at a random distance, a third of a
+/// second to one second away at search speed. CiA 402-2; methods 1-14, 17-30, 33-35, 37.
 class Homing {
  public:
   Homing(const AxisObjects& objects, Random random) : objects_{objects}, random_{random} {}
 
+  /// From now on, methods use the sensors of these mechanics, which must outlive the object.
+  void use(const AxisServo& servo) noexcept { servo_ = &servo; }
   /// Enters the mode; homing has not been started yet.
   void start() noexcept { stage_ = Stage::idle; }
   void on_controlword(std::uint16_t before, std::uint16_t now, const Demand& demand) noexcept;
@@ -27,12 +32,16 @@ class Homing {
   bool on_switch() const noexcept { return stage_ == Stage::leave; }
 
  private:
-  enum class Stage : std::uint8_t { idle, seek, leave, stop, done, failed };
+  enum class Stage : std::uint8_t { idle, seek, leave, search, stop, done, failed };
 
+  bool begins_search(std::int64_t method) noexcept;
+  void search(Demand& demand, const Ramps& ramps, double h) noexcept;
   bool seek(Demand& demand, const Ramps& ramps, double h) noexcept;
 
   const AxisObjects& objects_;
   Random random_;
+  const AxisServo* servo_ = nullptr;
+  SwitchSearch search_;
   Stage stage_ = Stage::idle;
   double direction_ = 1;
   double switch_at_ = 0;

@@ -19,6 +19,7 @@ class ProfilePosition {
   bool acknowledges() const noexcept { return acknowledged_ || buffered_; }
   bool arrived() const noexcept { return arrived_ && !buffered_; }
   bool limited() const noexcept { return limited_; }
+  double target() const noexcept { return target_; }
 
  private:
   double new_target(std::uint16_t controlword, const Demand& demand, double actual) noexcept;

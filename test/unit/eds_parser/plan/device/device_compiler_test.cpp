@@ -38,6 +38,40 @@ TEST(DeviceCompiler, StartsWithDefaultsOfItsNode) {
   EXPECT_TRUE(std::ranges::is_sorted(device.objects, {}, &DeviceObject::key));
 }
 
+double turn_of(const std::string& rest) {
+  const auto net = compile("arm: {node_id: 5, dcf: x, " + rest + "}\n");
+  return net.devices.at(0).mechanics.value().turn;
+}
+
+TEST(DeviceCompiler, ATurnOfTheMotorHasTheCountsOfItsUnits) {
+  const std::string position = "units: {position: {scale: 0.001, unit: ";
+
+  EXPECT_NEAR(turn_of("sim: {mechanics: {}}, " + position + "rad}}"), 6283.185, 1e-3);
+  EXPECT_DOUBLE_EQ(turn_of("sim: {mechanics: {}}, " + position + "deg}}"), 360'000);
+  EXPECT_DOUBLE_EQ(turn_of("sim: {mechanics: {turn: 0.01}}, " + position + "m}}"), 10);
+  EXPECT_EQ(turn_of("sim: {mechanics: {}}, " + position + "m}}"), 65536) << "nothing is known";
+  EXPECT_EQ(turn_of("sim: {mechanics: {turn: 4000}}"), 4000) << "counts";
+}
+
+TEST(DeviceCompiler, PlacesOnTheWayAreConvertedToCounts) {
+  const auto net = compile(
+      "arm: {node_id: 5, dcf: x, units: {position: {scale: 0.001, sign: -1, offset: 1, unit: m}}, "
+      "sim: {mechanics: {travel: {home: [0, 2], index: 0.5}}}}\n");
+
+  const TravelParameters& travel = net.devices.at(0).mechanics.value().travel;
+  EXPECT_DOUBLE_EQ(travel.home.value().low, -1000);
+  EXPECT_DOUBLE_EQ(travel.home.value().high, 1000);
+  EXPECT_DOUBLE_EQ(travel.index.value(), 500);
+}
+
+TEST(DeviceCompiler, MechanicsAreForDrivesOnly) {
+  std::string module = test::tiny_eds();
+  module.replace(module.find("0x00020192"), 10, "0x00020191");
+
+  const auto net = compile("arm: {node_id: 5, dcf: x, sim: {mechanics: {}}}\n", module);
+  EXPECT_FALSE(net.devices.at(0).mechanics);
+}
+
 TEST(DeviceCompiler, WhatTheFileSaysOfAnObjectIsWithinItsLimits) {
   const std::string dcf =
       with(test::tiny_eds(), "[6081]\n", "HighLimit=2000\nParameterValue=7000\n");

@@ -13,7 +13,8 @@ using namespace std::chrono_literals;
 
 class Drive : public testing::Test {
  protected:
-  Drive() : store_{drive(5_node).build()}, emcy_{store_, 5_node}, drive_{store_, emcy_, Random{7}} {
+  explicit Drive(SampleDevice device = drive(5_node), const MechanicsTable* mechanics = nullptr)
+      : store_{device.build()}, emcy_{store_, 5_node}, drive_{store_, emcy_, Random{7}, mechanics} {
     drive_.reset(0ns);
     run(20ms);
   }

@@ -1,0 +1,33 @@
+#pragma once
+#include <cmath>
+
+namespace takt::sim {
+
+/// Dry friction of one mass. An impulse takes speed from the mass, but never reverses it, so a mass
+/// at rest stays at rest, with speed 0, until a larger torque breaks it away.
+class Friction {
+ public:
+  /// `torque` in N m, at rest `breakaway` times as large; `span` of a step in s, `inertia` in kg
+  /// m2.
+  Friction(double torque, double breakaway, double span, double inertia) noexcept
+      : sliding_{torque * span / inertia},
+        at_rest_{sliding_ * breakaway},
+        per_torque_{span / inertia} {}
+
+  /// Returns the speed after a step. `before` is the speed before it, `speed` the one that it would
+  /// have without dry friction, `clamp` the torque of a brake on this mass.
+  double slow(double before, double speed, double clamp = 0) const noexcept {
+    const double most = (before == 0 ? at_rest_ : sliding_) + clamp * per_torque_ + creeping;
+    if (std::abs(speed) <= most) return 0;
+    return speed - std::copysign(most, speed);
+  }
+
+ private:
+  static constexpr double creeping = 1e-12;  // rad/s, below which every mass stands
+
+  double sliding_;  ///< speed that friction takes in a step
+  double at_rest_;
+  double per_torque_;  ///< speed per torque
+};
+
+}  // namespace takt::sim

@@ -1,0 +1,56 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "eds_parser/table/mechanics.hpp"
+#include "master/sim/mechanics/zone_switch.hpp"
+
+namespace takt::sim {
+
+/// The switches on the way of an axis.
+enum class TravelSwitch : std::uint8_t { negative_limit, positive_limit, home, probe_1, probe_2 };
+inline constexpr std::size_t travel_switches = 5;
+
+/// The switches that an axis meets on its way, and the index pulses of its encoder. Switches are
+/// where the load meets them; the positions at their edges are those of the motor, as a drive
+/// latches them. All positions are in counts, without the shift of homing.
+class TravelSensors {
+ public:
+  /// `turn` is a turn of the motor. `index` is the place of an index pulse if the table has none.
+  TravelSensors(const TravelParameters& table, double turn, double index) noexcept;
+
+  /// Looks at the way since the last look.
+  void look(double motor, double load) noexcept;
+
+  bool has(TravelSwitch which) const noexcept { return at(which).zone.has_value(); }
+  bool active(TravelSwitch which) const noexcept { return at(which).active; }
+  /// The edge of a switch since the last look but one, and the position of the motor there.
+  EdgeKind edge(TravelSwitch which) const noexcept { return at(which).edge; }
+  double edge_at(TravelSwitch which) const noexcept { return at(which).edge_at; }
+  /// The position of the index pulse that the motor has crossed since the last look but one.
+  const std::optional<double>& index() const noexcept { return crossed_; }
+  /// The digital inputs 0x60FD: limits in bits 0 and 1, home in bit 2, probes in bits 16 and 17.
+  std::uint32_t inputs() const noexcept;
+
+ private:
+  struct One {
+    std::optional<ZoneSwitch> zone{};
+    bool active = false;
+    EdgeKind edge = EdgeKind::none;
+    double edge_at = 0;
+  };
+
+  const One& at(TravelSwitch which) const noexcept {
+    return switches_[static_cast<std::size_t>(which)];
+  }
+  void add(TravelSwitch which, const std::optional<ZoneParameters>& zone);
+
+  std::array<One, travel_switches> switches_;
+  IndexPulse index_;
+  std::optional<double> crossed_{};
+  double motor_ = 0;
+  double load_ = 0;
+};
+
+}  // namespace takt::sim
