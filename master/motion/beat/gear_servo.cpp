@@ -29,10 +29,9 @@ State step_with(const State& from, double acceleration, double period) noexcept 
 }
 
 /// Returns the jerks of the three steps that lead an axis exactly to its target, which has the
-/// state `target` after the first of them and a constant jerk.
-std::array<double, 3> three_steps(const State& from, const State& target, double target_jerk,
+/// state `before` at the time of `from` and a constant jerk.
+std::array<double, 3> three_steps(const State& from, const State& before, double target_jerk,
                                   double period) noexcept {
-  const State before = advanced(target, -period, target_jerk);
   const double cube = period * period * period;
   const double p = (from.position - before.position) / cube;
   const double v = (from.velocity - before.velocity) * period / cube;
@@ -127,16 +126,43 @@ double GearServo::catching_up(const State& from, const State& target, const Room
   return found;
 }
 
+/// Returns true if the target uses almost the whole jerk, and the axis is close to it. Then little
+/// jerk is left for corrections: they must wait, or the axis would fall far behind.
+bool GearServo::is_led(const State& from, const State& before, double target_jerk,
+                       double period) const noexcept {
+  constexpr double whole = 0.8;
+  constexpr double closeness = 50.0;
+  const double step = limits_.jerk * period;
+  return std::abs(target_jerk) > whole * limits_.jerk &&
+         std::abs(before.acceleration - from.acceleration) <= step &&
+         std::abs(before.velocity - from.velocity) <= step * period &&
+         std::abs(before.position - from.position) <= closeness * step * period * period;
+}
+
 State GearServo::step_to_position(const State& from, const State& target, double target_jerk,
                                   double period) const noexcept {
   const Room room = room_after(from, period);
-  const std::array jerks = three_steps(from, target, target_jerk, period);
+  const State before = advanced(target, -period, target_jerk);
+  const std::array jerks = three_steps(from, before, target_jerk, period);
   const double first = from.acceleration + jerks[0] * period;
   const double second = first + jerks[1] * period;
-  const bool is_near = first >= room.min && first <= room.max &&
-                       second >= limits_.min_acceleration && second <= limits_.max_acceleration &&
-                       std::abs(jerks[1]) <= limits_.jerk && std::abs(jerks[2]) <= limits_.jerk;
-  return step_with(from, is_near ? first : catching_up(from, target, room, period), period);
+  // Rounding must not end the exact steps of an axis that follows at one of its limits.
+  constexpr double slack = 1e-3;
+  const double rounding = slack * limits_.jerk * period;
+  const double most = (1.0 + slack) * limits_.jerk;
+  const bool is_near = first >= room.min - rounding && first <= room.max + rounding &&
+                       second >= limits_.min_acceleration - rounding &&
+                       second <= limits_.max_acceleration + rounding &&
+                       std::abs(jerks[1]) <= most && std::abs(jerks[2]) <= most;
+  double next = 0.0;
+  if (is_near) {
+    next = std::clamp(first, room.min, room.max);
+  } else if (is_led(from, before, target_jerk, period)) {
+    next = std::clamp(target.acceleration, room.min, room.max);
+  } else {
+    next = catching_up(from, target, room, period);
+  }
+  return step_with(from, next, period);
 }
 
 State GearServo::step_to_velocity(const State& from, const State& target,

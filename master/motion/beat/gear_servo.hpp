@@ -44,6 +44,8 @@ class GearServo {
   };
   Room room_after(const State& from, double period) const noexcept;
   double distance_to_settle(double velocity, double acceleration) const noexcept;
+  bool is_led(const State& from, const State& before, double target_jerk,
+              double period) const noexcept;
   double catching_up(const State& from, const State& target, const Room& room,
                      double period) const noexcept;
 

@@ -128,6 +128,36 @@ TEST(GearServo, KeepsItsLimitsBehindAnyTargetAndFollowsOneInsideThem) {
   EXPECT_LE(farthest, 1.0);
 }
 
+/// Two axes with the same limits are usual, and a move of the first one uses them.
+TEST(GearServo, StaysCloseToATargetThatUsesAllItsLimits) {
+  const Limits limits{.max_velocity = 3.0,
+                      .min_velocity = -2.0,
+                      .max_acceleration = 20.0,
+                      .min_acceleration = -13.0,
+                      .jerk = 400.0};
+  const GearServo servo{limits};
+  State axis;
+  State target;
+  double worst = 0.0;
+  for (int move = 0; move < 4; ++move) {
+    const double way = (move % 2 == 0 ? 1.0 : -1.0) * (2.0 + move * 0.37);
+    const AxisTask task{
+        .from = target, .to = {.position = target.position + way}, .limits = limits};
+    PlannedAxis planned;
+    ASSERT_TRUE(plan_trajectory({&task, 1}, {}, {&planned, 1}));
+    ProfilePlayer player{planned.profile, task.from, Ending::rest};
+    for (int cycle = 1; cycle * period < planned.duration + 0.3; ++cycle) {
+      const State before = target;
+      target = player.at(cycle * period);
+      const double jerk = (target.acceleration - before.acceleration) / period;
+      axis = servo.step_to_position(axis, target, jerk, period);
+      worst = std::max(worst, std::abs(axis.position - target.position));
+    }
+    EXPECT_NEAR(axis.position, target.position, rounding);
+  }
+  EXPECT_LT(worst, 1e-3);
+}
+
 TEST(GearServo, MatchesTheVelocityOfItsTargetAlone) {
   Random random;
   for (int i = 0; i < 200; ++i) {
