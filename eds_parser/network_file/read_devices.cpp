@@ -1,6 +1,7 @@
 #include "eds_parser/network_file/read_devices.hpp"
 
 #include "eds_parser/dictionary/pdo_description.hpp"
+#include "eds_parser/network_file/sections.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
 
 namespace takt {
@@ -228,6 +229,15 @@ void read_emcy(const KeyInput& in, DeviceData& data) {
   }
 }
 
+/// Reads `speed_axis`, which has to be complete here: a node may state a part of it.
+void read_speed_words(const KeyInput& in, DeviceData& data) {
+  const std::size_t errors = in.report().errors();
+  read_speed_axis(in, data.speed_axis);
+  const std::string lack = missing_part(data.speed_axis);
+  if (in.report().errors() != errors || lack.empty()) return;
+  in.error("missing-key", in.what(), " lacks ", lack);
+}
+
 constexpr KeyValue pdo_rules{.type = KeyType::list, .parts = rows_of<pdo_rule_keys>};
 constexpr Key<DeviceData> device_keys[] = {
     required(key<&DeviceData::name>("name", "", "The family.")),
@@ -259,6 +269,8 @@ constexpr Key<DeviceData> device_keys[] = {
         "sdo_servers", "none",
         "SDO servers that may be on from the factory, although the EDS has them off or does not "
         "have them. If one meets another node, the plan warns."),
+    key<read_speed_words>("speed_axis", {.type = KeyType::map, .parts = speed_axis_rows}, "none",
+                          "An inverter: its control word and its status word."),
     map_key<&DeviceData::boot, boot_keys>("boot", "CiA 302-2", "How to boot the device."),
     key<&DeviceData::on_sync_loss>("on_sync_loss", "unknown",
                                    "A sentence on what the outputs do when SYNC stays away for "

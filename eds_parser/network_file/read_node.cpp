@@ -105,10 +105,10 @@ void read_channel(const KeyInput& in, NodeSpec& node) {
 
 constexpr Key<TimeoutSpec> timeout_keys[] = {
     key<&TimeoutSpec::fallback>("fallback", word_of(fallback_words),
-                                "drives `quick_stop`, others `hold`",
+                                "drives `quick_stop`, inverters stop, others `hold`",
                                 "The reaction of the outputs. `quick_stop` and `disable` are for "
-                                "drives; `safe` needs `safe_values`."),
-    key<&TimeoutSpec::after>("after", whole(0, 3'600'000, "ms"), "50",
+                                "drives and inverters; `safe` needs `safe_values`."),
+    key<&TimeoutSpec::after>("after", whole(0, 3'600'000, "ms"), "50; inverters 500",
                              "The time to live of a command, never below 3 cycles. 0 means no "
                              "limit and causes a warning."),
     key<&TimeoutSpec::after_cycles>("after_cycles", whole(0, 1'000'000), "none",
@@ -303,8 +303,12 @@ constexpr Key<NodeSpec> node_keys[] = {
                     "The units of values: SI = sign * counts * scale + offset."),
     key<read_limits>("limits", {.type = KeyType::map, .parts = limits_rows}, "none",
                      "What may be commanded, in the units of `units`."),
+    key<with<read_speed_axis, &NodeSpec::speed_axis>>(
+        "speed_axis", {.type = KeyType::map, .parts = speed_axis_rows}, "from the device data",
+        "The words of an inverter, see [speed.md](speed.md). What is not stated is that of the "
+        "device data."),
     map_key<&NodeSpec::on_timeout, timeout_keys, check_timeout>(
-        "on_timeout", "drives `quick_stop`, others `hold`, after 50 ms",
+        "on_timeout", "drives `quick_stop` after 50 ms, inverters stop after 500 ms, others `hold`",
         "What outputs do when their command has become too old."),
     map_key<&NodeSpec::sim, sim_keys, check_sim>("sim", "by 0x1000", "For the simulation."),
     also<NodeSpec, ros_keys<NodeSpec>>(),

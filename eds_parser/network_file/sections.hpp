@@ -61,6 +61,9 @@ KeyRows limits_rows();
 /// Reads `mechanics` of `sim`, and checks that the parameters fit together.
 void read_mechanics(const KeyInput& in, SimSpec& sim);
 KeyRows mechanics_rows();
+/// Reads `speed_axis` of a node or of the device data.
+void read_speed_axis(const KeyInput& in, SpeedAxisSpec& axis);
+KeyRows speed_axis_rows();
 
 /// Reads `heartbeat_consumer`. Other programs take each number except 0 as true, and some files
 /// state a time in ms here, so any number is accepted.

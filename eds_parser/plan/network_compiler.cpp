@@ -15,6 +15,7 @@
 #include "eds_parser/plan/error_control.hpp"
 #include "eds_parser/plan/image/layout_compiler.hpp"
 #include "eds_parser/plan/image/signal_rules.hpp"
+#include "eds_parser/plan/image/speed_axes.hpp"
 #include "eds_parser/plan/limits/limits_compiler.hpp"
 #include "eds_parser/plan/network_parts.hpp"
 #include "eds_parser/plan/pdo/pdo_compiler.hpp"
@@ -72,6 +73,7 @@ class NetworkCompiler {
     error_control_.report_unused_retry_factor();
     compile_layout(nodes_, plan(), report_);
     compile_cycle(spec_, nodes_, plan(), report_);
+    compile_speed_axes(nodes_, plan(), report_);
     compile_limits(nodes_, plan(), report_);
     for (std::size_t i = 0; i < nodes_.size(); ++i) add_boot(i);
     for (const NodePdos& node : nodes_) out_.devices.push_back(compile_device(node.node));

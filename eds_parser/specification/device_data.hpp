@@ -8,6 +8,7 @@
 #include "eds_parser/dictionary/object_dictionary.hpp"
 #include "eds_parser/report/network_report.hpp"
 #include "eds_parser/specification/network_spec.hpp"
+#include "eds_parser/specification/speed_axis_spec.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/firmware.hpp"
 
@@ -174,6 +175,7 @@ struct DeviceData {
   std::vector<ObjectEdit> objects;
   std::vector<SdoServerFact> sdo_servers;
   BootTweaks boot;
+  SpeedAxisSpec speed_axis;
   std::vector<EmcyText> emcy;
   std::string on_sync_loss;  ///< behaviour of the outputs when 0x1006 has expired; empty if unknown
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "eds_parser/report/source.hpp"
+#include "eds_parser/specification/speed_axis_spec.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/firmware.hpp"
 #include "eds_parser/table/ids.hpp"
@@ -236,6 +237,7 @@ struct NodeSpec {
   Sourced<std::string> profile;  ///< "cia402", "cia401", "none"; if not given, the EDS decides
   UnitsSpec units;
   LimitsSpec limits;
+  SpeedAxisSpec speed_axis;
   TimeoutSpec on_timeout;
   std::vector<SdoSpec> safe_values;
   SimSpec sim;

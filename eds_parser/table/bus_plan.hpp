@@ -15,6 +15,7 @@
 #include "eds_parser/table/output_limits.hpp"
 #include "eds_parser/table/pdo_table.hpp"
 #include "eds_parser/table/sdo_access.hpp"
+#include "eds_parser/table/speed_axis.hpp"
 #include "eds_parser/table/time.hpp"
 
 namespace takt {
@@ -192,6 +193,7 @@ struct BusPlan {
   TimePlan time{};
   ImageLayout layout{};
   PdoTable pdos{};
+  std::vector<SpeedAxisPlan> speed_axes{};  ///< in ascending order of node-ID
   LimitsPlan limits{};
   std::vector<NodePlan> nodes{};                ///< in ascending order of node-ID
   Time stop_timeout = std::chrono::seconds{5};  ///< limit of the whole ordered stop

@@ -8,6 +8,7 @@
 
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/pdo_table.hpp"
+#include "eds_parser/table/speed_axis.hpp"
 
 namespace takt {
 
@@ -76,6 +77,7 @@ struct OutputLimit {
   std::optional<SignalIndex> statusword{};    ///< shows whether the drive follows set-points
   std::optional<SignalIndex> mode{};          ///< 6060, if it is an output
   std::optional<SignalIndex> mode_display{};  ///< 6061
+  std::optional<SpeedOrders> orders{};        ///< of a set speed: what `controlword` makes of it
   bool idle = false;  ///< 6060 is not an output, and the file sets a mode without `quantity`
 };
 

@@ -75,6 +75,12 @@ std::vector<std::string> device_notes(const NodePdos& node) {
         hex(server.request + node.node.id.value(), 3), " and ",
         hex(server.answer + node.node.id.value(), 3));
   }
+  if (const SpeedAxisSpec& axis = data.speed_axis; axis.is_stated()) {
+    add("speed axis: control word ", *axis.control, ", set speed ", axis.set_speed->object, " in ",
+        axis.set_speed->unit, ", status word ", *axis.status,
+        axis.ramps.empty() ? "" : "; ramps: " + axis.ramps);
+    if (!axis.source.empty()) add("these words: ", axis.source);
+  }
   if (node.node.firmware) add("firmware ", *node.node.firmware);
   return notes;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/plan/image/speed_axes.hpp"
 #include "eds_parser/specification/object_units.hpp"
 
 namespace takt {
@@ -90,7 +91,6 @@ void apply_units(const NodeSource& node, Signal& signal) {
   signal.unit = unit->unit;
 }
 
-/// Returns the time to live of commands in cycles. 0 means no limit.
 std::uint32_t fallback_cycles(const TimeoutSpec& timeout, Time period) {
   const Time after =
       timeout.after.given ? std::chrono::milliseconds{*timeout.after} : Time{default_time_to_live};
@@ -140,10 +140,11 @@ void check_fallback(const NodeSource& node, bool cia402, NetworkReport& report) 
   const auto& fallback = node.spec->on_timeout.fallback;
   const bool needs_drive =
       *fallback == FallbackPolicy::quick_stop || *fallback == FallbackPolicy::disable;
-  if (fallback.given && needs_drive && !cia402) {
-    report.error(fallback.pos, "fallback", "node `", node.spec->name,
-                 "` is not a CiA 402 drive and has no quick stop or disable: write hold, zero or "
-                 "safe (`profile: cia402` makes the node a drive)");
+  if (fallback.given && needs_drive && !cia402 && !has_speed_words(node)) {
+    report.error(
+        fallback.pos, "fallback", "node `", node.spec->name,
+        "` is not a CiA 402 drive and no speed axis, and has no quick stop or disable: write "
+        "hold, zero or safe (`profile: cia402` makes the node a drive)");
   }
   if (fallback.given && *fallback == FallbackPolicy::safe && node.spec->safe_values.empty()) {
     report.error(fallback.pos, "fallback", "`fallback: safe` of node `", node.spec->name,

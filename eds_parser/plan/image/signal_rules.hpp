@@ -9,6 +9,9 @@ namespace takt {
 /// Sets scale, offset and unit of a signal from `units:` of its node.
 void apply_units(const NodeSource& node, Signal& signal);
 
+/// Returns the time to live of commands in cycles. 0 means no limit.
+std::uint32_t fallback_cycles(const TimeoutSpec& timeout, Time period);
+
 /// Sets the safe value of an output and its fallback, which applies when its command is too old.
 /// `cia402` means that the node is a drive. By default a drive makes a quick stop after 50 ms.
 /// Other nodes hold their outputs; their commands also expire after 50 ms, so that another sender

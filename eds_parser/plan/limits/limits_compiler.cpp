@@ -8,6 +8,7 @@
 #include "eds_parser/plan/limits/axis_limits.hpp"
 #include "eds_parser/plan/limits/limit_proposals.hpp"
 #include "eds_parser/plan/limits/limit_table.hpp"
+#include "eds_parser/plan/limits/speed_limits.hpp"
 
 namespace takt {
 namespace {
@@ -58,13 +59,15 @@ class LimitsCompiler {
     const LimitsSpec& limits = source.spec->limits;
     const std::set<std::uint8_t> axes = axes_of(index);
     const bool complete = every_output_is_mapped(nodes_[index]);
+    SpeedAxisPlan* const speed = speed_axis(index);
+    if (speed != nullptr) compile_speed_limits(*source.spec, *speed, plan_, table_, report_);
     for (const AxisOverrideSpec& own : limits.axes) {
       if (axes.contains(own.axis) || !complete) continue;
       report_.error(own.pos, "limits", "no RPDO of node `", source.spec->name,
                     "` carries a set-point of axis ", own.axis);
     }
     const auto place = first_place(limits.all);
-    if (place && axes.empty() && complete) {
+    if (place && axes.empty() && speed == nullptr && complete) {
       report_.error(*place, "limits", "no RPDO of node `", source.spec->name,
                     "` carries a set-point of a drive (607A, 60FF, 6071 ...): write the limits of "
                     "other outputs under `objects: [{index: ..., min: ..., max: ...}]`");
@@ -80,6 +83,12 @@ class LimitsCompiler {
     propose_ranges(index);
   }
 
+  /// Returns nullptr if the node is no speed axis.
+  SpeedAxisPlan* speed_axis(std::size_t node_index) {
+    const auto found = std::ranges::find(plan_.speed_axes, node_index, &SpeedAxisPlan::node_index);
+    return found == plan_.speed_axes.end() ? nullptr : &*found;
+  }
+
   /// Adds a line with a proposal for each output of the node that needs a limit and has none; see
   /// needs_range().
   void propose_ranges(std::size_t node_index) {
@@ -87,6 +96,11 @@ class LimitsCompiler {
     for (std::size_t i = plan_.layout.inputs; i < signals.size(); ++i) {
       const Signal& output = signals[i];
       if (output.node_index != node_index || !needs_range(output)) continue;
+      const SpeedAxisPlan* const axis = speed_axis(node_index);
+      if (axis != nullptr &&
+          (i == axis->control || (i == axis->set_speed && axis->max_speed > 0))) {
+        continue;
+      }
       LimitLine line{.node_index = static_cast<std::uint8_t>(node_index),
                      .object = output.object,
                      .unit = output.unit};

@@ -286,6 +286,7 @@ double OutputLimits::distance_from_actual(std::size_t place, double value,
 std::optional<LimitBreach> OutputLimits::judge(std::size_t place, const AxisCommand& command,
                                                Obeying obeying,
                                                std::uint64_t cycle) const noexcept {
+  if (limits_[place].orders) return judge_speed(place, command, obeying, cycle);
   const Slot& slot = slots_[place];
   const ModesFollowed mode = modes_followed(place, command.mode);
   const double value = set_point(place, command, mode);
@@ -372,7 +373,7 @@ void OutputLimits::admit(std::size_t place, const AxisCommand& command,
   Slot& slot = slots_[place];
   slot.unsent = true;
   // An event-driven frame is not sent again for the same value, so the command counts as sent.
-  if (!slot.known) return;
+  if (!slot.known || limits_[place].orders) return;
   const ModesFollowed mode = modes_followed(place, command.mode);
   if (set_point(place, command, mode) != last_set_point(place, mode)) return;
   slot.cycle = cycle;
@@ -383,7 +384,8 @@ void OutputLimits::admit(std::size_t place, const AxisCommand& command,
 void OutputLimits::sent(SignalIndex signal, std::uint64_t cycle) noexcept {
   for (const std::uint16_t place : dependents_[signal]) {
     if (limits_[place].controlword == signal) slots_[place].order = image_.values[signal];
-    if (limits_[place].offset == signal && slots_[place].known) note_sent(place, cycle);
+    const bool counts = limits_[place].offset == signal || limits_[place].orders;
+    if (counts && slots_[place].known) note_sent(place, cycle);
   }
   if (places_[signal] == no_place) return;
   note_sent(places_[signal], cycle);
@@ -391,6 +393,7 @@ void OutputLimits::sent(SignalIndex signal, std::uint64_t cycle) noexcept {
 }
 
 void OutputLimits::note_sent(std::size_t place, std::uint64_t cycle) noexcept {
+  if (limits_[place].orders) return note_speed_sent(place, cycle);
   Slot& slot = slots_[place];
   const AxisCommand command = image_command(place);
   const ModesFollowed mode = modes_followed(place, command.mode);

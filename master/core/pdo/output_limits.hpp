@@ -46,7 +46,9 @@ struct AxisCommand {
 /// not commanded, or its fallback is effective, its step may begin at either of both values. If the
 /// last value or the actual position is outside the range, commands may move back towards the range
 /// but not further away from it. In modes in which the drive does not follow each position, only
-/// the range of positions is checked. Bus thread only.
+/// the range of positions is checked. The set speed of an inverter counts with the direction and
+/// the stop in its control word; a stop is never refused, because the drive has its own ramp. Bus
+/// thread only.
 class OutputLimits {
  public:
   /// Result of place_of() for an output without limits.
@@ -93,7 +95,8 @@ class OutputLimits {
   /// Checks a command. Returns std::nullopt if it may be sent.
   std::optional<LimitBreach> judge(std::size_t place, const AxisCommand& command, Obeying obeying,
                                    std::uint64_t cycle) const noexcept;
-  /// Returns true if the controlword `order` asks an axis that is not enabled to enable operation.
+  /// Returns true if the controlword `order` asks an axis that is not enabled to enable operation,
+  /// or if it makes a speed axis run, or run in the other direction.
   bool begins(std::size_t place, std::int64_t order) const noexcept;
   /// The controlword of the axis that was sent last; 0 if none was sent.
   std::int64_t order(std::size_t place) const noexcept { return slots_[place].order; }
@@ -139,6 +142,8 @@ class OutputLimits {
         set_point{};   ///< the set-point that was sent last, in the mode of that time
     double speed = 0;  ///< speed of the last step, per cycle
     double gap = 1;    ///< duration of the last step in cycles
+    double allowed =
+        0;  ///< of a set speed: what is left of the changes that its acceleration allows
     std::uint64_t cycle = 0;
     std::uint64_t refused_at = 0;
     bool known = false;      ///< a value was sent since open()
@@ -151,8 +156,8 @@ class OutputLimits {
 
     template <class Archive>
     void keep(Archive& state) noexcept {
-      state(low, high, rate, bend, bounded, value, offset, set_point, speed, gap, cycle, refused_at,
-            known, unsent, refused, idle, order, positions, remembered);
+      state(low, high, rate, bend, bounded, value, offset, set_point, speed, gap, allowed, cycle,
+            refused_at, known, unsent, refused, idle, order, positions, remembered);
       // A damaged checkpoint may contain any number.
       remembered = std::min(remembered, cycles_remembered);
     }
@@ -187,6 +192,12 @@ class OutputLimits {
   AxisCommand image_command(std::size_t place) const noexcept;
   double distance_from_actual(std::size_t place, double value, bool from_earlier) const noexcept;
   void note_sent(std::size_t place, std::uint64_t cycle) noexcept;
+
+  // These functions are in output_limits_speed.cpp.
+  std::optional<LimitBreach> judge_speed(std::size_t place, const AxisCommand& command,
+                                         Obeying obeying, std::uint64_t cycle) const noexcept;
+  double allowance(std::size_t place, std::uint64_t cycle) const noexcept;
+  void note_speed_sent(std::size_t place, std::uint64_t cycle) noexcept;
 
   // These functions are in output_limits_axis.cpp.
   bool enabled(std::size_t place) const noexcept;

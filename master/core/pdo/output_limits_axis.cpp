@@ -44,6 +44,10 @@ bool OutputLimits::starts_from_actual(std::size_t place, std::int64_t order) con
 }
 
 bool OutputLimits::begins(std::size_t place, std::int64_t order) const noexcept {
+  if (const auto& orders = limits_[place].orders) {
+    const double factor = orders->factor(order);
+    return factor != 0.0 && factor != orders->factor(slots_[place].order);
+  }
   return limits_[place].controlword && enables(order) && !enabled(place);
 }
 

@@ -12,11 +12,23 @@ constexpr std::uint16_t words_out = 0x5C9B;
 constexpr ObjectKey code_sync_in{0x5E90, 0};   // C00367: index 0x5FFF - number
 constexpr ObjectKey code_sync_out{0x5E8F, 0};  // C00368
 
-constexpr std::uint64_t bit_enable = 0x0001;
+// Bits of the control word.
+constexpr std::uint64_t order_on = 0x0001;
+constexpr std::uint64_t order_inhibit = 0x0002;
+constexpr std::uint64_t order_quick_stop = 0x0004;
+constexpr std::uint64_t order_enable = 0x0008;
 constexpr std::uint64_t bit_reset_fault = 0x0080;
-constexpr std::uint64_t status_ready = 0x0001;
-constexpr std::uint64_t status_enabled = 0x0002;
-constexpr std::uint64_t status_fault = 0x0008;
+constexpr std::uint64_t order_halt = 0x0100;
+
+// Bits of the status word, and the states in its bits 8 to 11.
+constexpr std::uint64_t shows_no_power = 0x0002;
+constexpr std::uint64_t shows_speed_reached = 0x0018;  // of the ramp, and of the motor
+constexpr std::uint64_t shows_standstill = 0x0040;
+constexpr std::uint64_t shows_inhibit = 0x0080;
+constexpr std::uint64_t shows_ready = 0x0300;
+constexpr std::uint64_t shows_switched_on = 0x0400;
+constexpr std::uint64_t shows_operation = 0x0500;
+constexpr std::uint64_t shows_fault = 0x0800;
 constexpr std::int64_t counts_a_second = 16384;  // from standstill to nominal speed in one second
 
 constexpr Firmware newest{{16, 0, 0}};
@@ -58,12 +70,18 @@ std::optional<CobId> Lenze8400::sync_transmit_id() const noexcept {
 
 void Lenze8400::reset(Time now) noexcept {
   fault_ = false;
+  resets_ = false;
   speed_.reset(now);
   publish();
 }
 
 bool Lenze8400::enabled() const noexcept {
-  return !fault_ && control_ != nullptr && (control_->value & bit_enable) != 0;
+  constexpr std::uint64_t both = order_on | order_enable;
+  return !fault_ && (order() & both) == both && (order() & order_inhibit) == 0;
+}
+
+std::uint64_t Lenze8400::order() const noexcept {
+  return control_ == nullptr ? 0 : control_->value;
 }
 
 void Lenze8400::advance(Time now) noexcept {
@@ -73,8 +91,12 @@ void Lenze8400::advance(Time now) noexcept {
 
 void Lenze8400::outputs(Time now) noexcept {
   speed_.advance(now);
-  if (control_ != nullptr && (control_->value & bit_reset_fault) != 0) fault_ = false;
-  speed_.aim(enabled() && set_point_ != nullptr ? set_point_->number() : 0);
+  const bool resets = (order() & bit_reset_fault) != 0;
+  if (resets && !resets_) fault_ = false;
+  resets_ = resets;
+  const bool follows =
+      enabled() && set_point_ != nullptr && (order() & (order_quick_stop | order_halt)) == 0;
+  speed_.aim(follows ? set_point_->number() : 0);
   echo(store_, words_in, words_out, first_free_word);
   publish();
 }
@@ -82,7 +104,14 @@ void Lenze8400::outputs(Time now) noexcept {
 void Lenze8400::publish() noexcept {
   if (actual_ != nullptr) actual_->set(static_cast<std::uint64_t>(speed_.value()));
   if (status_ == nullptr) return;
-  status_->set((fault_ ? status_fault : status_ready) | (enabled() ? status_enabled : 0));
+  std::uint64_t word = fault_                      ? shows_fault
+                       : enabled()                 ? shows_operation
+                       : (order() & order_on) != 0 ? shows_switched_on
+                                                   : shows_ready;
+  if (!enabled()) word |= shows_inhibit | shows_no_power;
+  if (enabled() && speed_.next_change() == never) word |= shows_speed_reached;
+  if (speed_.value() == 0) word |= shows_standstill;
+  status_->set(word);
 }
 
 /// The drive does not support 29-bit identifiers: bits 11 to 29 have to be 0.

@@ -9,7 +9,9 @@ namespace takt::sim {
 /// A Lenze 8400 HighLine on its system bus. Types 254 and 255 mean the same, the cycle time sends
 /// in addition to events, and type 0 needs SYNC and an event. From firmware 16.00.00 on, a SYNC
 /// producer reacts to its own SYNC as to a received one, if it sends and receives SYNC with the
-/// same identifier.
+/// same identifier. Words 1 and 2 are the words of the drive (device control) and a speed, whose
+/// ramp takes one second from standstill to the reference speed. A rising edge of bit 7 resets a
+/// fault.
 class Lenze8400 final : public Model {
  public:
   Lenze8400(const DeviceTable& table, ObjectStore& store, EmcyProducer& emcy);
@@ -27,6 +29,7 @@ class Lenze8400 final : public Model {
   std::optional<CobId> sync_transmit_id() const noexcept override;
 
  private:
+  std::uint64_t order() const noexcept;
   bool enabled() const noexcept;
   void publish() noexcept;
 
@@ -40,6 +43,7 @@ class Lenze8400 final : public Model {
   Object* sync_out_;  ///< code C00368
   Ramp speed_;
   bool fault_ = false;
+  bool resets_ = false;  ///< the control word has the bit that resets a fault
 };
 
 }  // namespace takt::sim

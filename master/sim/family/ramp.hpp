@@ -12,7 +12,7 @@ class Ramp {
   explicit Ramp(std::int64_t counts_a_second) : slope_{counts_a_second} {}
 
   void reset(Time now) noexcept {
-    value_ = target_ = 0;
+    value_ = target_ = rest_ = 0;
     last_ = now;
   }
   void aim(std::int64_t target) noexcept { target_ = target; }
@@ -23,8 +23,10 @@ class Ramp {
     const std::int64_t steps = (now - last_) / step;
     if (steps <= 0) return;
     last_ += steps * step;
-    const std::int64_t reach = std::min<std::int64_t>(steps, 1'000'000) * slope_ / 1000;
+    const std::int64_t thousandths = std::min<std::int64_t>(steps, 1'000'000) * slope_ + rest_;
+    const std::int64_t reach = thousandths / 1000;
     value_ = std::clamp(target_, value_ - reach, value_ + reach);
+    rest_ = value_ == target_ ? 0 : thousandths % 1000;
   }
 
   std::int64_t value() const noexcept { return value_; }
@@ -36,6 +38,7 @@ class Ramp {
   std::int64_t slope_;
   std::int64_t value_ = 0;
   std::int64_t target_ = 0;
+  std::int64_t rest_ = 0;  ///< thousandths of a count that the next step adds
   Time last_{};
 };
 

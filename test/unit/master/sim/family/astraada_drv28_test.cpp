@@ -227,5 +227,31 @@ TEST(AstraadaDrv28, RunsUpToItsSetFrequency) {
   EXPECT_EQ(device.of(0x285)[0], make_frame(CobId::base(0x285), {0x02, 0, 0xE8, 0x03, 0, 0, 0, 0}));
 }
 
+TEST(AstraadaDrv28, StopsTurnsAndResetsAFaultByItsCommands) {
+  constexpr ObjectKey state{0x2001, 1};
+  constexpr ObjectKey frequency{0x2001, 2};
+  FamilyDevice device = drv28();
+  device.start();
+  EXPECT_EQ(device.word(state), 3);
+  device.words(0x305, {1, 1000, 0, 0});
+  device.at(1000);
+  EXPECT_EQ(device.word(state), 1);
+  device.words(0x305, {5, 1000, 0, 0});
+  device.at(1200);
+  EXPECT_EQ(device.word(frequency), 500) << "along the ramp of 25 Hz a second";
+  device.words(0x305, {2, 1000, 0, 0});
+  device.at(1500);
+  EXPECT_EQ(device.word(state), 2);
+  EXPECT_EQ(device.word(frequency), 250) << "without a sign";
+
+  device.fail(0x2310);
+  EXPECT_EQ(device.word(state), 4);
+  EXPECT_EQ(device.word(frequency), 0);
+  device.words(0x305, {1, 1000, 0, 0});
+  EXPECT_EQ(device.word(state), 4);
+  device.words(0x305, {7, 0, 0, 0});
+  EXPECT_EQ(device.word(state), 3);
+}
+
 }  // namespace
 }  // namespace takt::sim

@@ -61,6 +61,12 @@ class FamilyDevice {
     device_->on_frame(frame, now_);
     collect();
   }
+  void fail(std::uint16_t emcy_code) {
+    device_->fail(emcy_code, now_);
+    collect();
+  }
+  /// Returns the value of an object of 16 bits, with its sign.
+  int word(ObjectKey key) { return static_cast<std::int16_t>(device_->objects().find(key)->value); }
   void sync() { receive(Frame{.id = CobId::base(0x080)}); }
   void request(std::uint32_t id) {
     Frame frame{.id = CobId::base(id)};

@@ -203,5 +203,58 @@ TEST(Lenze8400, MovesItsSecondChannelOnlyWhileThatIsOff) {
   EXPECT_EQ(device.of(0x6C5).size(), 1u);
 }
 
+constexpr ObjectKey status{0x5C9B, 1};
+constexpr ObjectKey speed{0x5C9B, 2};
+
+/// Returns the device state in the status word: 3 ready to switch on, 4 switched on, 5 operation, 8
+/// fault.
+int state_of(FamilyDevice& device) { return device.word(status) >> 8 & 0x0F; }
+
+TEST(Lenze8400, FollowsItsControlWordAndItsRamp) {
+  FamilyDevice device = lenze();
+  device.start();
+  EXPECT_EQ(state_of(device), 3);
+  device.words(0x205, {0x0001, 8192, 0, 0});
+  EXPECT_EQ(state_of(device), 4);
+  EXPECT_EQ(device.word(speed), 0);
+
+  device.words(0x205, {0x0009, 8192, 0, 0});
+  EXPECT_EQ(state_of(device), 5);
+  device.at(250);
+  EXPECT_EQ(device.word(speed), 4096) << "one second to 16384";
+  EXPECT_EQ(device.word(status) & 0x0050, 0);
+  device.at(600);
+  EXPECT_EQ(device.word(speed), 8192);
+  EXPECT_EQ(device.word(status) & 0x0050, 0x0010) << "at its speed";
+
+  device.words(0x205, {0x0109, 8192, 0, 0});  // halt
+  device.at(1200);
+  EXPECT_EQ(device.word(speed), 0);
+  EXPECT_EQ(state_of(device), 5);
+  EXPECT_EQ(device.word(status) & 0x0040, 0x0040) << "it stands";
+
+  device.words(0x205, {0x0009, 0xE000, 0, 0});  // -8192
+  device.at(1450);
+  EXPECT_EQ(device.word(speed), -4096);
+  device.words(0x205, {0x000D, 0xE000, 0, 0});  // quick stop
+  device.at(2000);
+  EXPECT_EQ(device.word(speed), 0);
+}
+
+TEST(Lenze8400, ResetsAFaultByTheEdgeOfBit7) {
+  FamilyDevice device = lenze();
+  device.start();
+  device.words(0x205, {0x0089, 8192, 0, 0});
+  device.at(500);
+  device.fail(0x1000);
+  EXPECT_EQ(state_of(device), 8);
+  device.at(600);
+  device.words(0x205, {0x0089, 8192, 0, 0});
+  EXPECT_EQ(state_of(device), 8) << "bit 7 was there before";
+  device.words(0x205, {0x0000, 0, 0, 0});
+  device.words(0x205, {0x0080, 0, 0, 0});
+  EXPECT_EQ(state_of(device), 3);
+}
+
 }  // namespace
 }  // namespace takt::sim
