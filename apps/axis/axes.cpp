@@ -10,7 +10,7 @@ namespace {
 template <class State, class Value>
 Eigen::VectorXd of_each(const State& state, Value value) {
   Eigen::VectorXd values = Eigen::VectorXd::Zero(state.size());
-  if (!state.is_current()) return values;
+  if (!state.is_current() || state.speed) return values;
   for (Eigen::Index i = 0; i < state.size(); ++i) values(i) = value(state.in_group(i));
   return values;
 }
@@ -29,7 +29,7 @@ Axes& Axes::operator=(Axes&& other) noexcept {
 Axes::~Axes() {
   if (!state_) return;
   // Nobody is left to tell about an obstacle.
-  [[maybe_unused]] const Done done = state_->disable();
+  [[maybe_unused]] const Done done = disable();
 }
 
 std::expected<Axes, Obstacle> Axes::open(AxesOptions options) {
@@ -46,16 +46,21 @@ std::expected<Axes, Obstacle> Axes::open(std::unique_ptr<Transport> lcm, AxesOpt
   return Axes{std::move(state)};
 }
 
-Done Axes::enable() { return state_->enable(); }
-Done Axes::disable() { return state_->disable(); }
-Done Axes::reset() { return state_->reset(); }
-Done Axes::set_mode(DriveMode mode) { return state_->set_mode(mode); }
-Done Axes::stop() { return state_->stop(); }
-Done Axes::wait(std::chrono::nanoseconds longest) { return state_->wait(longest); }
+Done Axes::enable() { return state_->speed ? state_->enable_speed() : state_->enable(); }
+Done Axes::disable() { return state_->speed ? state_->disable_speed() : state_->disable(); }
+Done Axes::reset() { return state_->speed ? state_->reset_speed() : state_->reset(); }
+Done Axes::stop() { return state_->speed ? state_->stop_speed() : state_->stop(); }
+Done Axes::set_mode(DriveMode mode) {
+  return state_->speed ? state_->no_position() : state_->set_mode(mode);
+}
+Done Axes::wait(std::chrono::nanoseconds longest) {
+  return state_->speed ? state_->wait_speed(longest) : state_->wait(longest);
+}
 Done Axes::run(std::chrono::nanoseconds time) { return state_->run(time); }
 
 Done Axes::begin_move(const Eigen::Ref<const Eigen::VectorXd>& positions,
                       const MotionBounds& bounds) {
+  if (state_->speed) return state_->no_position();
   return state_->begin("move", positions, bounds);
 }
 
@@ -65,18 +70,23 @@ Done Axes::move(const Eigen::Ref<const Eigen::VectorXd>& positions, const Motion
 }
 
 Done Axes::move_by(const Eigen::Ref<const Eigen::VectorXd>& distances, const MotionBounds& bounds) {
+  if (state_->speed) return state_->no_position();
   if (Done begun = state_->begin("move_by", distances, bounds); !begun) return begun;
   return wait();
 }
 
 Done Axes::jog(const Eigen::Ref<const Eigen::VectorXd>& velocities, const MotionBounds& bounds) {
-  return state_->jog(velocities, bounds);
+  return state_->speed ? state_->run_speed(velocities, bounds) : state_->jog(velocities, bounds);
 }
 
-Done Axes::gear(const Gear& gear, const MotionBounds& bounds) { return state_->gear(gear, bounds); }
+Done Axes::gear(const Gear& gear, const MotionBounds& bounds) {
+  return state_->speed ? state_->no_position() : state_->gear(gear, bounds);
+}
 
-Done Axes::wait_locked(std::chrono::nanoseconds longest) { return state_->wait_locked(longest); }
-bool Axes::locked() const { return state_->locked(); }
+Done Axes::wait_locked(std::chrono::nanoseconds longest) {
+  return state_->speed ? state_->no_position() : state_->wait_locked(longest);
+}
+bool Axes::locked() const { return !state_->speed && state_->locked(); }
 
 Eigen::VectorXd Axes::phase_errors() const {
   return of_each(*state_, [&](Eigen::Index axis) {
@@ -86,7 +96,8 @@ Eigen::VectorXd Axes::phase_errors() const {
 }
 
 Eigen::Index Axes::size() const noexcept { return state_->size(); }
-bool Axes::moving() const { return state_->moving(); }
+bool Axes::has_positions() const noexcept { return !state_->speed; }
+bool Axes::moving() const { return state_->speed ? state_->speed->moving() : state_->moving(); }
 AxisGroup& Axes::group() noexcept { return state_->group; }
 
 const std::string& Axes::name(Eigen::Index axis) const {
@@ -103,6 +114,12 @@ Eigen::VectorXd Axes::positions() const {
 }
 
 Eigen::VectorXd Axes::velocities() const {
+  if (state_->speed) {
+    Eigen::VectorXd speeds = Eigen::VectorXd::Zero(size());
+    if (!state_->is_current()) return speeds;
+    for (Eigen::Index i = 0; i < size(); ++i) speeds(i) = state_->speed->at(i).speed();
+    return speeds;
+  }
   const AxisControl& axes = std::as_const(state_->group).axes();
   return of_each(*state_, [&](Eigen::Index axis) { return axes.velocities()(axis); });
 }

@@ -15,6 +15,8 @@ constexpr std::chrono::milliseconds axes_tick{5};
 /// Longest time between signs of life. A shorter timeout of the motions shortens it.
 constexpr std::chrono::milliseconds longest_silence{50};
 constexpr int signs_in_timeout = 4;
+/// Longest wait for the speed axes of a layout, which are published once a second.
+constexpr std::chrono::milliseconds layout_time{1500};
 /// The bus is silent if no image comes for so long, for so many periods, and for the timeout.
 constexpr std::chrono::seconds image_time{2};
 constexpr int image_periods = 20;
@@ -48,13 +50,33 @@ Done Axes::State::find() {
                                 group.bus().empty() ? "a bus" : "bus " + group.bus()));
   }
   last_image_ = Clock::now();
+  session_ = group.input().session();
+  const auto first = Clock::now();
+  while (lacks_speed_axes() && Clock::now() - first < layout_time) {
+    if (Done done = step(Interruption::obeyed); !done) return done;
+  }
+  return find_speed_axes() ? Done{} : find_position_axes();
+}
+
+Done Axes::State::find_position_axes() {
   const AxisControl& known = group.axes();
   std::string all_names;
+  const auto add_name = [&](const std::string& name) {
+    all_names += (all_names.empty() ? "" : ", ") + name;
+  };
   for (Index i = 0; i < known.size(); ++i) {
-    all_names += (all_names.empty() ? "" : ", ") + known.name(i);
+    if (is_speed_axis(known.name(i))) continue;
+    add_name(known.name(i));
     if (options.names.empty()) axes.push_back(i);
   }
-  session_ = group.input().session();
+  for (const speed_axis_t& words : group.speed_axes()) add_name(words.node);
+  if (std::ranges::any_of(options.names, [&](const auto& name) { return is_speed_axis(name); })) {
+    return obstacle(Obstacle::Kind::wrong_use,
+                    fmt::format("bus {} does not have all of these axes as speed axes, or one is "
+                                "named twice; use one Axes for speed axes and one for axes with "
+                                "positions; the axes are: {}",
+                                group.bus(), all_names));
+  }
   for (const std::string& name : options.names) {
     Index i = 0;
     while (i < known.size() && known.name(i) != name) ++i;
@@ -74,7 +96,32 @@ Done Axes::State::find() {
   if (!axes.empty()) return {};
   return obstacle(
       Obstacle::Kind::wrong_use,
-      fmt::format("bus {} has no axis: no node has 6040 and 6041 in its PDOs", group.bus()));
+      fmt::format("bus {} has no axis: no node has 6040 and 6041 in its PDOs, or the words of an "
+                  "inverter",
+                  group.bus()));
+}
+
+bool Axes::State::is_speed_axis(const std::string& name) const {
+  const std::vector<speed_axis_t>& known = group.speed_axes();
+  return std::ranges::find(known, name, &speed_axis_t::node) != known.end();
+}
+
+/// The message about speed axes comes with the layout, but this program may have begun to listen
+/// between the two.
+bool Axes::State::lacks_speed_axes() const {
+  if (!group.speed_axes().empty()) return false;
+  const AxisControl& known = group.axes();
+  const auto has_position = [&](Index axis) {
+    return known.signals(axis).target_position.has_value();
+  };
+  for (const std::string& name : options.names) {
+    Index i = 0;
+    while (i < known.size() && known.name(i) != name) ++i;
+    if (i == known.size() || !has_position(i)) return true;
+  }
+  Index positions = 0;
+  for (Index i = 0; i < known.size(); ++i) positions += has_position(i) ? 1 : 0;
+  return positions == 0;
 }
 
 Done Axes::State::step(Interruption interruption) {
@@ -88,7 +135,11 @@ Done Axes::State::step(Interruption interruption) {
   const auto now = Clock::now();
   if (input == Input::fresh) {
     last_image_ = now;
-    if (sending_ == Sending::controls) group.send_controls(axes);
+    if (speed) {
+      send_speeds();
+    } else if (sending_ == Sending::controls) {
+      group.send_controls(axes);
+    }
   }
   keep_alive();
   const auto silence = now - last_image_;
@@ -117,7 +168,7 @@ bool Axes::State::is_current() const noexcept {
 
 void Axes::State::keep_alive() {
   const auto due = std::min<nanoseconds>(longest_silence, options.timeout / signs_in_timeout);
-  if (sending_ == Sending::nothing || Clock::now() - last_sent_ < due) return;
+  if (speed || sending_ == Sending::nothing || Clock::now() - last_sent_ < due) return;
   last_sent_ = Clock::now();
   motion_command_t command{};
   command.kind = "alive";

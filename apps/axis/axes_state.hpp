@@ -10,14 +10,17 @@
 #include <utility>
 #include <vector>
 
+#include "apps/axis/speed_drives.hpp"
+
 namespace takt {
 
 inline std::unexpected<Obstacle> obstacle(Obstacle::Kind kind, std::string text) {
   return std::unexpected{Obstacle{.kind = kind, .text = std::move(text)}};
 }
 
-/// What an Axes knows and does. Its code is in four files: waiting (axes_state.cpp), the states of
-/// the drives (axes_drives.cpp), motions (axes_motions.cpp) and gears (axes_gear.cpp).
+/// What an Axes knows and does. Its code is in five files: waiting (axes_state.cpp), the states of
+/// the drives (axes_drives.cpp), motions (axes_motions.cpp), gears (axes_gear.cpp) and speed axes
+/// (axes_speed.cpp).
 class Axes::State {
  public:
   using Clock = std::chrono::steady_clock;
@@ -47,14 +50,25 @@ class Axes::State {
   Done stop();
   bool moving() const;
 
-  Index size() const noexcept { return static_cast<Index>(axes.size()); }
+  // The same for speed axes; see axes_speed.cpp.
+  Done enable_speed();
+  Done disable_speed();
+  Done reset_speed();
+  Done run_speed(const Values& velocities, const MotionBounds& bounds);
+  Done wait_speed(std::chrono::nanoseconds longest);
+  Done stop_speed();
+  /// Returns the obstacle of a call that needs positions.
+  Done no_position() const;
+
+  Index size() const noexcept { return static_cast<Index>(names.size()); }
   /// Returns the index in the group of the axis with this index in an Axes.
   Index in_group(Index axis) const { return axes[static_cast<std::size_t>(axis)]; }
 
   AxisGroup group;
   AxesOptions options;
-  std::vector<Index> axes;         // of the group
-  std::vector<std::string> names;  // parallel to `axes`
+  std::vector<Index> axes;           // of the group; empty if these are speed axes
+  std::optional<SpeedDrives> speed;  // the axes, if they are speed axes
+  std::vector<std::string> names;    // parallel to `axes`
   std::vector<std::string> units;
 
  private:
@@ -77,6 +91,13 @@ class Axes::State {
   std::optional<Done> wait_until(const Condition& reached, std::chrono::nanoseconds longest,
                                  Interruption interruption = Interruption::obeyed);
   Done restarted();
+  Done find_position_axes();
+  bool find_speed_axes();
+  bool is_speed_axis(const std::string& name) const;
+  bool lacks_speed_axes() const;
+  void send_speeds();
+  std::string why_speed_ended() const;
+  Done check_speeds(const Values& velocities, const MotionBounds& bounds) const;
   /// Sends a sign of life if one is due. It names the axes only for a jog that runs and has to go
   /// on, because this renews the jog.
   void keep_alive();
@@ -117,6 +138,7 @@ class Axes::State {
   std::int64_t stop_cycle_ = -1;   // of the image from which the newest stop was sent
   Clock::time_point last_sent_{};  // the newest sign of life
   Clock::time_point last_image_ = Clock::now();
+  std::string stopped_text_;     // why this object has stopped speed axes by itself
   std::vector<event_t> events_;  // since the newest motion began
 };
 

@@ -55,6 +55,8 @@ class AxisGroup::State {
   void take_image(std::span<const std::byte> data);
   void take_layout(std::span<const std::byte> data);
   void take_status(std::span<const std::byte> data);
+  void take_speed_axes(std::span<const std::byte> data);
+  void use_speed_axes();
   void take_motion(std::span<const std::byte> data);
   void report_schema(std::int16_t schema);
   bool publish(command_t& command);
@@ -76,6 +78,7 @@ class AxisGroup::State {
   std::string heard;  // first bus whose layout arrived; only if no bus was configured
   std::string image_channel;
   std::string layout_channel;
+  std::string speed_axes_channel;
   std::string command_channel;
   std::string secured_channel;
   std::string motion_channel;
@@ -88,6 +91,8 @@ class AxisGroup::State {
   NodeHolders holders;
   std::map<std::int16_t, node_status_t> nodes;                            // by node-ID
   std::map<std::pair<std::int16_t, std::int8_t>, axis_motion_t> motions;  // by node-ID and axis
+  std::vector<speed_axis_t> speed_axes;                                   // of the layout
+  std::vector<std::optional<speed_axes_t>> speed_parts;  // of the newest messages about them
   bool fresh = false;
   bool new_layout = false;
   bool reported_stale = false;
@@ -107,9 +112,11 @@ AxisGroup::State::State(std::unique_ptr<Transport> transport, AxisGroupOptions g
       holders{sender} {
   if (options.bus.empty()) {
     lcm->subscribe(any_bus("LAYOUT"));
+    lcm->subscribe(any_bus("SPEED_AXES"));
   } else {
     listen_to(options.bus);
     lcm->subscribe(layout_channel);
+    lcm->subscribe(speed_axes_channel);
   }
 }
 
@@ -117,6 +124,7 @@ void AxisGroup::State::listen_to(std::string_view name) {
   bus = name;
   image_channel = channel_name(bus, "IMAGE");
   layout_channel = channel_name(bus, "LAYOUT");
+  speed_axes_channel = channel_name(bus, "SPEED_AXES");
   command_channel = channel_name(bus, "COMMAND");
   secured_channel = channel_name(bus, "SECURED");
   event_channel = channel_name(bus, "EVENT");
@@ -132,13 +140,15 @@ void AxisGroup::State::listen_to(std::string_view name) {
 
 void AxisGroup::State::take(std::string_view channel, std::span<const std::byte> data) {
   if (bus.empty()) {
-    heard = bus_of_channel(channel, "LAYOUT");
+    if (const auto name = bus_of_channel(channel, "LAYOUT"); !name.empty()) heard = name;
   } else if (channel == image_channel) {
     take_image(data);
   } else if (channel == layout_channel) {
     take_layout(data);
   } else if (channel == status_channel) {
     take_status(data);
+  } else if (channel == speed_axes_channel) {
+    take_speed_axes(data);
   } else if (channel == motion_channel) {
     take_motion(data);
   } else if (channel == event_channel && events.size() < most_events) {
@@ -164,6 +174,8 @@ void AxisGroup::State::take_layout(std::span<const std::byte> data) {
   holders.clear();
   nodes.clear();
   motions.clear();
+  speed_axes.clear();
+  if (!speed_parts.empty()) use_speed_axes();
 }
 
 void AxisGroup::State::take_status(std::span<const std::byte> data) {
@@ -172,6 +184,28 @@ void AxisGroup::State::take_status(std::span<const std::byte> data) {
   if (!fits || part->session != input.session()) return;
   holders.take(*part);
   for (const node_status_t& node : part->nodes) nodes.insert_or_assign(node.node_id, node);
+}
+
+/// The speed axes come before their layout, so all parts are kept until both are there.
+void AxisGroup::State::take_speed_axes(std::span<const std::byte> data) {
+  auto part = decode<speed_axes_t>(data);
+  constexpr std::int16_t most_parts = 128;
+  const bool fits = part && part->schema == message_schema && part->parts >= 1 &&
+                    part->parts <= most_parts && part->part >= 0 && part->part < part->parts;
+  if (!fits) return;
+  speed_parts.resize(static_cast<std::size_t>(part->parts));
+  speed_parts[static_cast<std::size_t>(part->part)] = std::move(*part);
+  if (input.has_layout()) use_speed_axes();
+}
+
+/// Takes over the speed axes if all parts are of the layout that is known.
+void AxisGroup::State::use_speed_axes() {
+  std::vector<speed_axis_t> found;
+  for (const auto& part : speed_parts) {
+    if (!part || part->session != input.session()) return;
+    found.insert(found.end(), part->axes.begin(), part->axes.end());
+  }
+  speed_axes = std::move(found);
 }
 
 void AxisGroup::State::take_motion(std::span<const std::byte> data) {
@@ -285,6 +319,16 @@ bool AxisGroup::send_controls(std::span<const AxisControl::Index> axes) {
   return state_->publish(command);
 }
 
+bool AxisGroup::send_values(command_t& command) {
+  state_->commands = true;
+  command.schema = message_schema;
+  command.session = state_->input.session();
+  command.cycle = state_->input.cycle();
+  command.release = 0;
+  command.num_values = static_cast<std::int32_t>(command.values.size());
+  return state_->publish(command);
+}
+
 bool AxisGroup::send_motion(motion_command_t& command) {
   return state_->send_goals(state_->motion_command_channel, command);
 }
@@ -335,12 +379,24 @@ const NodeHolder& AxisGroup::holder(AxisControl::Index axis) const {
   return state_->holders[state_->axes.signals(axis).node];
 }
 
+const NodeHolder& AxisGroup::holder_of_node(std::int16_t node) const {
+  return state_->holders[node];
+}
+
+const std::vector<speed_axis_t>& AxisGroup::speed_axes() const noexcept {
+  return state_->speed_axes;
+}
+
 std::optional<axis_motion_t> AxisGroup::motion(AxisControl::Index axis) const {
   return state_->motion_of(state_->axes.signals(axis));
 }
 
 std::optional<node_status_t> AxisGroup::node_status(AxisControl::Index axis) const {
-  const auto found = state_->nodes.find(state_->axes.signals(axis).node);
+  return status_of_node(state_->axes.signals(axis).node);
+}
+
+std::optional<node_status_t> AxisGroup::status_of_node(std::int16_t node) const {
+  const auto found = state_->nodes.find(node);
   if (found == state_->nodes.end()) return std::nullopt;
   return found->second;
 }

@@ -33,7 +33,9 @@ ParsedJog parse_jog(int argc, char** argv) {
       "Keys: right arrow, l or + moves forward, left arrow, h or - backward; each other key stops\n"
       "the axis; q ends the program, and so does Ctrl-C.\n"
       "Example:  takt-jog demo --axis shoulder --velocity 0.5\n"
-      "Lengths are in the unit of the axis (rad, m; counts if no unit is configured).\n"
+      "Lengths are in the unit of the axis (rad, m; counts if no unit is configured), velocities "
+      "in\n"
+      "this unit per second. An inverter has speeds in its unit (rpm, Hz) and no lengths.\n"
       "Exit codes: 0 the axis was stopped and disabled, 1 something blocks it, 2 wrong use,\n"
       "3 no message of a daemon came.");
   app.set_version_flag("--version", "takt-jog " TAKT_VERSION);
@@ -43,8 +45,10 @@ ParsedJog parse_jog(int argc, char** argv) {
                  "velocity of the jog, unit/s; a negative one swaps the directions of the keys")
       ->required()
       ->check(moving);
-  app.add_option("--acceleration", options.acceleration,
-                 "acceleration limit, unit/s^2 (default: the velocity is reached in 0.25 s)")
+  app.add_option(
+         "--acceleration", options.acceleration,
+         "acceleration limit, unit/s^2 (default: the velocity is reached in 0.25 s; an inverter "
+         "follows its own ramp)")
       ->check(CLI::PositiveNumber & CLI::Validator{moving, ""});
   app.add_option("--jerk", options.jerk, "jerk limit, unit/s^3 (default: that of the network file)")
       ->check(CLI::PositiveNumber & CLI::Validator{moving, ""});

@@ -18,6 +18,12 @@ constexpr std::chrono::milliseconds oldest_key{100};
 
 Time now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
+/// A speed axis without --acceleration follows the ramps of its drive.
+double usual_acceleration(const Axes& axes, const JogOptions& options) {
+  const double usual = axes.has_positions() ? std::abs(options.velocity) / usual_ramp : 0.0;
+  return options.acceleration.value_or(usual);
+}
+
 Eigen::VectorXd one(double value) { return Eigen::VectorXd::Constant(1, value); }
 
 }  // namespace
@@ -26,8 +32,7 @@ JogRun::JogRun(Axes& axes, const JogOptions& options)
     : axes_{axes},
       options_{options},
       bounds_{.velocity = one(std::abs(options.velocity)),
-              .acceleration =
-                  one(options.acceleration.value_or(std::abs(options.velocity) / usual_ramp)),
+              .acceleration = one(usual_acceleration(axes, options)),
               .jerk = one(options.jerk)},
       dead_man_{{.first = options.first, .next = options.dead_man}} {}
 
@@ -96,8 +101,9 @@ void JogRun::take_keys(Keyboard& keyboard) {
 /// Replaces the last line of the terminal by the state of the axis.
 void JogRun::show(std::string_view what) const {
   const std::string& unit = axes_.unit(0);
-  const std::string line = fmt::format("{} {} at {:.4f} {}", axes_.name(0), what,
-                                       axes_.positions()(0), unit.empty() ? "counts" : unit);
+  const double value = axes_.has_positions() ? axes_.positions()(0) : axes_.velocities()(0);
+  const std::string line =
+      fmt::format("{} {} at {:.4f} {}", axes_.name(0), what, value, unit.empty() ? "counts" : unit);
   std::fputs(fmt::format("\r{:<70}", printable_text(line)).c_str(), stdout);
   std::fflush(stdout);
 }

@@ -14,6 +14,9 @@ and drives outlive a silence of `timeout`; then the axes stop along their limits
 the fallback of `on_timeout` in the network file. A program that has nothing to do calls run() instead
 of time.sleep(). A jog goes on until stop(), until another motion, or until an exception ends a wait.
 
+Inverters, and CiA 402 drives in velocity mode, are speed axes: they obey the same calls except those that need a position,
+and taktd needs no --motions for them. All axes of an object are of one kind. See share/doc/speed.md.
+
 How to try it on the simulated bus of share/demo/two_axes.yaml:
 
     python3 -m venv venv && venv/bin/pip install lcm
@@ -34,11 +37,14 @@ from collections.abc import Callable
 
 import lcm
 from takt import (command_t, event_t, image_t, layout_t, motion_command_t, motion_gear_t, motion_goal_t, motion_t,
-                  status_t)
+                  speed_axes_t, status_t)
+
+from takt_speed import FAULT, OFF, READY, STANDING, SpeedAxis, SpeedDrives
 
 SCHEMA = 2  # of the LCM messages that this module knows
 CONTROLWORD, STATUSWORD, MODE, MODE_DISPLAY, POSITION, VELOCITY = 0x6040, 0x6041, 0x6060, 0x6061, 0x6064, 0x606C
-OBJECTS = {(CONTROLWORD, True), (MODE, True)} | {(index, False) for index in (STATUSWORD, MODE_DISPLAY, POSITION, VELOCITY)}
+TARGET = 0x607A
+OBJECTS = {(CONTROLWORD, True), (MODE, True), (TARGET, True)} | {(index, False) for index in (STATUSWORD, MODE_DISPLAY, POSITION, VELOCITY)}
 FIRST_OBJECT, LAST_OBJECT, AXIS_STEP = 0x6000, 0x9FFF, 0x800  # the objects of each further axis of a device are 0x800 higher
 CYCLIC_SYNCHRONOUS_POSITION = 8  # mode of operation (0x6060)
 # The states of CiA 402: mask and pattern of the statusword, name, and the bit that shows why the drive is not enabled.
@@ -67,6 +73,8 @@ STOP_PAUSE, SILENCE = 0.05, 0.05  # seconds between two stops, and between two s
 SETTLED_CYCLES, UNANSWERED_CYCLES = 10, 100
 HELD_STATUSES = 20  # status_t (10 in a second) in sequence in which another program holds an axis before enable() gives up
 BOOT_READY = 2  # node_status_t::boot_state
+LAYOUT_TIME = 1.5  # seconds for the speed axes of a layout, which come once a second
+WORDS_BEFORE_RELEASE = 3  # cycles in which the last words of speed axes are sent
 
 
 class Obstacle(Exception):
@@ -130,7 +138,8 @@ class Axes:
         self._alive_sent, self._utime = 0.0, 0
         self._mode, self._words = CYCLIC_SYNCHRONOUS_POSITION, None  # _words: the controlword for each state, while it changes
         self._link = lcm.LCM()  # LCM_DEFAULT_URL, else LCM's default
-        for channel, handler in (("LAYOUT", self._on_layout), ("IMAGE", self._on_image), ("MOTION", self._on_motion),
+        self._speed, self._speed_parts, self._signals, self._stale, self._period = None, {}, {}, set(), 0.0
+        for channel, handler in (("SPEED_AXES", self._on_speed_axes), ("LAYOUT", self._on_layout), ("IMAGE", self._on_image), ("MOTION", self._on_motion),
                                  ("EVENT", self._on_event), ("STATUS", self._on_status)):
             self._link.subscribe(f"{self.bus}_{channel}", handler)
         self._found, self._layout_parts, self._image_time = {}, set(), time.monotonic()
@@ -139,15 +148,30 @@ class Axes:
             self._serve(0.05)
             if time.monotonic() > end:
                 raise Obstacle("no bus", f"no image of bus {bus} has come: is taktd running, with the same LCM URL?")
+        begin, with_position = time.monotonic(), {axis.name for axis in self._axes if TARGET in axis.places}
+        wanted = set(names) - with_position if names else not with_position
+        while wanted and not self._speed_words() and time.monotonic() < begin + LAYOUT_TIME:
+            self._serve(0.05)
+        inverters = {words.node: words for words in self._speed_words()}
+        self._axes = [axis for axis in self._axes if axis.name not in inverters]
+        if inverters and (set(names) & set(inverters) if names else not self._axes):
+            chosen = list(names) or list(inverters)
+            if len(set(chosen)) < len(chosen) or not set(chosen) <= set(inverters):
+                raise Obstacle("wrong use", f"bus {bus} does not have all of these axes as speed axes, or one is named twice: "
+                                            "use one Axes for speed axes and one for axes with positions")
+            self._speed = SpeedDrives([SpeedAxis(inverters[name], self._signals) for name in chosen])
+            self._axes = [_Axis(name, name, inverters[name].node_id, 1) for name in chosen]
+            return
         known = {axis.name: axis for axis in self._axes}
         for name in names:
             if name not in known or names.count(name) > 1:
                 raise Obstacle("wrong use", f"bus {bus} has no axis '{name}', or it is named twice; the axes are: "
-                                            f"{', '.join(known) or 'none'}")
+                                            f"{', '.join([*known, *inverters]) or 'none'}")
         if names:
             self._axes = [known[name] for name in names]
         if not self._axes:
-            raise Obstacle("wrong use", f"bus {bus} has no axis: no node has 6040 and 6041 in its PDOs")
+            raise Obstacle("wrong use", f"bus {bus} has no axis: no node has 6040 and 6041 in its PDOs, or the words of an "
+                                        "inverter")
 
     def __enter__(self) -> Axes:
         return self
@@ -162,13 +186,22 @@ class Axes:
         return [axis.name for axis in self._axes]
 
     @property
+    def units(self) -> list[str]:
+        """Units of the positions, or of the speeds of speed axes ("rpm", "Hz"). Empty: raw counts."""
+        if self._speed:
+            return [axis.words.unit for axis in self._speed.axes]
+        return [axis.signals[POSITION].unit if POSITION in axis.signals else "" for axis in self._axes]
+
+    @property
     def positions(self) -> list[float]:
-        """Actual positions."""
+        """Actual positions; 0 for speed axes."""
         return [self._read(axis, POSITION) for axis in self._axes]
 
     @property
     def velocities(self) -> list[float]:
         """Actual velocities; 0 where no PDO carries them."""
+        if self._speed:
+            return [axis.speed for axis in self._speed.axes]
         return [self._read(axis, VELOCITY) for axis in self._axes]
 
     @property
@@ -184,12 +217,16 @@ class Axes:
     @property
     def moving(self) -> bool:
         """At least one axis moves or stops, as taktd has reported last."""
+        if self._speed:
+            return self._speed.moving
         return any(axis.motion and axis.motion.state in (MOVES, STOPS) for axis in self._axes)
 
     # What the drives do.
 
     def enable(self) -> None:
-        """Leads all axes to Operation enabled. A fault is an obstacle: see reset()."""
+        """Leads all axes to Operation enabled, or makes speed axes ready to run. A fault is an obstacle: see reset()."""
+        if self._speed:
+            return self._enable_speed()
         self._mode, self._words = CYCLIC_SYNCHRONOUS_POSITION, ENABLING
         self._commanding = True
         blocked = lambda axis: axis.state in FAULTS or axis.held >= HELD_STATUSES
@@ -207,6 +244,8 @@ class Axes:
         self._jog_wanted = self._enabled = False
         if not self._commanding:
             return
+        if self._speed:
+            return self._disable_speed()
         try:
             self.stop()
         finally:
@@ -223,6 +262,8 @@ class Axes:
 
     def reset(self) -> None:
         """Resets the faults of all axes. Axes that move stop first; those without a fault keep their states."""
+        if self._speed:
+            return self._reset_speed()
         in_fault = lambda: any(axis.state in FAULTS for axis in self._axes)
         if not in_fault():
             return
@@ -239,6 +280,7 @@ class Axes:
     def set_mode(self, mode: int) -> None:
         """Stops the axes, sets another mode of operation (0x6060), and waits until the drives show it. The drives keep their
         states. enable() sets cyclic synchronous position again."""
+        self._needs_position()
         self.stop()
         self._mode, self._words, self._commanding = mode, KEEPING, True
         shown = lambda axis: self._raw(axis, MODE_DISPLAY if MODE_DISPLAY in axis.places else MODE) == mode
@@ -268,7 +310,9 @@ class Axes:
 
     def jog(self, *velocities: float, **limits: float | list[float]) -> None:
         """Begins to keep these velocities, until stop() or the end of the range of positions. If it raises an exception,
-        the axes stop."""
+        the axes stop. Of the limits, a speed axis takes `acceleration`; without one it follows the ramps of its drive."""
+        if self._speed:
+            return self._run_speed(velocities, limits)
         try:
             self._begin("jog", velocities, limits)
             self._jog_wanted = True
@@ -332,7 +376,9 @@ class Axes:
 
     def wait(self, seconds: float = float("inf")) -> None:
         """Waits until the newest motion has ended: a move, when the commanded positions are at its target. Does not stop it
-        when `seconds` are over."""
+        when `seconds` are over. Speed axes run until something stops them."""
+        if self._speed:
+            return self._wait_speed(seconds)
         def over():
             course = self._course()
             return course != "runs" and (course != "unanswered" or time.monotonic() > self._begun + ANSWER_TIME)
@@ -349,6 +395,8 @@ class Axes:
         self._jog_wanted = False
         if not self._commanding:
             return
+        if self._speed:
+            return self._stop_speed()
         self._serve(0)  # the stop is for the newest image: one of an old image may be refused
         if not self._may_move and not self.moving:
             return
@@ -367,6 +415,95 @@ class Axes:
             raise Obstacle("time over", "the axes still move")
         self._has_motion = self._may_move = False
 
+    # The same for speed axes.
+
+    def _needs_position(self) -> None:
+        if self._speed:
+            raise Obstacle("wrong use", f"{self.names[0]} is a speed axis and has no position: use jog()")
+
+    def _speed_ended(self) -> str:
+        """What has ended the newest run."""
+        nodes = {axis.node_id for axis in self._axes}
+        fallback = next((event.text for event in self._events if event.kind == "fallback_begun" and event.node_id in nodes), "")
+        return self._speed.stopped or fallback or self._why_speed()
+
+    def _why_speed(self) -> str:
+        held = (f"{axis.name} belongs to '{self._nodes[axis.node_id].holder}', and the commands of this program are refused"
+                for axis in self._axes if axis.held)
+        return "; ".join(filter(None, (self._speed.why(), *held)))
+
+    def _enable_speed(self) -> None:
+        self._events.clear()
+        self._speed.stopped, self._speed.sent, self._commanding = "", time.monotonic(), True
+        self._speed.want(STANDING)
+        held = lambda: any(axis.held >= HELD_STATUSES for axis in self._axes)
+        own = lambda axis: axis.node_id in self._nodes and self._nodes[axis.node_id].holder == self.sender
+        ready = lambda: self._speed.all(READY) and all(map(own, self._axes))
+        self._wait(lambda: ready() or self._speed.any(FAULT) or held(), self.longest)
+        if not ready():
+            why = self._why_speed() or f"the daemon does not show that this program holds {', '.join(self.names)}"
+            self.disable()
+            raise Obstacle("blocked", why)
+        self._enabled = True
+
+    def _disable_speed(self) -> None:
+        try:
+            self._stop_speed()
+        finally:
+            self._speed.want(OFF)
+            end = self._cycle + WORDS_BEFORE_RELEASE
+            try:
+                self._wait(lambda: self._cycle > end, self.longest)
+            finally:
+                self._commanding = False
+                self._command(release=True)
+
+    def _reset_speed(self) -> None:
+        for axis in self._speed.axes:
+            if axis.state == FAULT:
+                axis.reset_steps = 0
+        if not self._commanding:
+            self._speed.sent, self._commanding = time.monotonic(), True
+        if not self._wait(lambda: not self._speed.any(FAULT), self.longest):
+            raise Obstacle("blocked", self._why_speed())
+
+    def _run_speed(self, speeds, limits: dict) -> None:
+        self._check(speeds)
+        for axis, speed in zip(self._speed.axes, speeds):
+            most, unit = axis.words.max_speed, axis.words.unit
+            if not axis.can_hold(speed):
+                raise Obstacle("wrong use", f"{axis.name} can't be commanded to run at {speed} {unit}")
+            if 0 < most < abs(speed):
+                raise Obstacle("refused", f"{speed} {unit} is above the limit of {axis.name}, {most} {unit}")
+        if not self._enabled:
+            raise Obstacle("blocked", f"{', '.join(self.names)}: call enable() first")
+        self._events.clear()
+        self._speed.stopped = ""
+        self._step()  # after a long silence, the messages that wait tell that the drives were stopped
+        if self._speed_ended():
+            raise Obstacle("blocked", self._speed_ended())
+        self._speed.run(speeds, limits.get("acceleration", 0.0))
+        runs = lambda: all(axis.runs for axis in self._speed.axes)
+        try:
+            self._wait(lambda: runs() or self._speed_ended(), self.longest)
+            if not runs():
+                raise Obstacle("blocked", self._speed_ended() or "the drives do not begin to run")
+        except BaseException:
+            self._speed.stop()
+            raise
+
+    def _wait_speed(self, seconds: float) -> None:
+        if not self._wait(lambda: not self._speed.moving or self._speed_ended(), seconds):
+            raise Obstacle("time over", "the axes still run")
+        if self._speed_ended():
+            raise Obstacle("stopped", self._speed_ended())
+
+    def _stop_speed(self) -> None:
+        self._speed.stop()
+        stands = lambda: all(axis.stands for axis in self._speed.axes) or self._speed.any(FAULT)
+        if not self._wait(stands, self.longest):
+            raise Obstacle("time over", "the drives have not come to standstill")
+
     # Below here: messages.
 
     def _begin(self, kind: str, values: tuple[float, ...], limits: dict) -> None:
@@ -381,6 +518,7 @@ class Axes:
 
     def _ready_goals(self, kind: str, values, limits: dict) -> list[motion_goal_t]:
         """The goals of a motion, which may begin now."""
+        self._needs_position()
         self._jog_wanted = False
         self._check(values)
         if not self._enabled:
@@ -504,7 +642,7 @@ class Axes:
             raise Obstacle("restarted", "taktd has restarted")
         if before - self._image_time > max(IMAGE_TIME, self.timeout):
             raise Obstacle("no bus", f"no image of bus {self.bus} has come for {before - self._image_time:.1f} s")
-        if self._commanding and now - self._alive_sent > min(SILENCE, self.timeout / 4):
+        if self._commanding and not self._speed and now - self._alive_sent > min(SILENCE, self.timeout / 4):
             self._alive_sent = now
             self._send("alive", self._goals() if self._jog_wanted else [])
 
@@ -515,7 +653,11 @@ class Axes:
             for _ in range(100):  # a flood of messages does not hold the program
                 if not self._link.handle_timeout(0):
                     break
-        if self._words is not None and self._cycle != cycle:
+        if self._speed and self._cycle != cycle:
+            self._speed.step(self._values, self._stale, self._cycle, self._period, self.timeout if self._commanding else None)
+            if self._commanding:
+                self._command()
+        elif self._words is not None and self._cycle != cycle:
             self._command()
 
     def _fill(self, message) -> None:
@@ -528,7 +670,11 @@ class Axes:
         command = command_t()
         self._fill(command)
         command.release = release
-        for axis in () if release else self._axes:
+        if self._speed and not release:
+            outputs = self._speed.values()
+            command.signals, command.values = list(outputs), list(outputs.values())
+            command.time_to_live = max(3, int(self.timeout / self._period)) if self._period else 0
+        for axis in () if release or self._speed else self._axes:
             for index, value in ((CONTROLWORD, self._words.get(axis.state, 0)), (MODE, self._mode)):
                 if index in axis.places:
                     command.signals.append(axis.places[index])
@@ -548,6 +694,18 @@ class Axes:
         self._stop_cycle, self._stop_sent = self._cycle, time.monotonic()
         self._send("stop", self._goals())
 
+    def _on_speed_axes(self, channel: str, data: bytes) -> None:
+        message = speed_axes_t.decode(data)
+        if message.schema == SCHEMA:
+            self._speed_parts[message.session, message.part] = message
+
+    def _speed_words(self) -> list:
+        """The words of the speed axes of the layout; empty until all of them have come."""
+        parts = [part for (session, _), part in self._speed_parts.items() if session == self._session]
+        if not parts or len(parts) < parts[0].parts:
+            return []
+        return [words for part in sorted(parts, key=lambda part: part.part) for words in part.axes]
+
     def _on_layout(self, channel: str, data: bytes) -> None:
         layout = layout_t.decode(data)
         if layout.schema != SCHEMA:
@@ -559,11 +717,12 @@ class Axes:
         for place, signal in enumerate(layout.signals, layout.first_signal):
             self._add(place, signal)
         if len(self._layout_parts) == layout.parts:
-            self._session, self._hash = layout.session, layout.hash
+            self._session, self._hash, self._period = layout.session, layout.hash, layout.period_ns * 1e-9
             self._axes = [axis for _, axis in sorted(self._found.items())
                           if CONTROLWORD in axis.places and STATUSWORD in axis.places]
 
     def _add(self, place: int, signal) -> None:
+        self._signals[place] = signal
         index = FIRST_OBJECT + signal.index % AXIS_STEP
         if not FIRST_OBJECT <= signal.index <= LAST_OBJECT or signal.sub or (index, bool(signal.output)) not in OBJECTS:
             return
@@ -578,12 +737,13 @@ class Axes:
             return
         self._values.update(enumerate(image.values, image.first_signal))
         if image.part == 0:
-            self._parts = set()
+            self._parts, self._stale = set(), set()
+        self._stale.update(image.stale)
         self._parts.add(image.part)
         if len(self._parts) < image.parts:
             return
         self._cycle, self._image_time = image.cycle, time.monotonic()
-        for axis in self._axes:
+        for axis in () if self._speed else self._axes:
             axis.statusword = self._values[axis.places[STATUSWORD]] & 0xFFFF
 
     def _on_motion(self, channel: str, data: bytes) -> None:

@@ -25,6 +25,7 @@ constexpr std::uint64_t not_yet = ~0ULL;
 Channels::Channels(const std::string& bus)
     : image{channel_name(bus, "IMAGE")},
       layout{channel_name(bus, "LAYOUT")},
+      speed_axes{channel_name(bus, "SPEED_AXES")},
       command{channel_name(bus, "COMMAND")},
       motion{channel_name(bus, "MOTION")},
       motion_command{channel_name(bus, "MOTION_COMMAND")},
@@ -50,6 +51,7 @@ Bridge::Bridge(MasterRun& master, Transport& transport, const Clocks& clocks, Br
       channels_{master.plan().name},
       image_messages_{master.plan(), options_.session},
       layout_messages_{layout_messages(master.plan(), options_.session)},
+      speed_messages_{speed_messages(master.plan(), options_.session)},
       status_messages_{master.plan(), {options_.session, options_.interface, options_.realtime}},
       timing_messages_{options_.session},
       commands_{master.plan(),
@@ -350,7 +352,9 @@ void Bridge::send(Notice notice) {
   announce_(notice);
 }
 
+/// The speed axes come first: who has the layout then also knows them.
 void Bridge::publish_layout(Time now) {
+  for (speed_axes_t& part : speed_messages_) publish(channels_.speed_axes, part, now);
   for (layout_t& part : layout_messages_) publish(channels_.layout, part, now);
 }
 

@@ -13,6 +13,7 @@
 #include "master/gateway/front_gap.hpp"
 #include "master/gateway/front_guest.hpp"
 #include "master/gateway/message/image_messages.hpp"
+#include "master/gateway/message/speed_messages.hpp"
 #include "master/gateway/message/status_messages.hpp"
 #include "master/gateway/message/typed_channels.hpp"
 #include "master/gateway/motion/motion_commands.hpp"
@@ -30,8 +31,8 @@ namespace takt {
 /// The LCM channels of one bus.
 struct Channels {
   explicit Channels(const std::string& bus);
-  std::string image, layout, command, motion, motion_command, motion_gear, motion_stream, status,
-      sync, pdos, timing, event, request, reply, transfer, transfer_state;
+  std::string image, layout, speed_axes, command, motion, motion_command, motion_gear,
+      motion_stream, status, sync, pdos, timing, event, request, reply, transfer, transfer_state;
   /// Returns the channels that the daemon receives.
   std::vector<std::string> heard() const {
     return {command, motion_command, motion_gear, motion_stream, request, transfer};
@@ -177,6 +178,7 @@ class Bridge {
   ImageMessages image_messages_;
   std::optional<TypedChannels> typed_;
   std::vector<layout_t> layout_messages_;
+  std::vector<speed_axes_t> speed_messages_;
   StatusMessages status_messages_;
   TimingMessages timing_messages_;
   Histogram sync_to_lcm_;  // from SYNC until the image, with its typed messages, is handed over

@@ -18,6 +18,7 @@
 #include <takt/pdo_status_t.hpp>
 #include <takt/reply_t.hpp>
 #include <takt/request_t.hpp>
+#include <takt/speed_axes_t.hpp>
 #include <takt/status_t.hpp>
 #include <takt/sync_status_t.hpp>
 #include <takt/timing_t.hpp>
@@ -80,6 +81,8 @@ consteval std::string_view message_layout() {
   if (std::same_as<T, sync_status_t>) return "lhlhshllllls";
   if (std::same_as<T, reply_t>) return "lhllsblsn(b)";
   if (std::same_as<T, request_t>) return "lhllsshihhin(b)";
+  if (std::same_as<T, speed_axes_t>)
+    return "lhhhlln(shbbiiiiiiiiiiin(i)in(i)in(i)in(i)in(i)in(i)sdddd)";
   if (std::same_as<T, status_t>)
     return "lhhhlssislllllllllllllfhhhhslhhbbbbbbllllbn(hshhhhihiiiiilsn(i))";
   if (std::same_as<T, timing_t>) return "lhlln(slffffn(l))";

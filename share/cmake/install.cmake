@@ -7,8 +7,10 @@ get_property(libraries GLOBAL PROPERTY TAKT_LIBRARIES)
 install(TARGETS ${libraries} EXPORT takt-targets)
 install(TARGETS takt taktd takt-follow takt-jog takt-move)
 
-install(PROGRAMS apps/python/axes.py apps/python/first_motion.py apps/python/motion.py DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
-install(FILES apps/python/envelopes.py apps/python/takt_axes.py DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
+install(PROGRAMS apps/python/axes.py apps/python/first_motion.py apps/python/first_speed.py apps/python/motion.py
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
+install(FILES apps/python/envelopes.py apps/python/takt_axes.py apps/python/takt_speed.py
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
 install(DIRECTORY share/devices share/eds share/demo DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)
 
 # The pages link only to each other and to CHANGELOG.md, which is installed beside them: the installed index has another link

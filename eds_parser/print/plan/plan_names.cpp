@@ -98,6 +98,10 @@ std::vector<LcmChannel> lcm_channels(const BusPlan& plan, const LcmOptions& opti
       {channel("TRANSFER_STATE"), "takt.transfer_state_t",
        "progress of these transfers, and data that were read"},
   };
+  if (!plan.speed_axes.empty()) {
+    channels.push_back(
+        {channel("SPEED_AXES"), "takt.speed_axes_t", "with the layout: the words of inverters"});
+  }
   if (!motion_axes(plan).empty()) {
     channels.push_back({channel("MOTION_COMMAND"), "takt.motion_command_t",
                         "motions that taktd runs: move, jog, stop"});

@@ -16,6 +16,7 @@
 #include <takt/motion_command_t.hpp>
 #include <takt/motion_gear_t.hpp>
 #include <takt/node_status_t.hpp>
+#include <takt/speed_axis_t.hpp>
 #include <vector>
 
 namespace takt {
@@ -99,6 +100,11 @@ class AxisGroup {
   /// `timeout_ms` and `goals`.
   bool send_gear(motion_gear_t& gear);
 
+  /// Sends these values of outputs, in the name of this group and from its newest image. The caller
+  /// fills in `signals` and `values`. Returns false if LCM did not take the message. Axes
+  /// (`<takt/motion.hpp>`) calls this function for speed axes.
+  bool send_values(command_t& command);
+
   /// Returns the axes, which wait() keeps up to date. There are none before the first layout.
   AxisControl& axes() noexcept;
   /// Returns the axes, which wait() keeps up to date. There are none before the first layout.
@@ -110,12 +116,18 @@ class AxisGroup {
   /// so each application decides for how many status_t another program may hold a node before it
   /// gives up.
   const NodeHolder& holder(AxisControl::Index axis) const;
+  /// Returns the holder of the node with this node-ID, 1..127.
+  const NodeHolder& holder_of_node(std::int16_t node) const;
+  /// Returns the speed axes of the layout, by their node-IDs. Empty if the bus has none.
+  const std::vector<speed_axis_t>& speed_axes() const noexcept;
   /// Returns what taktd has reported last about the motion of this axis; its positions are in the
   /// unit of the target position. Empty if this run of taktd has reported none: it does so from the
   /// first command for motions on.
   std::optional<axis_motion_t> motion(AxisControl::Index axis) const;
   /// Returns the newest status of the node of this axis. Empty before the first status_t.
   std::optional<node_status_t> node_status(AxisControl::Index axis) const;
+  /// Returns the newest status of the node with this node-ID. Empty before the first status_t.
+  std::optional<node_status_t> status_of_node(std::int16_t node) const;
   /// Returns the name of this sender in events and in status_t: the name of the options and eight
   /// hex digits of the instance. It tells two running programs of the same name apart.
   const std::string& sender() const noexcept;

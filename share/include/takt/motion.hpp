@@ -1,7 +1,8 @@
 #pragma once
 /// @file
 /// Motions of CiA 402 axes that taktd runs (`taktd --motions`): enable, move, jog, gear, stop. The
-/// bus thread of taktd gives the drives their set-points, so the program may be late.
+/// bus thread of taktd gives the drives their set-points, so the program may be late. Inverters
+/// obey the same calls, as axes with a speed and without a position.
 #include <Eigen/Core>
 #include <chrono>
 #include <cstdint>
@@ -98,6 +99,14 @@ struct Gear {
 /// the drives take the fallback of `on_timeout` in the network file. A program that has nothing to
 /// do calls run() instead of sleeping.
 ///
+/// **Speed axes** are inverters whose words the device data of takt or `speed_axis` of the network
+/// file describe, and CiA 402 drives with 0x6042. All axes of an object are of one kind; without
+/// names, they are the axes with positions if there are any. A speed axis needs no
+/// `taktd --motions`: this program computes its words from each image, and the drive runs along its
+/// own ramps. Each call sends words; a silence of AxesOptions::timeout, or of the time in
+/// `on_timeout`, stops the drives along their ramps, and a jog that was stopped does not begin
+/// again by itself. Calls that need a position are refused.
+///
 /// The axes of one call begin in the same cycle, and a stop of one stops all of them. Vectors have
 /// one element for each axis, in its unit (rad, m, or raw counts if the layout states no unit). All
 /// calls come from one thread. A moved-from object may only be destroyed or assigned to.
@@ -137,7 +146,8 @@ class Axes {
                   const MotionBounds& bounds = {});
   /// Begins to keep these velocities, and returns when taktd has begun. The axes keep them until
   /// stop(), until the end of their range, or until this program is silent. If the call fails, it
-  /// stops the axes.
+  /// stops the axes. A speed axis takes the velocity in its unit; of the bounds it takes the
+  /// acceleration alone, and without one it follows the ramps of its drive.
   Done jog(const Eigen::Ref<const Eigen::VectorXd>& velocities, const MotionBounds& bounds = {});
   /// Begins to follow a leader, and returns when taktd has begun. The axes approach the moving
   /// state of the leader within their limits, and follow it until stop(), until another motion
@@ -156,7 +166,10 @@ class Axes {
   Eigen::Index size() const noexcept;
   /// Returns the name of an axis, 0..size()-1.
   const std::string& name(Eigen::Index axis) const;
-  /// Returns the unit of the positions of an axis. Empty stands for raw counts.
+  /// Returns false if these are speed axes, whose positions are 0.
+  bool has_positions() const noexcept;
+  /// Returns the unit of the positions of an axis, or of the speeds of a speed axis ("rpm", "Hz").
+  /// Empty stands for raw counts.
   const std::string& unit(Eigen::Index axis) const;
   /// Returns true if at least one axis moves or stops, as taktd has reported last.
   bool moving() const;
