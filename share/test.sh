@@ -1,7 +1,7 @@
 #!/bin/sh
 # test.sh - everything that CI runs, a line a stage; ends with the count and exit code 0 if all is good.
-#   TAKT_STAGES  only these of: format release asan tsan fuzz tidy alone mutation (without: all but the last two, which belong to
-#                a release: they compile each source alone, and 200 changed copies)
+#   TAKT_STAGES  only these of: format release asan tsan fuzz tidy alone mutation trajectories (without: all but the last three, which
+#                belong to a release: they compile each source alone, and 200 changed copies, and plan 10^8 trajectories)
 #   TAKT_FUZZ    seconds of the stage fuzz for EDS files; half of it for network files, a third for each other target (60)
 #   TAKT_PCH     OFF: no precompiled headers
 #   TAKT_JOBS    parallel jobs (number of processors)
@@ -84,6 +84,11 @@ check_alone() { read_sources alone build/alone -DTAKT_UNITY=OFF -DTAKT_WERROR=ON
 # The copy of the tree and its programs stay in build/mutation, so that a second run compiles only what has changed.
 check_mutation() { python3 test/mutation/mutate.py --seed 1 --count 200 --jobs "$jobs"; }
 
+# Beside ruckig. CI compares a million trajectories (test/motion/judge_trajectories.py).
+check_trajectories() {
+  python3 test/motion/judge_many.py --cases 100000000 && python3 test/motion/judge_many.py --cases 1000000 --class "wide limits"
+}
+
 # build PRESET COMPILER [TARGET...]. Warnings are errors in release and fuzz, which compile all files.
 build() {
   preset=$1
@@ -136,6 +141,7 @@ for wanted in $stages; do
     tidy) stage tidy check_tidy ;;
     alone) stage alone check_alone ;;
     mutation) stage mutation check_mutation ;;
+    trajectories) stage trajectories check_trajectories ;;
     release)
       if stage release-build build release c++; then
         stage release-tests run_tests release

@@ -1,21 +1,8 @@
 #include "apps/move/synchronised_move.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
 
 namespace takt {
-namespace {
-
-/// Returns true if the motion ends elsewhere than at its target, because the limits are too far
-/// apart for the planner.
-bool misses(const motion::AxisTask& task, const motion::PlannedAxis& axis) noexcept {
-  const double most = std::max(std::abs(task.from.position), std::abs(task.to.position));
-  return !(std::abs(axis.profile.end(task.from).position - task.to.position) <= 1e-7 * most);
-}
-
-}  // namespace
-
 std::optional<SynchronisedMove> SynchronisedMove::plan(const Eigen::VectorXd& from,
                                                        const Eigen::VectorXd& to,
                                                        std::span<const MotionLimits> limits) {
@@ -33,9 +20,7 @@ std::optional<SynchronisedMove> SynchronisedMove::plan(const Eigen::VectorXd& fr
   move.planned_.resize(move.tasks_.size());
   const auto duration = motion::plan_trajectory(
       move.tasks_, {.synchronisation = motion::Synchronisation::phase}, move.planned_);
-  if (!duration || !std::ranges::equal(move.tasks_, move.planned_, std::not_fn(misses))) {
-    return std::nullopt;
-  }
+  if (!duration) return std::nullopt;
   move.duration_ = *duration;
   return move;
 }

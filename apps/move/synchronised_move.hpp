@@ -13,8 +13,8 @@ namespace takt {
 /// start together and arrive together, and each axis stays within its own limits.
 class SynchronisedMove {
  public:
-  /// Plans the move. `limits` holds the limits of each axis. Returns std::nullopt if a number is
-  /// infinite or NaN, or if the limits are too far apart.
+  /// Plans the move. `limits` holds the limits of each axis. Returns std::nullopt if
+  /// plan_trajectory() refuses it.
   static std::optional<SynchronisedMove> plan(const Eigen::VectorXd& from,
                                               const Eigen::VectorXd& to,
                                               std::span<const MotionLimits> limits);

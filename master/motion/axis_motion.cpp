@@ -26,12 +26,13 @@ Transfer transfer_of(const State& from, const State& to, const Limits& limits) n
 bool is_at_target(const State& from, const State& to, const Limits& limits, Goal goal) noexcept {
   const double velocity = limits.max_velocity - limits.min_velocity;
   const double acceleration = limits.max_acceleration - limits.min_acceleration;
-  const double position = std::max(std::abs(from.position), std::abs(to.position));
+  const bool rests = to.velocity == 0.0 && to.acceleration == 0.0;
+  const double position = (rests ? AxisMotion::at_rest_position : AxisMotion::at_target_position) *
+                          std::max(std::abs(from.position), std::abs(to.position));
   const auto same = [](double a, double b, double size) { return std::abs(a - b) <= size; };
   return same(from.velocity, to.velocity, AxisMotion::at_target * velocity) &&
          same(from.acceleration, to.acceleration, AxisMotion::at_target * acceleration) &&
-         (goal == Goal::velocity ||
-          same(from.position, to.position, AxisMotion::at_target_position * position));
+         (goal == Goal::velocity || same(from.position, to.position, position));
 }
 
 State after(const Entry& entry, const State& from, double jerk) noexcept {
@@ -74,28 +75,37 @@ double summit(const FarthestMotion& motion, double low, double high) noexcept {
 }
 
 /// Returns the shortest duration between `first` and `last` with which `motion` reaches `distance`.
-/// The motion must not reach it with `first`; `last` may be infinite. Returns std::nullopt if there
+/// The motion must not reach it with `first`; `last` may be infinite. A motion that misses it by
+/// `tolerance` at a summit or at `last` reaches it but for rounding. Returns std::nullopt if there
 /// is no such duration.
 std::optional<double> time_to_reach(const FarthestMotion& motion, double distance, double first,
-                                    double last) noexcept {
+                                    double last, double tolerance) noexcept {
   double low = first;
   const double bent = std::min(last, motion.cruises_after());
   for (const double bend : motion.bends()) {
     const double high = std::min(bend, bent);
     if (high <= low) continue;
     const auto end = motion.reach(high);
-    if (end.distance >= distance) return crossing(motion, distance, low, high, high);
-    if (motion.reach(low).slope > 0.0 && end.slope < 0.0) {
+    // A motion that passes its target and returns to it reaches it for the first time before its
+    // summit.
+    if (end.slope < 0.0 && motion.reach(low).slope > 0.0) {
       const double top = summit(motion, low, high);
-      if (motion.reach(top).distance >= distance) return crossing(motion, distance, low, top, low);
+      const double most = motion.reach(top).distance;
+      if (most >= distance) return crossing(motion, distance, low, top, low);
+      if (most >= distance - tolerance) return top;
     }
+    if (end.distance >= distance) return crossing(motion, distance, low, high, high);
     low = high;
   }
   const double high = std::max(low, bent);
   const auto end = motion.reach(high);
   if (end.distance >= distance) return crossing(motion, distance, low, high, high);
-  if (last != std::numeric_limits<double>::infinity()) return std::nullopt;
-  return high + (distance - end.distance) / end.slope;
+  if (high < last) {  // it cruises
+    const double time = high + (distance - end.distance) / end.slope;
+    if (time <= last) return time;
+  }
+  if (motion.reach(last).distance >= distance - tolerance) return last;
+  return std::nullopt;
 }
 
 /// The jerks of the seven phases of a farthest motion.
@@ -153,8 +163,11 @@ void AxisMotion::add_phases(const Phases& phases, double direction,
 }
 
 double AxisMotion::rounding(double time) const noexcept {
-  const double velocity = std::abs(transfer_.start_velocity) + std::abs(transfer_.end_velocity) +
-                          std::min(transfer_.max_velocity - transfer_.min_velocity, time * time);
+  const double acceleration =
+      std::min(transfer_.max_acceleration - transfer_.min_acceleration, time);
+  const double velocity =
+      std::abs(transfer_.start_velocity) + std::abs(transfer_.end_velocity) +
+      std::min(transfer_.max_velocity - transfer_.min_velocity, time * acceleration);
   return 16 * epsilon * time * velocity;
 }
 
@@ -165,12 +178,16 @@ double AxisMotion::possible(double duration) const noexcept {
     if (wanted > range.last) continue;
     const double time = std::max(wanted, range.first);
     if (goal_ == Goal::velocity) return entry_time_ + time;
+    const auto reach = [&](const FarthestMotion& motion, double distance) {
+      const double longest = std::max(time, std::min(range.last, motion.cruises_after()));
+      return time_to_reach(motion, distance, time, range.last, rounding(longest));
+    };
     const double tolerance = rounding(time);
     std::optional<double> reached = time;
     if (distance_ > distance_up(time) + tolerance) {
-      reached = time_to_reach(up_, distance_, time, range.last);
+      reached = reach(up_, distance_);
     } else if (distance_ < distance_down(time) - tolerance) {
-      reached = time_to_reach(down_, -distance_, time, range.last);
+      reached = reach(down_, -distance_);
     }
     if (reached) return entry_time_ + *reached;
   }

@@ -22,9 +22,11 @@ class AxisMotion {
  public:
   /// The largest relative difference of velocity and acceleration that counts as rounding. It is
   /// relative to the difference between the upper and the lower limit. at_target_position is the
-  /// same for positions and is relative to the larger of both positions.
+  /// same for positions and is relative to the larger of both positions. at_rest_position applies
+  /// instead if the target is at rest, because a small difference then needs little time.
   static constexpr double at_target = 1e-9;
   static constexpr double at_target_position = 1e-8;
+  static constexpr double at_rest_position = 1e-12;
 
   /// The limits and the target must have no defect, see defect_of().
   AxisMotion(const State& from, const State& to, const Limits& limits, Goal goal) noexcept;

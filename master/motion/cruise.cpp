@@ -108,7 +108,7 @@ void add_cruise(const Transfer& transfer, const Cruise& cruise, PhaseWriter& wri
   writer.add(begin.phases[0], begin.sign);
   writer.add(begin.phases[1], 0.0);
   writer.add_until(0.0);
-  writer.cruise(cruise.duration, transfer.max_velocity);
+  writer.cruise(cruise.duration, std::abs(cruise.velocity));
   writer.add(end.phases[2], -end.sign);
   writer.add(end.phases[1], 0.0);
   writer.add_until(transfer.end_acceleration);

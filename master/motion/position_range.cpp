@@ -44,6 +44,7 @@ PositionRange positions_of(const Profile& profile, const State& from) noexcept {
 
 bool stays_inside(const PositionRange& range, const Profile& profile, const State& from) noexcept {
   constexpr double tolerance = 1e-9;
+  if (std::isinf(range.min) && std::isinf(range.max)) return true;
   const PositionRange seen = positions_of(profile, from);
   const double size = tolerance * std::max(std::abs(seen.min), std::abs(seen.max));
   return seen.min >= range.min - size && seen.max <= range.max + size;

@@ -6,12 +6,13 @@
 #include <limits>
 #include <optional>
 
+#include "master/motion/precision.hpp"
+
 namespace takt::motion {
 namespace {
 
-AxisMotion motion_of(const AxisTask& task, Goal goal) noexcept {
-  return {task.from, task.to, task.limits, goal};
-}
+constexpr int most_tries = 50;   ///< of durations, to stay inside a range of positions
+constexpr int most_passes = 50;  ///< over all axes, to find a duration that is possible for all
 
 bool all_finite(const AxisTask& task) noexcept {
   const Limits& limits = task.limits;
@@ -28,38 +29,69 @@ bool is_between(double low, double value, double high) noexcept {
   return value >= low * tolerance && value <= high * tolerance;
 }
 
-/// Returns a duration of at least `duration` for which the axis has a motion inside its range of
-/// positions. The shortest motion reverses as early as the axis can, so if it leaves the range,
+/// Plans the shortest motion of one axis that lasts at least `duration` and stays inside its range
+/// of positions. The shortest motion reverses as early as the axis can, so if it leaves the range,
 /// most longer motions leave it too. The function therefore tries only a few longer durations.
-std::expected<double, Defect> possible(const AxisTask& task, Goal goal, double duration) noexcept {
-  const AxisMotion motion = motion_of(task, goal);
+std::expected<void, Defect> plan_axis(const AxisTask& task, Goal goal, double duration,
+                                      PlannedAxis& planned) noexcept {
+  const AxisMotion motion{task.from, task.to, task.limits, goal};
   const PositionRange range = widened(task.range, task.from.position);
   double time = motion.possible(duration);
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < most_tries; ++i) {
     if (!std::isfinite(time)) return std::unexpected{Defect::not_finite};
-    if (stays_inside(range, motion.profile(time), task.from)) return time;
+    planned.profile = motion.profile(time);
+    planned.duration = time;
+    if (stays_inside(range, planned.profile, task.from)) return {};
     time = motion.possible(1.1 * time);
   }
   return std::unexpected{Defect::position_range};
 }
 
-/// Returns the shortest duration of at least `duration` that is possible for all tasks. The loop
-/// ends soon, because each pass skips a range of durations that is impossible for an axis, and an
-/// axis has few such ranges.
-std::expected<double, Refused> common_duration(std::span<const AxisTask> tasks, Goal goal,
-                                               double duration) noexcept {
+/// Plans all tasks again with the shortest duration that is possible for all of them and is at
+/// least `duration`, and returns it. Each pass skips a range of durations that is impossible for an
+/// axis. An axis has few such ranges, so two or three passes are enough.
+std::expected<double, Refused> plan_together(std::span<const AxisTask> tasks, Goal goal,
+                                             double duration,
+                                             std::span<PlannedAxis> planned) noexcept {
   static constexpr double rounding = 1.0 + 8 * std::numeric_limits<double>::epsilon();
-  for (bool passed = true; passed;) {
-    passed = false;
+  std::size_t last = 0;
+  for (int pass = 0; pass < most_passes; ++pass) {
+    bool passed = false;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
-      const auto time = possible(tasks[i], goal, duration);
-      if (!time) return std::unexpected{Refused{.axis = i, .defect = time.error()}};
-      if (*time <= duration * rounding) continue;
-      duration = *time;
-      passed = true;
+      if (planned[i].duration == duration) continue;
+      if (const auto done = plan_axis(tasks[i], goal, duration, planned[i]); !done) {
+        return std::unexpected{Refused{.axis = i, .defect = done.error()}};
+      }
+      if (planned[i].duration > duration * rounding) {
+        duration = planned[i].duration;
+        passed = true;
+        last = i;
+      }
+      planned[i].duration = duration;
     }
+    if (!passed) return duration;
   }
-  return duration;
+  return std::unexpected{Refused{.axis = last, .defect = Defect::common_duration}};
+}
+
+/// Plans each task for itself with at least this duration. Returns the longest duration.
+std::expected<double, Refused> plan_apart(std::span<const AxisTask> tasks, Goal goal,
+                                          double duration,
+                                          std::span<PlannedAxis> planned) noexcept {
+  double longest = 0.0;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (planned[i].duration < duration) {
+      if (const auto done = plan_axis(tasks[i], goal, duration, planned[i]); !done) {
+        return std::unexpected{Refused{.axis = i, .defect = done.error()}};
+      }
+    }
+    longest = std::max(longest, planned[i].duration);
+  }
+  return longest;
+}
+
+bool is_precise(const AxisTask& task, Goal goal, const Profile& profile) noexcept {
+  return is_precise(task.from, task.to, task.limits, goal, profile);
 }
 
 Profile scaled(const Profile& profile, double share) noexcept {
@@ -75,14 +107,19 @@ std::optional<double> plan_line(std::span<const AxisTask> tasks, const Trajector
                                 std::span<PlannedAxis> planned) noexcept {
   const auto line = StraightLine::find(tasks, options.goal);
   if (!line) return std::nullopt;
-  const auto duration = possible(line->leader(), options.goal, options.minimum_duration);
-  if (!duration) return std::nullopt;
-  const Profile profile = motion_of(line->leader(), options.goal).profile(*duration);
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    planned[i].profile = scaled(profile, line->share(tasks[i]));
-    planned[i].duration = *duration;
+  PlannedAxis leader;
+  if (!plan_axis(line->leader(), options.goal, options.minimum_duration, leader)) {
+    return std::nullopt;
   }
-  return *duration;
+  const auto is_good = [&](const AxisTask& task) {
+    return is_precise(task, options.goal, scaled(leader.profile, line->share(task)));
+  };
+  if (!std::ranges::all_of(tasks, is_good)) return std::nullopt;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    planned[i].profile = scaled(leader.profile, line->share(tasks[i]));
+    planned[i].duration = leader.duration;
+  }
+  return leader.duration;
 }
 
 }  // namespace
@@ -120,29 +157,23 @@ std::expected<double, Refused> plan_trajectory(std::span<const AxisTask> tasks,
     if (const auto sound = defect_of(tasks[i]); !sound) {
       return std::unexpected{Refused{.axis = i, .defect = sound.error()}};
     }
-    const auto shortest = possible(tasks[i], options.goal, 0.0);
-    if (!shortest) return std::unexpected{Refused{.axis = i, .defect = shortest.error()}};
-    planned[i].shortest = *shortest;
-    longest = std::max(longest, *shortest);
+    if (const auto done = plan_axis(tasks[i], options.goal, 0.0, planned[i]); !done) {
+      return std::unexpected{Refused{.axis = i, .defect = done.error()}};
+    }
+    planned[i].shortest = planned[i].duration;
+    longest = std::max(longest, planned[i].shortest);
   }
   if (options.synchronisation == Synchronisation::phase) {
     if (const auto duration = plan_line(tasks, options, planned)) return *duration;
   }
-  if (options.synchronisation != Synchronisation::none) {
-    const auto common = common_duration(tasks, options.goal, longest);
-    if (!common) return common;
-    for (PlannedAxis& axis : planned) axis.duration = *common;
-  } else {
-    for (std::size_t i = 0; i < tasks.size(); ++i) {
-      const auto duration = possible(tasks[i], options.goal, options.minimum_duration);
-      if (!duration) return std::unexpected{Refused{.axis = i, .defect = duration.error()}};
-      planned[i].duration = *duration;
-    }
-  }
-  double duration = 0.0;
+  const auto duration = options.synchronisation == Synchronisation::none
+                            ? plan_apart(tasks, options.goal, options.minimum_duration, planned)
+                            : plan_together(tasks, options.goal, longest, planned);
+  if (!duration) return duration;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
-    planned[i].profile = motion_of(tasks[i], options.goal).profile(planned[i].duration);
-    duration = std::max(duration, planned[i].duration);
+    if (!is_precise(tasks[i], options.goal, planned[i].profile)) {
+      return std::unexpected{Refused{.axis = i, .defect = Defect::precision}};
+    }
   }
   return duration;
 }

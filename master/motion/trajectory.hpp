@@ -25,6 +25,8 @@ enum class Defect : std::uint8_t {
   velocity_before_target,  ///< just before the target, the velocity would have to be outside the
                            ///< limits
   position_range,          ///< all motions that were tried leave the range of positions
+  common_duration,         ///< no duration was found that is possible for all axes
+  precision,               ///< the numbers have too few digits for this motion, see is_precise()
 };
 
 /// A task for which there is no motion, and the reason.

@@ -116,7 +116,10 @@ def followed(task, segments):
         if inside:
             excess = max(excess, look(v, a))
         inside = inside or is_inside(v, a, limits)
-    length = max(way, abs(begin), abs(target[0]))
+    positions = max(abs(begin), abs(target[0]))
+    rests = target[1] == target[2] == 0
+    # A moving axis counts as at its target if the difference is small beside its position.
+    length = way + number(1e-4) * positions if rests else max(way, positions)
     error = max(abs(p - target[0]) / (length or 1), abs(v - target[1]) / max(limits[MAX_V], -limits[MIN_V]),
                 abs(a - target[2]) / max(limits[MAX_A], -limits[MIN_A]))
     return float(error), float(excess)

@@ -19,7 +19,10 @@ std::string defect_text(motion::Defect defect) {
       "the target acceleration is outside the limits",
       "with its target acceleration, the axis would have to exceed the velocity limits before it "
       "arrives",
-      "no motion was found that stays inside the range of positions"};
+      "no motion was found that stays inside the range of positions",
+      "no duration was found that is possible for all axes",
+      "precision: the limits and states differ by so many powers of ten that the motion can't be "
+      "computed with 16 digits"};
   return std::string{name_of(defect, texts)};
 }
 

@@ -19,6 +19,10 @@ std::string_view text_of(motion::Defect defect) noexcept {
       return "the target can't be reached within the limits";
     case position_range:
       return "the axis would leave its range of positions";
+    case common_duration:
+      return "no duration was found that is possible for all axes";
+    case precision:
+      return "the numbers of the command differ by too many powers of ten";
   }
   return "the motion is impossible";
 }

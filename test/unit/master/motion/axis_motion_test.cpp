@@ -1,6 +1,7 @@
 #include "master/motion/axis_motion.hpp"
 
 #include <array>
+#include <cmath>
 #include <gtest/gtest.h>
 
 #include "test/unit/master/motion/judge.hpp"
@@ -80,6 +81,55 @@ TEST(AxisMotion, HasDurationsThatAreImpossibleBetweenPossibleOnes) {
 
   EXPECT_GE(later, 2.5);
   EXPECT_NEAR(motion.profile(later).end(from).position, 0.0, 1e-9);
+}
+
+TEST(AxisMotion, ThatPassesItsTargetAndReturnsToItStopsWhenItIsThereFirst) {
+  // The motion that goes down farthest is beyond the target in the middle of a range of durations,
+  // and exactly at the target at its end, after 2 s.
+  const Limits limits{.max_velocity = 4.0,
+                      .min_velocity = -4.0,
+                      .max_acceleration = 5.0,
+                      .min_acceleration = -1.0,
+                      .jerk = 1.0};
+  const State from{.position = -0.5, .velocity = -2.5, .acceleration = 2.5};
+  const State to{.position = -1.5, .velocity = 1.5, .acceleration = 2.5};
+
+  EXPECT_NEAR(shortest(from, to, limits), 1.7419270827943674, 1e-12);
+}
+
+TEST(AxisMotion, ReachesATargetThatOnlyTheLastDurationOfARangeReaches) {
+  const Limits limits{.max_velocity = 8.0,
+                      .min_velocity = -8.0,
+                      .max_acceleration = 1.0,
+                      .min_acceleration = -5.0,
+                      .jerk = 1.0};
+  const State from{.position = 0.5, .velocity = 1.0, .acceleration = -2.0};
+  const State to{.position = -0.5, .velocity = -2.0, .acceleration = -2.0};
+
+  EXPECT_NEAR(shortest(from, to, limits), 2.0, 1e-12);
+}
+
+TEST(AxisMotion, FromRestToATargetCloseByMovesAlsoFarFromTheOrigin) {
+  const State from{.position = 1e6};
+  const State to{.position = 1e6 + 0.001953125};
+  const AxisMotion motion{from, to, unit, Goal::position};
+
+  const Profile profile = motion.profile(motion.possible(0.0));
+
+  EXPECT_NEAR(profile.duration(), 4 * std::cbrt(0.001953125 / 2), 1e-12);
+  EXPECT_NEAR(profile.end(from).position, to.position, 1e-9);
+}
+
+TEST(AxisMotion, ThatHasMoreThanADayForAShortWayEndsAtItsTarget) {
+  // A small acceleration that remains before the cruise would become a distance.
+  const State from{.acceleration = 1e-10};
+  const State to{.position = 1e-9};
+  const AxisMotion motion{from, to, unit, Goal::position};
+
+  const Profile profile = motion.profile(motion.possible(1e5));
+
+  const AxisTask task{.from = from, .to = to, .limits = unit};
+  EXPECT_LE((Judge{task, profile.segments()}).verdict().end_error, 1e-8);
 }
 
 TEST(AxisMotion, WithMoreTimeThanItNeedsCruisesSlowly) {

@@ -19,16 +19,22 @@ class Judge {
   Judge(const AxisTask& task, std::span<const Segment> segments) : task_{task} {
     v_ = task.from.velocity;
     a_ = task.from.acceleration;
+    steepest_ = std::abs(a_);
     inside_ = is_inside();
-    long double position = task.from.position;
-    for (const Segment& segment : segments) position += follow(segment);
+    long double way = 0;
+    for (const Segment& segment : segments) way += follow(segment);
     const Limits& l = task.limits;
-    const long double size =
-        std::max({path_, std::abs(static_cast<long double>(task.from.position)),
-                  std::abs(static_cast<long double>(task.to.position)),
-                  static_cast<long double>(l.max_velocity * l.max_velocity / l.max_acceleration)});
+    const long double from = task.from.position;
+    const long double to = task.to.position;
+    const long double positions = std::max(std::abs(from), std::abs(to));
+    // A moving axis counts as at its target if the difference is small beside its position.
+    const bool rests = task.to.velocity == 0 && task.to.acceleration == 0;
+    const long double size = rests ? path_ + 1e-4L * positions : std::max(path_, positions);
+    // What the rounding of an acceleration in its 18th digit changes until the end is no error.
+    const long double miss =
+        std::max(std::abs(way - (to - from)) - 1e-18L * steepest_ * time_ * time_, 0.0L);
     verdict_.end_error = static_cast<double>(std::max(
-        {std::abs(position - task.to.position) / size,
+        {size > 0 ? miss / size : miss,
          std::abs(v_ - task.to.velocity) / std::max(l.max_velocity, -l.min_velocity),
          std::abs(a_ - task.to.acceleration) / std::max(l.max_acceleration, -l.min_acceleration)}));
   }
@@ -36,7 +42,8 @@ class Judge {
   const Verdict& verdict() const { return verdict_; }
 
  private:
-  static constexpr long double tolerance = 1.0L + 1e-9L;
+  /// Less than the excess that is permitted, so that rounding can't make one of a start.
+  static constexpr long double tolerance = 1.0L + 5e-10L;
 
   /// Returns true if velocity and acceleration are inside and can stay there.
   bool is_inside() const {
@@ -63,13 +70,20 @@ class Judge {
     if (inside_) {
       verdict_.excess =
           std::max(verdict_.excess, static_cast<double>(std::abs(j) / task_.limits.jerk - 1));
-      const long double turn = j == 0 ? -1 : -a_ / j;
-      if (turn > 0 && turn < t) look(v_ + turn * (a_ + turn * j / 2), 0);
+    }
+    long double fastest = std::abs(v_);
+    const long double turn = j == 0 ? -1 : -a_ / j;
+    if (turn > 0 && turn < t) {
+      const long double velocity = v_ + turn * (a_ + turn * j / 2);
+      fastest = std::max(fastest, std::abs(velocity));
+      if (inside_) look(velocity, 0);
     }
     const long double distance = t * (v_ + t * (a_ / 2 + t * j / 6));
     v_ += t * (a_ + t * j / 2);
     a_ += t * j;
-    path_ += std::abs(distance);
+    time_ += t;
+    steepest_ = std::max(steepest_, std::abs(a_));
+    path_ += t * std::max(fastest, std::abs(v_));  // also where the axis comes back
     if (inside_) look(v_, a_);
     inside_ = inside_ || is_inside();
     return distance;
@@ -79,6 +93,8 @@ class Judge {
   long double v_ = 0;
   long double a_ = 0;
   long double path_ = 0;
+  long double time_ = 0;
+  long double steepest_ = 0;
   bool inside_ = false;
   Verdict verdict_;
 };

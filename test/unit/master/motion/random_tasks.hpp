@@ -17,7 +17,9 @@ enum class TaskClass : std::uint8_t {
   at_velocity,      ///< velocities at their limits
   outside,          ///< the start is outside the limits
   round_numbers,    ///< multiples of one half, where cases meet
+  wide_limits,      ///< limits that differ by many powers of ten; a double may have too few digits
 };
+/// Number of the classes in which each task has a motion: all but wide_limits.
 inline constexpr int task_classes = 8;
 
 /// Makes tasks from a seed.
@@ -96,6 +98,9 @@ class RandomTasks {
       case TaskClass::round_numbers:
         be_round(task);
         break;
+      case TaskClass::wide_limits:
+        be_wide(task);
+        break;
     }
   }
 
@@ -107,6 +112,26 @@ class RandomTasks {
     if (chance()) task.from.position += between(-difference, difference);
     if (chance()) task.from.velocity += between(-difference, difference);
     if (chance()) task.from.acceleration += between(-difference, difference);
+  }
+
+  void be_wide(AxisTask& task) {
+    Limits& limits = task.limits;
+    const auto wide = [&] { return size(1e-9, 1e9); };
+    limits = {.max_velocity = wide(),
+              .min_velocity = -wide(),
+              .max_acceleration = wide(),
+              .min_acceleration = -wide(),
+              .jerk = wide()};
+    if (chance()) limits.min_velocity = -limits.max_velocity;
+    if (chance()) limits.min_acceleration = -limits.max_acceleration;
+    const double range = wide();
+    for (State* state : {&task.from, &task.to}) {
+      *state = {.position = between(-range, range)};
+      if (chance()) state->velocity = between(limits.min_velocity, limits.max_velocity);
+      if (random_() % 4 == 0) {
+        state->acceleration = between(limits.min_acceleration, limits.max_acceleration);
+      }
+    }
   }
 
   static void be_round(AxisTask& task) {

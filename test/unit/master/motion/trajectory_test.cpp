@@ -236,6 +236,43 @@ TEST(Trajectory, IsRefusedWithTheAxisAndTheReason) {
   EXPECT_EQ(defect(task), Defect::velocity_before_target);
 }
 
+TEST(Trajectory, EndsAtItsTargetAlsoWithLimitsThatAreFarApart) {
+  const AxisTask task{.from = {.position = 6.2552561058050875e-09},
+                      .to = {.position = -3.6551741658825909e-07},
+                      .limits = {.max_velocity = 4.22991e+07,
+                                 .min_velocity = -4.22991e+07,
+                                 .max_acceleration = 1.85281e-08,
+                                 .min_acceleration = -1.85281e-08,
+                                 .jerk = 7.53909e+07}};
+  std::array<PlannedAxis, 1> planned;
+
+  ASSERT_TRUE(plan_trajectory(std::span{&task, 1}, {}, planned).has_value());
+
+  EXPECT_NEAR(planned[0].profile.end(task.from).position, task.to.position, 1e-15);
+}
+
+/// Where numbers have too few digits for a motion, the planner says so.
+TEST(Trajectory, OfLimitsThatDifferByManyPowersOfTenIsPreciseOrRefused) {
+  RandomTasks random{1};
+  int refused = 0;
+  for (int i = 0; i < 50'000; ++i) {
+    const AxisTask task = random.next(TaskClass::wide_limits);
+    std::array<PlannedAxis, 1> planned;
+    const auto duration = plan_trajectory(std::span{&task, 1}, {}, planned);
+    if (!duration) {
+      ASSERT_EQ(duration.error().defect, Defect::precision) << i;
+      ++refused;
+      continue;
+    }
+    const Judge judge{task, planned[0].profile.segments()};
+    const double growth = std::max(*duration / 1e7, 1.0);
+    ASSERT_LE(judge.verdict().end_error, 1.001e-8 * growth) << i;
+    ASSERT_LE(judge.verdict().excess, 1.001e-9 * growth) << i;
+  }
+  EXPECT_GT(refused, 0);
+  EXPECT_LT(refused, 5'000);
+}
+
 /// Numbers whose products overflow must not make the planner search for ever.
 TEST(Trajectory, LimitsThatCannotBeComputedWithAreRefused) {
   const auto limits = [](double velocity, double acceleration, double jerk) {
