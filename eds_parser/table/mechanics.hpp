@@ -78,8 +78,8 @@ struct MechanicsTable {
 };
 
 /// The controllers and the integration of a simulated axis have this period, in seconds.
-inline constexpr double mechanics_tick = 1.25e-4;
-inline constexpr double mechanics_ticks = 8000;  ///< in a second
+inline constexpr double mechanics_tick = 2.5e-4;
+inline constexpr double mechanics_ticks = 4000;  ///< in a second
 /// Largest number of steps of the integration within this period.
 inline constexpr int most_mechanics_steps = 8;
 

@@ -15,6 +15,13 @@ double own_friction(const MechanicsTable& table) noexcept {
   return table.motor.friction + (table.load.stiffness ? 0 : table.load.friction);
 }
 
+/// Faces that meet begin to push within a step, which gives energy to an undamped spring. With
+/// backlash, the spring therefore acts with the twist after the step, which takes more.
+double contact_damping(const MechanicsTable& table, double span) noexcept {
+  if (table.load.backlash == 0) return table.load.damping;
+  return table.load.damping + table.load.stiffness.value_or(0) * span;
+}
+
 }  // namespace
 
 Plant::Plant(const MechanicsTable& table) noexcept
@@ -23,12 +30,12 @@ Plant::Plant(const MechanicsTable& table) noexcept
       span_{mechanics_tick / steps_},
       inertia_{table.motor.inertia + table.load.inertia},
       stiffness_{table.load.stiffness.value_or(0)},
-      damping_{table.load.damping},
+      damping_{contact_damping(table, span_)},
       half_gap_{table.load.backlash / 2},
       weight_{table.load.torque},
       motor_mobility_{span_ / own_inertia(table)},
       load_mobility_{span_ / table.load.inertia},
-      touching_{coupled(table, table.load.damping)},
+      touching_{coupled(table, damping_)},
       apart_{coupled(table, 0)},
       motor_friction_{own_friction(table), table.motor.breakaway, span_, own_inertia(table)},
       load_friction_{table.load.friction, table.load.breakaway, span_, table.load.inertia} {}

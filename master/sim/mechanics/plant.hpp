@@ -17,9 +17,9 @@ struct Mass {
 /// torque and hard stops. The step is fixed, and the result depends on the torques alone.
 ///
 /// The integration is semi-implicit: damping and viscous friction act with the speeds after the
-/// step, the spring with the twist before it, and positions move with the new speeds. That is
-/// stable as long as a step turns the stiffest mode by less than 2 rad; mechanics_steps() keeps to
-/// 0.5.
+/// step, the spring with the twist before it (with backlash: after it), and positions move with the
+/// new speeds. That is stable as long as a step turns the stiffest mode by less than 2 rad;
+/// mechanics_steps() keeps to 0.5.
 class Plant {
  public:
   explicit Plant(const MechanicsTable& table) noexcept;

@@ -80,7 +80,7 @@ class Servo {
   }
 
  private:
-  static constexpr Time tick{125'000};
+  static constexpr Time tick{250'000};
   static constexpr double standstill = 0.05;  // rad/s
 
   /// A reference in units of the motor: rad, rad/s, N m.

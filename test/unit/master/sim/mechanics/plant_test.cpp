@@ -29,7 +29,7 @@ void run(Plant& plant, int ticks, double torque, double brake = 0) {
   for (int i = 0; i < ticks; ++i) plant.advance(torque, brake);
 }
 
-constexpr int second = 8000;  // ticks
+constexpr int second = 4000;  // ticks
 
 double energy(const MechanicsTable& table, const Plant& plant) {
   const double twist = plant.motor().angle - plant.load().angle;
@@ -47,7 +47,7 @@ TEST(Plant, AcceleratesByTorqueOverInertia) {
   run(plant, second, 0.012);
 
   EXPECT_NEAR(plant.motor().speed, 100.0, 1e-6);
-  EXPECT_NEAR(plant.motor().angle, 50.0, 0.01);
+  EXPECT_NEAR(plant.motor().angle, 50.0, 0.02);
 }
 
 TEST(Plant, StandsUntilTheTorqueBreaksItAway) {

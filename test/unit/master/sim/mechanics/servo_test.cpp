@@ -169,7 +169,7 @@ TEST_F(SlowEncoder, ReportsOldPositionsInItsIncrements) {
   const double now = servo_.position();
 
   EXPECT_NEAR(now - servo_.reported(now_), 1600, 150);
-  EXPECT_EQ(std::fmod(servo_.reported(now_), 16), 0);
+  EXPECT_NEAR(std::remainder(servo_.reported(now_), 16), 0, 1e-6);
 }
 
 class Vertical : public ServoAxis {
