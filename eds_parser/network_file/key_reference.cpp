@@ -40,7 +40,8 @@ std::string value_text(const KeyValue& value) {
     case KeyType::boolean:
       return value.parts == nullptr ? "true, false" : "true, false or a map";
     case KeyType::integer:
-      return either(value.words, to_string(value.range));
+      return either(value.words, to_string(value.range)) +
+             (value.parts == nullptr ? "" : " or a map");
     case KeyType::number:
       return "number";
     case KeyType::text:

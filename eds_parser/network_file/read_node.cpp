@@ -303,6 +303,9 @@ constexpr Key<NodeSpec> node_keys[] = {
                     "The units of values: SI = sign * counts * scale + offset."),
     key<read_limits>("limits", {.type = KeyType::map, .parts = limits_rows}, "none",
                      "What may be commanded, in the units of `units`."),
+    key<read_homing>("homing",
+                     {.type = KeyType::integer, .range = {-128, 127}, .parts = homing_rows}, "none",
+                     "The homing of the axes of a drive; a number is the method."),
     key<with<read_speed_axis, &NodeSpec::speed_axis>>(
         "speed_axis", {.type = KeyType::map, .parts = speed_axis_rows}, "from the device data",
         "The words of an inverter, see [speed.md](speed.md). What is not stated is that of the "

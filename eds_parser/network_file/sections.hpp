@@ -58,6 +58,9 @@ void read_units(const KeyInput& in, NodeSpec& node);
 KeyRows units_rows();
 void read_limits(const KeyInput& in, NodeSpec& node);
 KeyRows limits_rows();
+/// Reads `homing`, which is a map or only the method.
+void read_homing(const KeyInput& in, NodeSpec& node);
+KeyRows homing_rows();
 /// Reads `mechanics` of `sim`, and checks that the parameters fit together.
 void read_mechanics(const KeyInput& in, SimSpec& sim);
 KeyRows mechanics_rows();

@@ -184,6 +184,15 @@ class AxisCompiler {
   std::uint8_t number_;
 };
 
+std::optional<HomingPlan> homing_of(const HomingSpec& spec, std::uint8_t number) {
+  if (!spec.given) return std::nullopt;
+  const AxisHomingSpec homing = spec.of(static_cast<std::uint8_t>(number + 1));
+  HomingPlan plan{.required = *homing.required};
+  if (homing.timeout.given) plan.timeout = std::chrono::milliseconds{*homing.timeout};
+  if (homing.method.given) plan.method = *homing.method;
+  return plan;
+}
+
 /// Returns the unit that `units:` gives to an object of an axis.
 RawUnit unit_of(const NodeSource& source, std::uint8_t number, unsigned index) {
   Signal signal{.node = source.id, .object = axis_object(number, index)};
@@ -225,6 +234,7 @@ std::vector<AxisPlan> compile_axes(const NodePlan& node, const DeviceTable& devi
     axes.push_back(axis.run());
     axes.back().velocity_unit = unit_of(source, number, 0x606C);
     axes.back().position_unit = unit_of(source, number, 0x6064);
+    axes.back().homing = homing_of(spec.homing, number);
     if (axis.windows_are_guessed()) report_guess(node, axes.back(), spec, report);
   }
   return axes;

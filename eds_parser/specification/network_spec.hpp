@@ -151,6 +151,51 @@ struct LimitsSpec {
   std::vector<ObjectLimitSpec> objects;
 };
 
+/// The homing of an axis, in the units of `units:`. What is not given is not written to the device.
+struct AxisHomingSpec {
+  Sourced<bool> required{.value = true};  ///< Without homing, no absolute motion.
+  Sourced<std::int8_t> method;            ///< 0x6098
+  Sourced<double> speed_switch;           ///< 0x6099:01
+  Sourced<double> speed_zero;             ///< 0x6099:02
+  Sourced<double> acceleration;           ///< 0x609A
+  Sourced<double> offset;                 ///< 0x607C
+  Sourced<std::uint32_t> timeout;         ///< ms
+};
+
+struct AxisHomingOverrideSpec {
+  std::uint8_t axis = 1;
+  SourcePos pos;
+  AxisHomingSpec homing;
+};
+
+/// `homing:` of a node.
+struct HomingSpec {
+  bool given = false;
+  SourcePos pos;
+  AxisHomingSpec all;  ///< of every axis of the device
+  /// `axes: {2: {...}}`; each given value overrides the same value of `all`.
+  std::vector<AxisHomingOverrideSpec> axes;
+
+  /// Returns what applies to an axis, which counts from 1.
+  AxisHomingSpec of(std::uint8_t axis) const {
+    AxisHomingSpec found = all;
+    const auto take = [](auto& value, const auto& own) {
+      if (own.given) value = own;
+    };
+    for (const auto& [number, at, own] : axes) {
+      if (number != axis) continue;
+      take(found.required, own.required);
+      take(found.method, own.method);
+      take(found.speed_switch, own.speed_switch);
+      take(found.speed_zero, own.speed_zero);
+      take(found.acceleration, own.acceleration);
+      take(found.offset, own.offset);
+      take(found.timeout, own.timeout);
+    }
+    return found;
+  }
+};
+
 /// The reaction of outputs when their command is too old.
 enum class FallbackPolicy : std::uint8_t { quick_stop, hold, zero, safe, disable };
 
@@ -237,6 +282,7 @@ struct NodeSpec {
   Sourced<std::string> profile;  ///< "cia402", "cia401", "none"; if not given, the EDS decides
   UnitsSpec units;
   LimitsSpec limits;
+  HomingSpec homing;
   SpeedAxisSpec speed_axis;
   TimeoutSpec on_timeout;
   std::vector<SdoSpec> safe_values;

@@ -86,6 +86,13 @@ struct RawUnit {
   std::string unit{};
 };
 
+/// `homing:` of an axis in the network file. The boot writes the other values of it.
+struct HomingPlan {
+  bool required = true;                    ///< Without homing, no absolute motion.
+  Time timeout{std::chrono::seconds{60}};  ///< longest time of a homing run
+  std::optional<std::int8_t> method{};     ///< 0x6098; empty: that of the device
+};
+
 /// One CiA 402 axis of a device, as the ordered stop sees it. Values are raw units of the device.
 struct AxisPlan {
   std::uint8_t number = 0;  ///< counts from 0; the axis's objects are 0x800 x number higher
@@ -96,6 +103,7 @@ struct AxisPlan {
   std::uint16_t ramp_object = 0;       ///< 0x6085 or 0x6084; 0 = not known
   RawUnit velocity_unit{};             ///< of 0x606C
   RawUnit position_unit{};             ///< of differences of 0x6064
+  std::optional<HomingPlan> homing{};  ///< empty: the network file says nothing about homing
 };
 
 /// One device as the master sees it.

@@ -120,6 +120,7 @@ const Shape node_shape = {
     {"device_data", 's'},
     {"device_data_file", 's'},
     {"device_notes", 'l'},
+    {"homing", 'l'},
     {"tpdos", 'l'},
     {"rpdos", 'l'},
     {"boot_plan", 'l'},
@@ -277,6 +278,9 @@ TEST(ExportJson, SaysWhatThePlanSays) {
       EXPECT_EQ(node["lss"], wanted.lss.has_value());
       EXPECT_EQ(node["device_data"], wanted.device_data);
       EXPECT_EQ(node["device_notes"], json(wanted.device_notes));
+      EXPECT_EQ(node["homing"].size(),
+                static_cast<std::size_t>(std::ranges::count_if(
+                    wanted.axes, [](const AxisPlan& axis) { return axis.homing.has_value(); })));
       expect_pdos(node["tpdos"], plan.pdos.tpdos, plan, i);
       expect_pdos(node["rpdos"], plan.pdos.rpdos, plan, i);
       expect_boot(node["boot_plan"], wanted.boot_plan);

@@ -36,6 +36,7 @@ class BootCompiler : BootPart {
     append_emergency(*this);
     append_time(*this);
     append_sync(*this);
+    append_homing(*this);
     if (!tweaks_.values_after_pdos) append_values(*this);
     for (const EffectivePdo& pdo : pdos_.pdos) append_pdo(*this, pdo);
     if (tweaks_.values_after_pdos) append_values(*this);

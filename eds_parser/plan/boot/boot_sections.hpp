@@ -56,6 +56,10 @@ void append_pdo(const BootPart& part, const EffectivePdo& pdo);
 /// 302-3.
 void append_program(const BootPart& part);
 
+/// Appends steps that write `homing:` of the network file for each axis: 0x6098, 0x6099, 0x609A and
+/// 0x607C. Warns if the device file does not list the method (0x60E3) or the mode (0x6502).
+void append_homing(const BootPart& part);
+
 /// Appends steps that write values: the ParameterValues of a DCF, the interpolation period of
 /// drives, the values of the device data, then the list `sdo:` in its order. Each value is checked
 /// against the type, access and limits of the EDS.

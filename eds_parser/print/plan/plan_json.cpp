@@ -123,6 +123,19 @@ std::string_view loss_name(LossReaction reaction) {
   return name_of(reaction, names);
 }
 
+/// The axes whose homing the network file has something about.
+Json homing_json(const NodePlan& node) {
+  Json axes = Json::array();
+  for (const AxisPlan& axis : node.axes) {
+    if (!axis.homing) continue;
+    axes.push_back({{"axis", axis.number + 1},
+                    {"required", axis.homing->required},
+                    {"method", axis.homing->method ? Json(*axis.homing->method) : Json()},
+                    {"timeout_us", us(axis.homing->timeout)}});
+  }
+  return axes;
+}
+
 Json node_json(const BusPlan& plan, std::size_t index) {
   const NodePlan& node = plan.nodes[index];
   Json steps = Json::array();
@@ -153,6 +166,7 @@ Json node_json(const BusPlan& plan, std::size_t index) {
           {"device_data", node.device_data},
           {"device_data_file", node.device_data_file},
           {"device_notes", node.device_notes},
+          {"homing", homing_json(node)},
           {"tpdos", pdos_json(plan, plan.pdos.tpdos, index)},
           {"rpdos", pdos_json(plan, plan.pdos.rpdos, index)},
           {"boot_plan", std::move(steps)}};

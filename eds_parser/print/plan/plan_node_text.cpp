@@ -32,6 +32,7 @@ class NodeText {
     identity(node);
     lss(node);
     device_data(node);
+    homing(node);
     for (const bool is_tpdo : {true, false}) {
       for (const PdoRow& row : is_tpdo ? plan_.pdos.tpdos : plan_.pdos.rpdos) {
         if (row.node_index == index) pdo(row, is_tpdo);
@@ -85,6 +86,18 @@ class NodeText {
     if (node.device_data.empty()) return;
     lines_.line("  device data: {} ({})", node.device_data, node.device_data_file);
     for (const std::string& note : node.device_notes) lines_.line("    {}", note);
+  }
+
+  void homing(const NodePlan& node) {
+    for (const AxisPlan& axis : node.axes) {
+      if (!axis.homing) continue;
+      lines_.line("  homing{}: {}, {}, at most {}",
+                  axis.number == 0 ? "" : fmt::format(" of axis {}", axis.number + 1),
+                  axis.homing->required ? "required before absolute motions" : "not required",
+                  axis.homing->method ? fmt::format("method {}", *axis.homing->method)
+                                      : "with the method of the device",
+                  span_text(axis.homing->timeout));
+    }
   }
 
   void pdo(const PdoRow& row, bool is_tpdo) {
