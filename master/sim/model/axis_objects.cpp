@@ -11,6 +11,17 @@ Slot AxisObjects::at(unsigned index, std::uint8_t sub, std::int64_t missing) con
   return {store_, {static_cast<std::uint16_t>(index + offset_), sub}, missing};
 }
 
+/// Returns the elements of an array, from sub-index 1 on.
+std::vector<Slot> AxisObjects::list_at(unsigned index) const {
+  std::vector<Slot> elements;
+  for (std::uint8_t sub = 1; sub < 0xFF; ++sub) {
+    const Slot element = at(index, sub);
+    if (!element.exists()) break;
+    elements.push_back(element);
+  }
+  return elements;
+}
+
 AxisObjects::AxisObjects(ObjectStore& store, std::uint16_t offset)
     : store_{store},
       offset_{offset},
@@ -61,6 +72,7 @@ AxisObjects::AxisObjects(ObjectStore& store, std::uint16_t offset)
       homing_speed_switch{at(0x6099, 1)},
       homing_speed_zero{at(0x6099, 2)},
       homing_acceleration{at(0x609A)},
+      homing_methods{list_at(0x60E3)},
       position_offset{at(0x60B0)},
       velocity_offset{at(0x60B1)},
       torque_offset{at(0x60B2)},

@@ -1,6 +1,7 @@
 #pragma once
 #include <cassert>
 #include <cstdint>
+#include <vector>
 
 #include "master/sim/dictionary/object_store.hpp"
 
@@ -33,6 +34,7 @@ class Slot {
 class AxisObjects {
  private:
   Slot at(unsigned index, std::uint8_t sub = 0, std::int64_t missing = 0) const;
+  std::vector<Slot> list_at(unsigned index) const;
 
   ObjectStore& store_;
   std::uint16_t offset_;
@@ -87,6 +89,7 @@ class AxisObjects {
   Slot homing_speed_switch;
   Slot homing_speed_zero;
   Slot homing_acceleration;
+  std::vector<Slot> homing_methods;  ///< those that the drive lists in 0x60E3
   Slot position_offset;
   Slot velocity_offset;
   Slot torque_offset;

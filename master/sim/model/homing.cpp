@@ -1,5 +1,6 @@
 #include "master/sim/model/homing.hpp"
 
+#include <algorithm>
 #include <optional>
 
 namespace takt::sim {
@@ -22,6 +23,12 @@ std::optional<double> direction_of(std::int64_t method) noexcept {
   return negative ? -1.0 : 1.0;
 }
 
+/// A drive without a list has all methods of the model.
+bool lists(const AxisObjects& objects, std::int64_t method) noexcept {
+  const auto is_method = [method](const Slot& slot) { return slot.get() == method; };
+  return objects.homing_methods.empty() || std::ranges::any_of(objects.homing_methods, is_method);
+}
+
 bool is_current_position(std::int64_t method) noexcept { return method == 35 || method == 37; }
 
 }  // namespace
@@ -33,6 +40,10 @@ void Homing::on_controlword(std::uint16_t before, std::uint16_t now,
   if ((~before & now & start_bit) == 0) return;
   const std::int64_t method = objects_.homing_method.get();
   reference_ = switch_at_ = demand.position;
+  if (!lists(objects_, method)) {
+    stage_ = Stage::failed;
+    return;
+  }
   if (is_current_position(method)) {
     stage_ = Stage::stop;
     return;

@@ -210,6 +210,28 @@ TEST_F(Drive, ReportsAHomingMethodThatItDoesNotKnow) {
   EXPECT_EQ(get(0x6041) & 0x3400, 0x2400);
 }
 
+/// A drive that lists two homing methods (0x60E3).
+class DriveWithTwoMethods : public Drive {
+ protected:
+  DriveWithTwoMethods()
+      : Drive{drive(5_node)
+                  .object(0x60E3, 0, DataType::unsigned8, Access::constant, 2)
+                  .object(0x60E3, 1, DataType::integer8, Access::ro, 18)
+                  .object(0x60E3, 2, DataType::integer8, Access::ro, 35)} {}
+};
+
+TEST_F(DriveWithTwoMethods, HasNoOther) {
+  enable(6);
+  command(0x001F);
+  run(5ms);
+  EXPECT_EQ(get(0x6041) & 0x3400, 0x1400) << "35";
+  command(0x000F);
+  set(0x6098, 37);
+  command(0x001F);
+  run(5ms);
+  EXPECT_EQ(get(0x6041) & 0x3400, 0x2400) << "37";
+}
+
 TEST_F(Drive, StopsHomingWhenBit4Falls) {
   set(0x6098, 18);
   enable(6);
