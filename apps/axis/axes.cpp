@@ -49,6 +49,9 @@ std::expected<Axes, Obstacle> Axes::open(std::unique_ptr<Transport> lcm, AxesOpt
 Done Axes::enable() { return state_->speed ? state_->enable_speed() : state_->enable(); }
 Done Axes::disable() { return state_->speed ? state_->disable_speed() : state_->disable(); }
 Done Axes::reset() { return state_->speed ? state_->reset_speed() : state_->reset(); }
+Done Axes::home(const HomingOptions& options) {
+  return state_->speed ? state_->no_position() : state_->home(options);
+}
 Done Axes::stop() { return state_->speed ? state_->stop_speed() : state_->stop(); }
 Done Axes::set_mode(DriveMode mode) {
   return state_->speed ? state_->no_position() : state_->set_mode(mode);
@@ -98,6 +101,12 @@ Eigen::VectorXd Axes::phase_errors() const {
 Eigen::Index Axes::size() const noexcept { return state_->size(); }
 bool Axes::has_positions() const noexcept { return !state_->speed; }
 bool Axes::moving() const { return state_->speed ? state_->speed->moving() : state_->moving(); }
+bool Axes::homed(Eigen::Index axis) const {
+  return !state_->speed && state_->is_current() && state_->homed(state_->in_group(axis));
+}
+bool Axes::needs_homing(Eigen::Index axis) const {
+  return !state_->speed && state_->is_current() && state_->needs_homing(state_->in_group(axis));
+}
 AxisGroup& Axes::group() noexcept { return state_->group; }
 
 const std::string& Axes::name(Eigen::Index axis) const {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <takt/motion.hpp>
@@ -18,9 +19,9 @@ inline std::unexpected<Obstacle> obstacle(Obstacle::Kind kind, std::string text)
   return std::unexpected{Obstacle{.kind = kind, .text = std::move(text)}};
 }
 
-/// What an Axes knows and does. Its code is in five files: waiting (axes_state.cpp), the states of
-/// the drives (axes_drives.cpp), motions (axes_motions.cpp), gears (axes_gear.cpp) and speed axes
-/// (axes_speed.cpp).
+/// What an Axes knows and does. Its code is in six files: waiting (axes_state.cpp), the states of
+/// the drives (axes_drives.cpp), homing (axes_homing.cpp), motions (axes_motions.cpp), gears
+/// (axes_gear.cpp) and speed axes (axes_speed.cpp).
 class Axes::State {
  public:
   using Clock = std::chrono::steady_clock;
@@ -40,6 +41,11 @@ class Axes::State {
   Done disable();
   Done reset();
   Done set_mode(DriveMode wanted);
+
+  Done home(const HomingOptions& wanted);
+  /// What taktd has reported last about the axis with this index in the group.
+  bool homed(Index axis) const;
+  bool needs_homing(Index axis) const;
 
   Done begin(const std::string& kind, const Values& values, const MotionBounds& bounds);
   Done gear(const Gear& gear, const MotionBounds& bounds);
@@ -107,6 +113,14 @@ class Axes::State {
   /// Returns the newest event of this kind since the newest motion began whose text contains
   /// `part`, or an empty text.
   std::string event_text(std::string_view kind, std::string_view part = {}) const;
+
+  struct HomingRun;
+  Done home(std::span<const Index> chosen, std::chrono::nanoseconds longest);
+  Done enter_homing(std::span<const Index> chosen);
+  Done run_homing(std::span<const Index> chosen, std::chrono::nanoseconds longest);
+  std::string trouble_of(HomingRun& run);
+  std::string why_not_in_homing_mode(std::span<const Index> chosen) const;
+  Done leave_homing(std::span<const Index> chosen);
 
   bool is_ready(Index axis) const;
   bool all_ready() const;

@@ -98,14 +98,28 @@ void AxisControl::set_torques(const Eigen::Ref<const Eigen::VectorXd>& si) {
 }
 
 void AxisControl::set_mode(DriveMode mode) noexcept {
-  state_->commanded_mode = mode;
-  if (mode == DriveMode::profile_position) return;
-  for (State::Axis& axis : state_->axes) axis.handshake = {};
+  state_->mode_of_new_axes = mode;
+  for (Index i = 0; i < size(); ++i) set_mode(i, mode);
 }
 
+void AxisControl::set_mode(Index axis, DriveMode mode) noexcept {
+  State::Axis& of = state_->at(axis);
+  of.commanded_mode = mode;
+  if (mode != DriveMode::profile_position) of.handshake = {};
+  if (mode != DriveMode::homing) of.homes = false;
+}
+
+void AxisControl::start_homing(Index axis) {
+  State::Axis& of = state_->at(axis);
+  of.homes = of.drive.enabled() && of.commanded_mode == DriveMode::homing;
+}
+
+void AxisControl::end_homing(Index axis) { state_->at(axis).homes = false; }
+
 void AxisControl::begin_set_points() {
-  if (state_->commanded_mode != DriveMode::profile_position) return;
-  for (State::Axis& axis : state_->axes) axis.handshake.begin();
+  for (State::Axis& axis : state_->axes) {
+    if (axis.commanded_mode == DriveMode::profile_position) axis.handshake.begin();
+  }
 }
 
 bool AxisControl::set_points_taken() const noexcept {

@@ -9,6 +9,8 @@
 namespace takt {
 namespace {
 
+constexpr std::uint16_t homing_start = 0x10;  // of the controlword in homing mode
+
 ValueFormat format_of(const signal_t& signal) {
   const bool usable = std::isfinite(signal.scale) && signal.scale != 0.0 &&
                       std::isfinite(signal.offset) && signal.bits >= 1 && signal.bits <= 64;
@@ -47,6 +49,7 @@ void AxisControl::State::set_layout(const ImageInput& input) {
   for (AxisSignals& signals : find_axes(input.signals())) {
     Axis& axis = axes.emplace_back();
     axis.signals = std::move(signals);
+    axis.commanded_mode = mode_of_new_axes;
   }
   for (Eigen::VectorXd* values : {&positions, &velocities, &torques, &sent_positions,
                                   &target_positions, &target_velocities, &target_torques}) {
@@ -94,16 +97,18 @@ void AxisControl::State::step(Axis& axis, const ImageInput& input) {
   axis.statusword = static_cast<std::uint16_t>(input.values()[*axis.signals.statusword]);
   const bool placed = axis.seeded || !missing(axis.signals.position, input);
   axis.controlword = axis.drive.step(axis.statusword, placed ? Enabling::goes_on : Enabling::waits);
-  if (commanded_mode == DriveMode::profile_position && axis.drive.enabled()) {
+  if (!axis.drive.enabled()) axis.homes = false;
+  if (axis.commanded_mode == DriveMode::profile_position && axis.drive.enabled()) {
     axis.controlword |= axis.handshake.step(axis.statusword);
   }
+  if (axis.homes) axis.controlword |= homing_start;
 }
 
 /// Returns true if the axis is in Operation enabled and in a position mode, both as commanded and
 /// as the image shows.
 bool AxisControl::State::takes_positions(const Axis& axis) const noexcept {
   const bool shown = axis.signals.mode_display || axis.signals.mode;
-  return axis.drive.enabled() && is_position_mode(std::to_underlying(commanded_mode)) &&
+  return axis.drive.enabled() && is_position_mode(std::to_underlying(axis.commanded_mode)) &&
          (!shown || is_position_mode(axis.shown_mode));
 }
 
@@ -131,14 +136,14 @@ void AxisControl::State::make_controls(std::span<const Index> chosen) {
   for (const Index i : chosen) {
     const Axis& axis = at(i);
     put(axis.signals.controlword, axis.controlword);
-    put(axis.signals.mode, std::to_underlying(commanded_mode));
+    put(axis.signals.mode, std::to_underlying(axis.commanded_mode));
   }
   command.num_values = static_cast<std::int32_t>(command.values.size());
 }
 
 bool AxisControl::State::in_mode(const Axis& axis) const noexcept {
   if (!axis.signals.mode_display) return axis.signals.mode.has_value();
-  return axis.shown_mode == std::to_underlying(commanded_mode);
+  return axis.shown_mode == std::to_underlying(axis.commanded_mode);
 }
 
 void AxisControl::State::make_command() {
@@ -148,7 +153,7 @@ void AxisControl::State::make_command() {
   for (Index i = 0; i < size(); ++i) {
     const Axis& axis = at(i);
     put(axis.signals.controlword, axis.controlword);
-    put(axis.signals.mode, std::to_underlying(commanded_mode));
+    put(axis.signals.mode, std::to_underlying(axis.commanded_mode));
     if (axis.seeded) put_si(axis.signals.target_position, target_positions(i));
     put_si(axis.signals.target_velocity, target_velocities(i));
     put_si(axis.signals.target_torque, target_torques(i));

@@ -25,6 +25,8 @@ struct AxisControl::State {
     std::int8_t shown_mode = 0;  // 0x6061 of the image, or its 0x6060 if 0x6061 is not mapped
     bool stale = false;
     bool seeded = false;  // true if the target position has been set from a valid value
+    DriveMode commanded_mode = DriveMode::cyclic_position;
+    bool homes = false;  // bit 4 of the controlword is set in homing mode
   };
 
   Axis& at(Index axis) { return axes[static_cast<std::size_t>(axis)]; }
@@ -50,7 +52,7 @@ struct AxisControl::State {
 
   std::vector<Axis> axes;
   Units units;
-  DriveMode commanded_mode = DriveMode::cyclic_position;
+  DriveMode mode_of_new_axes = DriveMode::cyclic_position;
   Eigen::VectorXd positions;
   Eigen::VectorXd velocities;
   Eigen::VectorXd torques;

@@ -46,7 +46,9 @@ CONTROLWORD, STATUSWORD, MODE, MODE_DISPLAY, POSITION, VELOCITY = 0x6040, 0x6041
 TARGET = 0x607A
 OBJECTS = {(CONTROLWORD, True), (MODE, True), (TARGET, True)} | {(index, False) for index in (STATUSWORD, MODE_DISPLAY, POSITION, VELOCITY)}
 FIRST_OBJECT, LAST_OBJECT, AXIS_STEP = 0x6000, 0x9FFF, 0x800  # the objects of each further axis of a device are 0x800 higher
-CYCLIC_SYNCHRONOUS_POSITION = 8  # mode of operation (0x6060)
+CYCLIC_SYNCHRONOUS_POSITION, HOMING = 8, 6  # modes of operation (0x6060)
+START_HOMING = 0x10  # bit 4 of the controlword in homing mode
+TARGET_REACHED, HOMING_RESULT = 0x0400, 0x3000  # bit 10, and bits 12 and 13, of the statusword
 # The states of CiA 402: mask and pattern of the statusword, name, and the bit that shows why the drive is not enabled.
 STATES = ((0x4F, 0x00, "not ready to switch on", "bit 0 (ready to switch on)", 0),
           (0x4F, 0x40, "switch on disabled", "bit 6 (switch on disabled)", 1),
@@ -65,6 +67,7 @@ FAULT_RESET = 0x80
 FAULTS = ("fault", "fault reaction active")
 NOT_ENABLED, MOVES, STOPS = 0, 2, 3  # axis_motion_t::state
 LOCKED = 2  # axis_motion_t::gear
+HOMED, HOMING_FAILED = 2, 3  # axis_motion_t::homing
 DONE, STOPPED, REPLACED, REFUSED = 1, 2, 3, 4  # axis_motion_t::outcome
 ANSWER_TIME, REASON_TIME, IMAGE_TIME = 2.0, 0.1, 2.0  # seconds
 STOP_PAUSE, SILENCE = 0.05, 0.05  # seconds between two stops, and between two signs of life
@@ -75,6 +78,9 @@ HELD_STATUSES = 20  # status_t (10 in a second) in sequence in which another pro
 BOOT_READY = 2  # node_status_t::boot_state
 LAYOUT_TIME = 1.5  # seconds for the speed axes of a layout, which come once a second
 WORDS_BEFORE_RELEASE = 3  # cycles in which the last words of speed axes are sent
+# Homing: cycles in which a drive may show words from before a command; seconds for which it may show that it has not begun;
+# seconds of the longest run if taktd names none.
+WORD_CYCLES, START_TIME, HOMING_TIME = 10, 1.0, 60.0
 
 
 class Obstacle(Exception):
@@ -137,6 +143,7 @@ class Axes:
         self._restarted, self._commanding, self._enabled = False, False, False
         self._alive_sent, self._utime = 0.0, 0
         self._mode, self._words = CYCLIC_SYNCHRONOUS_POSITION, None  # _words: the controlword for each state, while it changes
+        self._homing, self._homing_runs = [], False  # the axes in homing mode, and whether their runs are started
         self._link = lcm.LCM()  # LCM_DEFAULT_URL, else LCM's default
         self._speed, self._speed_parts, self._signals, self._stale, self._period = None, {}, {}, set(), 0.0
         for channel, handler in (("SPEED_AXES", self._on_speed_axes), ("LAYOUT", self._on_layout), ("IMAGE", self._on_image), ("MOTION", self._on_motion),
@@ -289,6 +296,33 @@ class Axes:
         if not good:
             raise Obstacle("blocked", "; ".join(f"{axis.name}: 0x6061 does not show mode {mode}" for axis in self._axes
                                                 if not shown(axis)))
+
+    @property
+    def homed(self) -> list[bool]:
+        """True: taktd has seen a homing run of this axis end well since its node began to exchange PDOs."""
+        return [axis.motion is not None and axis.motion.homing == HOMED for axis in self._axes]
+
+    def home(self, together: bool = False, seconds: float = 0.0) -> None:
+        """Homes the axes: enables them if they are not enabled, starts the homing method that each drive has (0x6098,
+        `homing:` of the network file), and waits for the result. Then, also after an obstacle, it ends the run, waits for
+        standstill and goes back to cyclic synchronous position. The positions of the axes jump: they count from home then.
+        One axis after the other in the order of their names, or all `together`. `seconds`: longest time of a run; 0: that of
+        the network file, else 60 s."""
+        self._needs_position()
+        if not self._enabled or not self._ready():
+            self.enable()
+        self.stop()
+        for axes in [self._axes] if together else [[axis] for axis in self._axes]:
+            try:
+                self._enter_homing(axes)
+                self._run_homing(axes, seconds)
+            except BaseException:
+                try:
+                    self._leave_homing(axes)
+                except Obstacle:
+                    pass  # the first obstacle is the one to tell
+                raise
+            self._leave_homing(axes)
 
     # Motions.
 
@@ -504,6 +538,70 @@ class Axes:
         if not self._wait(stands, self.longest):
             raise Obstacle("time over", "the drives have not come to standstill")
 
+    # Below here: homing.
+
+    def _enter_homing(self, axes: list[_Axis]) -> None:
+        self._homing, self._homing_runs, self._words = axes, False, KEEPING
+        begin, shown = self._cycle, lambda axis: self._raw(axis, MODE_DISPLAY if MODE_DISPLAY in axis.places else MODE)
+        there = lambda: self._cycle >= begin + WORD_CYCLES and all(shown(axis) == HOMING for axis in axes)
+        disabled = lambda: any(axis.state != "operation enabled" for axis in axes)
+        if not self._wait(lambda: there() or disabled(), self.longest) or disabled():
+            raise Obstacle("blocked", "; ".join(filter(None, map(self._why, axes))) or
+                           "; ".join(f"{axis.name}: it does not show homing mode (0x6061 is {shown(axis)}): is 0x6060 in an "
+                                     "RPDO, and has the drive this mode (0x6502)?" for axis in axes if shown(axis) != HOMING))
+
+    def _run_homing(self, axes: list[_Axis], seconds: float) -> None:
+        """taktd reports how the runs stand. A report of the cycle in which the start was sent, or of a later one, is about
+        this run."""
+        self._homing_runs = True
+        started, moved = {}, {axis: time.monotonic() for axis in axes}
+        longest = seconds or max((axis.motion.homing_timeout_ms / 1000 or HOMING_TIME) for axis in axes)
+
+        def done(axis: _Axis) -> bool:
+            if axis.state != "operation enabled":
+                raise Obstacle("stopped", f"the homing was interrupted: {self._why(axis)}")
+            if axis not in started and (self._raw(axis, CONTROLWORD) or 0) & START_HOMING:
+                started[axis] = self._cycle
+            if axis.motion_cycle < started.get(axis, self._cycle) + WORD_CYCLES:
+                moved[axis] = time.monotonic()
+                return False
+            if axis.motion.homing == HOMING_FAILED:
+                told = self._event("homing_failed", f"{axis.name}:")
+                raise Obstacle("stopped", f"{axis.name}: the drive reports a homing error: bit 13 of its statusword "
+                                          f"0x{axis.statusword:04X} is 1" + (f" ({told})" if told else ""))
+            if axis.statusword & (HOMING_RESULT | TARGET_REACHED) != TARGET_REACHED:
+                moved[axis] = time.monotonic()
+            if time.monotonic() - moved[axis] > START_TIME:
+                raise Obstacle("stopped", f"{axis.name}: the drive has not begun the homing, or has interrupted it: bits 12 and "
+                                          f"13 of its statusword 0x{axis.statusword:04X} are 0, and bit 10 is 1")
+            return axis.motion.homing == HOMED
+        if not self._wait(lambda: all([done(axis) for axis in axes]), longest):
+            raise Obstacle("time over", "; ".join(f"{axis.name}: the homing has not ended after {longest:.1f} s: its statusword "
+                                                  f"is 0x{axis.statusword:04X}" for axis in axes if not done(axis)))
+
+    def _leave_homing(self, axes: list[_Axis]) -> None:
+        """Ends the runs, waits until the axes are at rest, and goes back. taktd lets the target positions follow the actual
+        ones until the drives obey them."""
+        self._homing_runs = False
+        moved, before = self._cycle, [self._raw(axis, POSITION) for axis in axes]
+
+        def at_rest() -> bool:
+            nonlocal moved, before
+            now = [self._raw(axis, POSITION) for axis in axes]
+            for axis, position, old in zip(axes, now, before):
+                if position != old and axis.state == "operation enabled" and not axis.statusword & TARGET_REACHED:
+                    moved = self._cycle
+            before = now
+            return self._cycle >= moved + WORD_CYCLES
+        if not self._wait(at_rest, self.longest):
+            raise Obstacle("time over", "the axes still move")
+        self._homing, self._words = [], KEEPING
+        over = lambda: all(axis.state != "operation enabled" or axis.motion.state != NOT_ENABLED for axis in axes)
+        self._wait(over, self.longest)
+        self._words = None
+        if not self._ready():
+            raise Obstacle("blocked", self._why_not_ready())
+
     # Below here: messages.
 
     def _begin(self, kind: str, values: tuple[float, ...], limits: dict) -> None:
@@ -675,7 +773,10 @@ class Axes:
             command.signals, command.values = list(outputs), list(outputs.values())
             command.time_to_live = max(3, int(self.timeout / self._period)) if self._period else 0
         for axis in () if release or self._speed else self._axes:
-            for index, value in ((CONTROLWORD, self._words.get(axis.state, 0)), (MODE, self._mode)):
+            homes = axis in self._homing
+            start = START_HOMING if homes and self._homing_runs and axis.state == "operation enabled" else 0
+            word = self._words.get(axis.state, 0) | start
+            for index, value in ((CONTROLWORD, word), (MODE, HOMING if homes else self._mode)):
                 if index in axis.places:
                     command.signals.append(axis.places[index])
                     command.values.append(value)

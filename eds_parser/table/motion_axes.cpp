@@ -14,6 +14,13 @@ bool have_same_unit(const Signal& position, const Signal& target) {
          position.unit == target.unit;
 }
 
+HomingPlan homing_of(const NodePlan& node, std::uint8_t number) {
+  for (const AxisPlan& axis : node.axes) {
+    if (axis.number == number && axis.homing) return *axis.homing;
+  }
+  return {.required = false};
+}
+
 std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, std::uint8_t number) {
   const auto find = [&](std::uint16_t index, bool output) {
     return plan.layout.find(node, axis_object(number, index), output);
@@ -31,6 +38,7 @@ std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, st
   const bool same_unit = offset && !signal(*offset).unit.empty() &&
                          signal(*offset).unit == signal(*target).unit + "/s";
   const auto shown_mode = find(0x6061, false);
+  const HomingPlan homing = homing_of(plan.nodes[node], number);
   return MotionAxis{.node_index = node,
                     .number = number,
                     .statusword = *statusword,
@@ -39,7 +47,9 @@ std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, st
                     .controlword = find(0x6040, true),
                     .velocity = find(0x606C, false),
                     .mode = shown_mode ? shown_mode : find(0x6060, true),
-                    .velocity_offset = same_unit ? offset : std::nullopt};
+                    .velocity_offset = same_unit ? offset : std::nullopt,
+                    .needs_homing = homing.required,
+                    .homing_timeout = homing.timeout};
 }
 
 }  // namespace

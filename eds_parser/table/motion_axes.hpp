@@ -19,6 +19,8 @@ struct MotionAxis {
   std::optional<SignalIndex> mode{};         ///< 6061, else 6060 if it is an output
   /// 60B1, if its unit is that of the target per second.
   std::optional<SignalIndex> velocity_offset{};
+  bool needs_homing = false;  ///< `homing:` of the network file requires it
+  Time homing_timeout{};      ///< longest time of a homing run
 };
 
 /// Returns the CiA 402 axes that have a statusword (6041) and an actual position (6064) in TPDOs

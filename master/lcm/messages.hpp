@@ -76,7 +76,7 @@ consteval std::string_view message_layout() {
   if (std::same_as<T, motion_command_t>) return "lhllslissin(sbdddddd)";
   if (std::same_as<T, motion_gear_t>) return "lhllsliisbsddsn(sbdddddd)(d)(d)(d)";
   if (std::same_as<T, motion_stream_t>) return "lhllsliin(sbdddddd)ln(dn(d)(d)n(d))";
-  if (std::same_as<T, motion_t>) return "lhhhlln(hbbiibdddddddbd)";
+  if (std::same_as<T, motion_t>) return "lhhhlln(hbbiibbbidddddddbd)";
   if (std::same_as<T, pdo_status_t>) return "lhhhlln(hhbibhllbibhllll)";
   if (std::same_as<T, sync_status_t>) return "lhlhshllllls";
   if (std::same_as<T, reply_t>) return "lhllsblsn(b)";

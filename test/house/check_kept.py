@@ -25,6 +25,7 @@ NOT_KEPT = {
     "DrivenAxis": {PLAN: "axis_ position_ velocity_ target_ velocity_offset_ node_outputs_ row_ "
                    "longest_wait_"},
     "FrameSender": {SHARED: "port_ beat_ status_"},
+    "HomingWatch": {PLAN: "patience_"},
     "Intake": {SHARED: "port_ beat_ bus_ timing_", IDLE: "left_from_ left_end_", ANEW: "received_"},
     "LossStop": {SHARED: "bus_ stops_"},
     "BootRetries": {PLAN: "plan_"},

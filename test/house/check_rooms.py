@@ -123,7 +123,7 @@ ROOMS = {
                                "master/gateway/message"),
     "master/gateway/motion": ("turns LCM messages about motions into orders of the bus thread",
                               "master/motion master/motion/beat master/motion/planner master/rt/exchange master/lcm "
-                              "master/gateway/notice master/gateway/command"),
+                              "master/explain/emcy_text.hpp master/gateway/notice master/gateway/command"),
     "master/gateway/ascii": ("text commands of CiA 309-3",
                              "master/wire master/core master/core/lss master/units master/lcm master/linux master/linux/unix_bus "
                              "master/gateway/message master/gateway/front_guest.hpp"),

@@ -34,6 +34,13 @@ one_of_three jogs
 one_of_three refuses
 first() { PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/first_motion.py" >"$tmp/said" 2>&1; }
 one_of_three first
+homes() {
+  PYTHONPATH=$tmp:$here/apps/python timeout 240 "$python" -c 'from takt_axes import Axes
+with Axes("demo", "shoulder", "elbow") as axes:
+    axes.home(together=True)
+    print(axes.homed)' >"$tmp/said" 2>&1 && grep -q '^\[True, True\]' "$tmp/said"
+}
+one_of_three homes
 # An inverter is an axis too. Its program stops it, and so does taktd when the program is gone.
 kill "$daemon" && wait "$daemon" || true
 "$bin/taktd" "$here/share/demo/astraada_drv28.yaml" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/log" &

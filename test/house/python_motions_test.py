@@ -498,6 +498,70 @@ check("two objects of one program have different names", other.sender != axes.se
 axes.disable()
 check("nor does one after disable()", "call enable() first" in obstacle(axes.jog, 1.0)[1])
 
+
+class Homing:
+    """Two drives that home in 20 cycles by the method of a device. `result`: the statusword at the end."""
+
+    def __init__(self, result=0x1637):
+        self.result, self.runs, self.both = result, {5: 0, 6: 0}, False
+
+    def __call__(self, daemon):
+        homing = [drive for drive in daemon.drives if drive.mode == 6 and drive.statusword & 0x6F == 0x27]
+        self.both |= len(homing) == 2
+        for drive in daemon.drives:
+            if drive not in homing:
+                drive.statusword = 0x237 if drive.statusword & 0x6F == 0x27 else drive.statusword
+            elif not drive.controlword & 0x10:
+                drive.statusword, self.runs[drive.node] = 0x637, 0
+                drive.motion.homing = 0 if drive.motion.homing == 1 else drive.motion.homing
+            else:
+                self.run(drive)
+
+    def run(self, drive):
+        self.runs[drive.node] += 1
+        if self.runs[drive.node] < 20 or not self.result:
+            drive.statusword, drive.motion.homing, drive.position = 0x237, 1, drive.position + 0.1
+        elif drive.statusword != self.result:
+            drive.statusword, drive.motion.homing, drive.position = self.result, 2 if self.result == 0x1637 else 3, 0.0
+
+
+daemon, axes = on_a_bus()
+daemon.each_cycle = Homing()
+axes.home()
+check("axes are enabled and homed one after the other", axes.homed == [True, True] and not daemon.each_cycle.both and
+      axes.positions == [0.0, 0.0], (axes.homed, axes.positions))
+check("they are back in cyclic synchronous position", [drive.mode for drive in daemon.drives] == [8, 8] and
+      not any(drive.controlword & 0x10 for drive in daemon.drives))
+axes.move(1.0, 1.0)
+axes.home(together=True)
+check("or together", daemon.each_cycle.both and axes.homed == [True, True])
+daemon.each_cycle.result, daemon.emcy = 0x2637, 0x7320
+kind, text = obstacle(axes.home)
+check("a homing error is named", kind == "stopped" and "shoulder: the drive reports a homing error: bit 13" in text, (kind, text))
+check("the axis is back in its mode", daemon.drives[0].mode == 8 and not daemon.drives[0].controlword & 0x10 and
+      axes.homed == [False, True])
+daemon.each_cycle.result = 0
+kind, text = obstacle(axes.home, seconds=SHORT)
+check("a homing has a time limit", kind == "time over" and "shoulder: the homing has not ended after 0.3 s" in text, (kind, text))
+check("and ends with it", daemon.drives[0].mode == 8 and not daemon.drives[0].controlword & 0x10)
+daemon.each_cycle = lambda daemon: setattr(daemon.drives[0], "statusword", 0x637)
+kind, text = obstacle(axes.home)
+check("a drive that does not begin is named", kind == "stopped" and "has not begun the homing" in text, (kind, text))
+
+daemon, axes = on_a_bus("shoulder")
+homing = Homing(0)
+
+
+def fault_in_run(daemon):
+    homing(daemon)
+    if homing.runs[5] > 10:
+        daemon.drives[0].statusword = 0x218
+
+
+daemon.each_cycle = fault_in_run
+kind, text = obstacle(axes.home)
+check("a fault ends the homing", kind == "stopped" and "the homing was interrupted" in text and "bit 3 (fault)" in text, (kind, text))
+
 daemon, axes = on_a_bus()
 daemon.motions = False
 check("a taktd without motions is named", "it was started without --motions" in obstacle(axes.enable)[1])

@@ -34,6 +34,7 @@ class MotionLcm final : public Transport {
     if (channel == "DEMO_IMAGE") {
       if (const auto found = decode<image_t>(data)) cycle = found->cycle;
     }
+    if (listener) listener(channel, data);
     return true;
   }
   void subscribe(const std::string&) override {}
@@ -54,6 +55,7 @@ class MotionLcm final : public Transport {
   motion_t motion{};
   std::int64_t cycle = 0;  ///< of the newest image
   std::deque<std::pair<std::string, std::vector<std::byte>>> waiting;
+  std::function<void(const std::string&, std::span<const std::byte>)> listener;
 };
 
 class WorldClocks final : public Clocks {

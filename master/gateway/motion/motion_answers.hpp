@@ -29,6 +29,9 @@ class MotionAnswers {
   /// The motion with this id of the axis was stopped.
   void stopped(std::size_t axis, std::int32_t id, const motion::Stop& stop,
                const CommandContext& context);
+  /// Tells people that a homing run has ended, or that the home position is lost.
+  void homing_changed(std::size_t axis, motion::HomingState before, motion::HomingState now,
+                      const CommandContext& context);
   void ended(std::size_t axis, std::int32_t id, ShownMotion::Ended ended) {
     shown_[axis].ended_id = id;
     shown_[axis].ended = ended;
@@ -43,7 +46,7 @@ class MotionAnswers {
   void announce_refusal(const MotionName& motion, const MotionRefusal& refusal,
                         const CommandContext& context);
   void announce(const std::string& kind, const std::string& text, std::optional<std::size_t> axis,
-                const CommandContext& context);
+                const CommandContext& context, Weight weight = Weight::warning);
   std::string name_of(std::size_t axis) const;
 
   const BusPlan& plan_;

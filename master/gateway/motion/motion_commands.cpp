@@ -42,6 +42,7 @@ MotionCommands::MotionCommands(const BusPlan& plan, Commands& commands, SubmitMo
       axes_{motion_axes(plan)},
       limits_{plan},
       answers_{plan, axes_, std::move(announce)},
+      homing_{axes_, answers_},
       jobs_{plan, axes_, commands, answers_, submit_},
       stops_{axes_, commands, submit_},
       streams_{std::chrono::duration<double>{plan.cycle.period}.count(), submit_},
@@ -133,6 +134,10 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
   if (command.kind == "stop") return take_stop(command, *axes, context);
   if (!has_timeout(command, context) || !is_newest(command, *axes, context)) return;
   std::optional<MotionJob> job;
+  if (command.kind == "move") {
+    const auto objection = homing_.objection(*axes);
+    if (objection) return answers_.refuse(motion_name(command), *axes, *objection, context);
+  }
   if (is_motion(command)) {
     auto made = motion_job(command, *axes, limits_, plan_.cycle.period);
     if (!made) return answers_.refuse(motion_name(command), *axes, made.error(), context);
@@ -160,6 +165,8 @@ void MotionCommands::take(const motion_gear_t& gear, const CommandContext& conte
   if (!job) return answers_.refuse(motion_name(command), *axes, job.error(), context);
   auto tasks = gear_tasks(gear, *axes, {plan_, axes_, limits_});
   if (!tasks) return answers_.refuse(motion_name(command), *axes, tasks.error(), context);
+  const auto objection = gear.phase == "at" ? homing_.objection(*axes) : std::nullopt;
+  if (objection) return answers_.refuse(motion_name(command), *axes, *objection, context);
   job->gears = std::move(*tasks);
   const auto claim = claim_of(command, *axes, context);
   if (!claim) return;
@@ -204,8 +211,9 @@ bool MotionCommands::begin_stream(const motion_stream_t& stream, const motion_co
                                   std::span<const std::size_t> axes, std::uint8_t sender,
                                   const CommandContext& context) {
   auto job = stream_job(stream, command, axes, limits_, plan_.cycle.period);
-  if (!job) {
-    answers_.refuse(motion_name(command), axes, job.error(), context);
+  const auto objection = homing_.objection(axes);
+  if (!job || objection) {
+    answers_.refuse(motion_name(command), axes, job ? *objection : job.error(), context);
     return false;
   }
   note_motion(*job, command, axes, sender, context);
@@ -318,6 +326,7 @@ void MotionCommands::stop(std::size_t axis) {
 
 void MotionCommands::observe(const MotionSnapshot& snapshot, const CommandContext& context) {
   if (snapshot.cycle == 0) return;
+  homing_.observe(snapshot, context);
   jobs_.observe(snapshot, context);
   streams_.observe(snapshot);
   for (std::size_t i = 0; i < axes_.size(); ++i) {

@@ -10,6 +10,7 @@
 #include "master/gateway/command/commands.hpp"
 #include "master/gateway/motion/axis_motion_limits.hpp"
 #include "master/gateway/motion/motion_answers.hpp"
+#include "master/gateway/motion/motion_homing.hpp"
 #include "master/gateway/motion/motion_jobs.hpp"
 #include "master/gateway/motion/motion_messages.hpp"
 #include "master/gateway/motion/motion_senders.hpp"
@@ -91,6 +92,7 @@ class MotionCommands {
   AxisMotionLimits limits_;
   MotionSenders senders_;
   MotionAnswers answers_;
+  MotionHoming homing_;
   MotionJobs jobs_;
   MotionStops stops_;
   MotionStreams streams_;

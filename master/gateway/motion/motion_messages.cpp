@@ -9,7 +9,9 @@
 namespace takt {
 namespace {
 
-constexpr std::size_t axes_a_message = 14;  // 86 bytes each
+using namespace std::chrono_literals;
+
+constexpr std::size_t axes_a_message = 13;  // 92 bytes each
 
 axis_motion_t to_message(const MotionAxis& axis, const motion::AxisReport& report,
                          const ShownMotion& shown, double period) {
@@ -19,6 +21,9 @@ axis_motion_t to_message(const MotionAxis& axis, const motion::AxisReport& repor
   message.id = shown.id;
   message.ended_id = shown.ended_id;
   message.outcome = static_cast<std::int8_t>(shown.ended);
+  message.homing = static_cast<std::int8_t>(report.homing);
+  message.needs_homing = axis.needs_homing ? 1 : 0;
+  message.homing_timeout_ms = static_cast<std::int32_t>(axis.homing_timeout / 1ms);
   message.position = report.commanded.position;
   message.velocity = report.commanded.velocity;
   message.acceleration = report.commanded.acceleration;

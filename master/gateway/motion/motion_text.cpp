@@ -148,4 +148,22 @@ std::string_view text(motion::StopCause cause) noexcept {
   return "for an unknown reason";
 }
 
+std::string_view text(motion::HomingState homing) noexcept {
+  using enum motion::HomingState;
+  switch (homing) {
+    case none:
+      return "the axis is not homed, which `homing:` of the network file requires before it goes "
+             "to a position: home it first; move_by and jog are possible without";
+    case runs:
+      return "the homing of the axis has not ended";
+    case failed:
+      return "the last homing of the axis has failed, and `homing:` of the network file requires "
+             "it before the axis goes to a position: home it first; move_by and jog are possible "
+             "without";
+    case homed:
+      break;
+  }
+  return "the axis is homed";
+}
+
 }  // namespace takt

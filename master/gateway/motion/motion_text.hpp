@@ -15,5 +15,7 @@ std::string_view text(motion::StreamDefect defect) noexcept;
 std::string_view text(motion::Outcome outcome) noexcept;
 /// Why a group has stopped.
 std::string_view text(motion::StopCause cause) noexcept;
+/// Why an absolute motion of an axis in this state is refused, and what to do.
+std::string_view text(motion::HomingState homing) noexcept;
 
 }  // namespace takt

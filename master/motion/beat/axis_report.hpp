@@ -21,8 +21,17 @@ enum class AxisCondition : std::uint8_t {
   unsent,  ///< it is enabled, but its set-points of several cycles were not sent
 };
 
+/// What is known of the home position of an axis.
+enum class HomingState : std::uint8_t {
+  none,    ///< no homing run has ended well since the device was last heard of anew
+  runs,    ///< a homing run
+  homed,   ///< the last run has ended well
+  failed,  ///< the drive has reported an error in the last run
+};
+
 struct AxisInput {
   AxisCondition condition = AxisCondition::disabled;
+  HomingState homing = HomingState::none;
   State actual;
   /// The position that the drive is commanded, if others have commanded it. Empty: it is the
   /// commanded position of the last report.
@@ -114,6 +123,7 @@ class EndedOrders {
 /// What an axis does in a cycle.
 struct AxisReport {
   AxisState state = AxisState::unpowered;
+  HomingState homing = HomingState::none;
   State commanded;
   State actual;
   double following_error = 0.0;  ///< last commanded position minus actual position
@@ -129,8 +139,8 @@ struct AxisReport {
   /// Not the orders that have ended: they are told in the cycle in which they end.
   template <class Archive>
   void keep(Archive& archive) noexcept {
-    archive(state, commanded, actual, following_error, running, cycles_left, kept_alive, gear,
-            phase_error, stop);
+    archive(state, homing, commanded, actual, following_error, running, cycles_left, kept_alive,
+            gear, phase_error, stop);
   }
 };
 

@@ -126,6 +126,7 @@ void AxisRunner::refuse(Outcome why) noexcept {
 StopCause AxisRunner::observe(CycleNumber cycle, const AxisInput& input,
                               const Silence& silence) noexcept {
   const bool followed = std::exchange(follows_, input.condition == AxisCondition::enabled);
+  report_.homing = input.homing;
   report_.actual = input.actual;
   report_.following_error = report_.commanded.position - input.actual.position;
   if (report_.state == AxisState::unpowered) {

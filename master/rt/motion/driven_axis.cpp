@@ -24,6 +24,12 @@ AxisCondition condition_of(std::int64_t statusword) noexcept {
 
 /// CiA 402-2, 0x6061.
 constexpr std::int64_t cyclic_synchronous_position = 8;
+constexpr std::int64_t homing_mode = 6;
+
+constexpr std::int64_t homing_start = 0x10;  // of the controlword, CiA 402-2, homing mode
+
+/// So long a drive may show the result of an earlier homing run.
+constexpr Time homing_patience = std::chrono::milliseconds{500};
 
 bool moves(const motion::AxisReport& report) noexcept {
   return report.state == AxisState::moving || report.state == AxisState::stopping;
@@ -36,7 +42,9 @@ DrivenAxis::DrivenAxis(const MotionAxis& axis, const BusPlan& plan)
       position_{scale_of(plan, axis.position)},
       target_{scale_of(plan, axis.target)},
       row_{plan.layout.signals[axis.target].row},
-      longest_wait_{longest_wait_of(plan, axis.target)} {
+      longest_wait_{longest_wait_of(plan, axis.target)},
+      homing_{
+          static_cast<std::uint32_t>(homing_patience / std::max(plan.cycle.period, Time{1000}))} {
   if (axis.velocity) velocity_ = scale_of(plan, *axis.velocity);
   if (axis.velocity_offset) velocity_offset_ = scale_of(plan, *axis.velocity_offset);
   for (std::size_t i = plan.layout.inputs; i < plan.layout.signals.size(); ++i) {
@@ -102,12 +110,28 @@ AxisCondition DrivenAxis::without_statusword() noexcept {
   return may_follow && unsent_beats_ > longest_wait_ ? AxisCondition::unsent : last;
 }
 
+/// The controlword of the image is the one that was sent last.
+motion::HomingState DrivenAxis::homing(const PdoExchange& pdos, bool exchanging) noexcept {
+  const WorkingImage& image = pdos.image();
+  in_homing_mode_ = axis_.mode && image.values[*axis_.mode] == homing_mode;
+  const bool starts = axis_.controlword && (image.values[*axis_.controlword] & homing_start) != 0;
+  return homing_.step(
+      {.heard = exchanging,
+       .fresh = !image.is_stale(axis_.statusword),
+       .homing = in_homing_mode_ && starts &&
+                 condition_of(image.values[axis_.statusword]) == AxisCondition::enabled,
+       .statusword = static_cast<std::uint16_t>(image.values[axis_.statusword])});
+}
+
 /// While the actual position is missing, the following error counts as unchanged.
 motion::AxisInput DrivenAxis::read(PdoExchange& pdos, bool exchanging,
                                    const motion::AxisReport& last) noexcept {
   const WorkingImage& image = pdos.image();
   condition_ = condition(pdos, exchanging);
-  motion::AxisInput input{.condition = condition_, .actual = last.actual, .set_point = {}};
+  motion::AxisInput input{.condition = condition_,
+                          .homing = homing(pdos, exchanging),
+                          .actual = last.actual,
+                          .set_point = {}};
   input.actual.position = image.is_stale(axis_.position)
                               ? last.commanded.position - last.following_error
                               : position_.number(image.values[axis_.position]);
@@ -132,7 +156,8 @@ bool DrivenAxis::write(PdoOutputs& outputs, const motion::AxisReport& report,
   stop_leading(outputs);
   if (report.state == AxisState::standing) return true;
   const auto raw = target_.raw(report.actual.position);
-  const bool by_others = writer_ == Writer::others && !outputs.is_seeded(axis_.target);
+  const bool by_others =
+      writer_ == Writer::others && !outputs.is_seeded(axis_.target) && !in_homing_mode_;
   if (by_others || !ignores_target_ || !raw || !outputs.trail(axis_.target, *raw)) return true;
   written_ = *raw;
   if (writer_ != Writer::others) clear_velocity(outputs);

@@ -5,6 +5,7 @@
 #include "eds_parser/table/motion_axes.hpp"
 #include "master/core/pdo/pdo_exchange.hpp"
 #include "master/motion/beat/axis_report.hpp"
+#include "master/motion/beat/homing_watch.hpp"
 
 namespace takt {
 
@@ -23,7 +24,8 @@ class DrivenAxis {
   /// Commands the target position, and the velocity as its offset, while the axis moves. While the
   /// drive says that it does not follow its target position, this one follows the actual position
   /// if a motion has commanded it last, or if nobody has, so that the drive does not jump when it
-  /// is enabled. Returns false if a set-point was not taken, see PdoOutputs::lead().
+  /// is enabled. In homing mode it does so whoever has commanded it: the coordinates of the drive
+  /// change. Returns false if a set-point was not taken, see PdoOutputs::lead().
   bool write(PdoOutputs& outputs, const motion::AxisReport& report, OutputMoment moment) noexcept;
   /// Returns true if no set-point is taken at present, because the master stops the axis itself.
   bool is_overruled(const PdoOutputs& outputs) const noexcept {
@@ -37,7 +39,7 @@ class DrivenAxis {
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(condition_, silent_beats_, unsent_beats_, frames_, sent_target_, ignores_target_,
-          written_, writer_);
+          in_homing_mode_, written_, writer_, homing_);
   }
 
  private:
@@ -66,6 +68,7 @@ class DrivenAxis {
   motion::AxisCondition condition(PdoExchange& pdos, bool exchanging) noexcept;
   void count_unsent(const RpdoStatus& rpdo, std::int64_t target) noexcept;
   motion::AxisCondition without_statusword() noexcept;
+  motion::HomingState homing(const PdoExchange& pdos, bool exchanging) noexcept;
   bool lead(PdoOutputs& outputs, const motion::State& state, OutputMoment moment) noexcept;
   bool end_motion(PdoOutputs& outputs, const motion::State& state, OutputMoment moment) noexcept;
   void stop_leading(PdoOutputs& outputs) noexcept;
@@ -85,8 +88,10 @@ class DrivenAxis {
   std::int64_t sent_target_ = 0;    ///< target position of the last of them
   std::uint8_t silent_beats_ = 0;
   bool ignores_target_ = false;  ///< the statusword of this beat says so
-  std::int64_t written_ = 0;     ///< target position that a motion has written last
+  bool in_homing_mode_ = false;
+  std::int64_t written_ = 0;  ///< target position that a motion has written last
   Writer writer_ = Writer::others;
+  motion::HomingWatch homing_;
 };
 
 }  // namespace takt

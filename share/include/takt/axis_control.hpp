@@ -127,6 +127,15 @@ class AxisControl {
   /// carry it for each axis whose 0x6060 is mapped. Another mode than profile position ends the
   /// handshakes of begin_set_points().
   void set_mode(DriveMode mode) noexcept;
+  /// Sets the mode of operation of one axis.
+  void set_mode(Index axis, DriveMode mode) noexcept;
+  /// Sets bit 4 of the controlword of an axis that is in Operation enabled and whose commanded mode
+  /// is DriveMode::homing; for other axes the call has no effect. The bit stays set until
+  /// end_homing(), until another mode is set, or until the drive leaves Operation enabled. CiA
+  /// 402-2, homing operation start.
+  void start_homing(Index axis);
+  /// Clears that bit, which ends a homing run that has not ended.
+  void end_homing(Index axis);
   /// Returns true if every axis shows the commanded mode (0x6061). If 0x6061 of an axis is not
   /// mapped, it is enough that the commands carry the mode (0x6060 is mapped). Returns false if
   /// neither object of an axis is mapped, for then its mode is unknown.

@@ -25,8 +25,8 @@ struct Obstacle {
     no_bus,       ///< LCM can't be opened, or no image of the bus comes.
     blocked,      ///< A drive, its device or another program is in the way, or still is at the end.
     refused,      ///< taktd has refused the motion, or has not answered it for 2 s.
-    stopped,      ///< The motion has ended before its target.
-    time_over,    ///< The axes still move or are still enabled, or no newer image has come.
+    stopped,      ///< The motion or the homing has ended before its target.
+    time_over,    ///< The axes still move, home or are enabled, or no newer image has come.
     restarted,    ///< taktd has restarted. Only a new Axes can command its axes.
     interrupted,  ///< AxesOptions::interrupted has returned true.
   };
@@ -91,6 +91,19 @@ struct Gear {
   Eigen::VectorXd max_phase_error = {};
 };
 
+/// Options of Axes::home().
+struct HomingOptions {
+  /// In which order the axes are homed.
+  enum class Order : std::uint8_t {
+    one_after_the_other,  ///< In the order of their names. The first obstacle ends it.
+    together,             ///< All at once. If one of them fails, the others stop, too.
+  };
+  Order order = Order::one_after_the_other;  ///< in which order the axes are homed
+  /// Longest time of a run. 0 is the time of `homing: {timeout: ...}` of the network file, without
+  /// which it is 60 s.
+  std::chrono::nanoseconds longest{0};
+};
+
 /// Axes of one bus whose motions taktd runs. Each call returns when it has done its work, or says
 /// in words what blocks it.
 ///
@@ -136,6 +149,14 @@ class Axes {
   /// cyclic synchronous position mode, which enable() sets again.
   Done set_mode(DriveMode mode);
 
+  /// Homes the axes: enables them if they are not enabled, sets homing mode (0x6060 = 6), starts
+  /// the method that the drive has (0x6098, `homing:` of the network file), and waits for the
+  /// result. Then, also after an obstacle, it ends the run, waits for standstill, and sets cyclic
+  /// synchronous position mode again, with the targets at the actual positions. The positions of
+  /// the axes jump: after success they count from home. If this program dies meanwhile, the drives
+  /// take the fallback of `on_timeout`. CiA 402-2, homing mode.
+  Done home(const HomingOptions& options = {});
+
   /// Moves the axes to these positions, and waits until the commanded positions are there and at
   /// rest. The actual positions differ by the following errors.
   Done move(const Eigen::Ref<const Eigen::VectorXd>& positions, const MotionBounds& bounds = {});
@@ -171,6 +192,12 @@ class Axes {
   /// Returns the unit of the positions of an axis, or of the speeds of a speed axis ("rpm", "Hz").
   /// Empty stands for raw counts.
   const std::string& unit(Eigen::Index axis) const;
+  /// Returns true if taktd has seen a homing run of this axis end well since its node began to
+  /// exchange PDOs.
+  bool homed(Eigen::Index axis) const;
+  /// Returns true if taktd refuses to move this axis to positions until it is homed: `homing:` of
+  /// the network file requires it.
+  bool needs_homing(Eigen::Index axis) const;
   /// Returns true if at least one axis moves or stops, as taktd has reported last.
   bool moving() const;
   /// Returns the actual positions (0x6064) of the newest image. All values of this object are 0

@@ -198,6 +198,39 @@ TEST_F(TwoAxes, AreRaisedAndLoweredByTheHandshakeInProfilePosition) {
   EXPECT_EQ(commanded(controlword_6), 0x003F);
 }
 
+TEST_F(TwoAxes, AreHomedByBit4OneByOne) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, enabled, 0, 0});
+  axes_.start_homing(0);
+  see({enabled, enabled, 0, 0});
+  EXPECT_EQ(commanded(controlword_5), 0x000F) << "it is in another mode";
+
+  axes_.set_mode(0, DriveMode::homing);
+  axes_.start_homing(0);
+  see({enabled, enabled, 0, 0});
+  EXPECT_EQ(commanded(controlword_5), 0x001F);
+  EXPECT_EQ(commanded(controlword_6), 0x000F);
+  axes_.end_homing(0);
+  see({enabled, enabled, 0, 0});
+  EXPECT_EQ(commanded(controlword_5), 0x000F);
+
+  axes_.start_homing(0);
+  axes_.set_mode(0, DriveMode::cyclic_position);
+  see({enabled, enabled, 0, 0});
+  EXPECT_EQ(commanded(controlword_5), 0x000F);
+}
+
+TEST_F(TwoAxes, DoNotGoOnHomingAfterAFault) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, enabled, 0, 0});
+  axes_.set_mode(DriveMode::homing);
+  axes_.start_homing(0);
+  see({fault, enabled, 0, 0});
+  axes_.set_goal(0, DriveGoal::enabled);
+  see({enabled, enabled, 0, 0});
+  EXPECT_EQ(commanded(controlword_5), 0x000F);
+}
+
 TEST_F(TwoAxes, HaveNoHandshakeOutsideProfilePosition) {
   axes_.set_goal(DriveGoal::enabled);
   see({enabled, enabled, 0, 0});
@@ -339,6 +372,16 @@ TEST(AxisControl, KeepsAVelocityWhereNoPositionIsMapped) {
 
   EXPECT_THAT(see(2), ::testing::Contains(500));
   EXPECT_THAT(see(3), ::testing::Contains(500));
+}
+
+TEST_F(AxisWithModes, KeepsTheModeInANewLayoutOnlyIfItIsThatOfAllAxes) {
+  axes_.set_mode(DriveMode::cyclic_velocity);
+  axes_.set_mode(0, DriveMode::homing);
+  target(6, 0);
+  EXPECT_TRUE(axes_.in_mode(0));
+  axes_.set_layout(input_);
+  target(9, 0);
+  EXPECT_TRUE(axes_.in_mode(0));
 }
 
 TEST(AxisControl, CommandsTheModeWhereItIsMapped) {

@@ -283,6 +283,44 @@ TEST(DrivenAxis, TheTargetDoesNotFollowTheActualPositionInAModeInWhichTheDriveMa
   EXPECT_EQ(after_mode(3), 100);
 }
 
+/// Homing changes the coordinates of the drive, so that a target of an application from before it
+/// is somewhere else.
+TEST(DrivenAxis, InHomingModeTheTargetFollowsWhoeverHasCommandedIt) {
+  Bench bench{{.commands_controlword = true, .mode = true}};
+  bench.hear(0x0027, 0);
+  bench.command(1, 55);
+  bench.pack();
+  bench.hear(0x0027, 55);
+  bench.condition();
+  ASSERT_TRUE(bench.write(AxisState::standing, {.position = 0.55}));
+  bench.command(3, 6);
+  bench.pack();
+  bench.hear(0x0027, 55);
+  bench.condition();
+  bench.last.actual.position = 9.0;
+  ASSERT_TRUE(bench.write(AxisState::unpowered, {.position = 9.0}));
+  EXPECT_EQ(bench.target(), 900);
+}
+
+TEST(DrivenAxis, SeesAHomingRunOfTheEnabledDriveInHomingMode) {
+  using motion::HomingState;
+  Bench bench{{.commands_controlword = true, .mode = true}};
+  const auto after = [&](std::int64_t controlword, std::int64_t mode, std::uint16_t statusword) {
+    bench.command(0, controlword);
+    bench.command(3, mode);
+    bench.pack();
+    bench.hear(statusword, 0);
+    return bench.axis.read(bench.pdos, true, bench.last).homing;
+  };
+  EXPECT_EQ(after(0x1F, 8, 0x0027), HomingState::none) << "in another mode";
+  EXPECT_EQ(after(0x0F, 6, 0x0027), HomingState::none) << "bit 4 is not set";
+  EXPECT_EQ(after(0x1F, 6, 0x0023), HomingState::none) << "not enabled";
+  EXPECT_EQ(after(0x1F, 6, 0x0027), HomingState::runs);
+  EXPECT_EQ(after(0x1F, 6, 0x1427), HomingState::homed);
+  EXPECT_EQ(after(0x0F, 8, 0x1027), HomingState::homed);
+  EXPECT_EQ(bench.axis.read(bench.pdos, false, bench.last).homing, HomingState::none);
+}
+
 /// The application enables the drive by its controlword only, and the axis was pushed.
 TEST(DrivenAxis, ATargetThatNobodyHasCommandedFollowsTheActualPositionWhileTheDriveIsNotEnabled) {
   Bench bench;

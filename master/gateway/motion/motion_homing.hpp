@@ -1,0 +1,33 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "eds_parser/table/motion_axes.hpp"
+#include "master/gateway/motion/motion_answers.hpp"
+#include "master/rt/exchange/motion_board.hpp"
+
+namespace takt {
+
+/// Refuses absolute motions of axes that have to be homed first, and tells people how homing runs
+/// have ended. Front thread.
+class MotionHoming {
+ public:
+  /// Keeps references to both arguments. `axes` are the motion_axes() of the plan.
+  MotionHoming(const std::vector<MotionAxis>& axes, MotionAnswers& answers)
+      : axes_{axes}, answers_{answers}, states_(axes.size(), motion::HomingState::none) {}
+
+  /// Returns why axes must not go to absolute positions now; empty if they may.
+  std::optional<MotionRefusal> objection(std::span<const std::size_t> axes) const;
+  /// Takes the newest reports.
+  void observe(const MotionSnapshot& snapshot, const CommandContext& context);
+
+ private:
+  const std::vector<MotionAxis>& axes_;
+  MotionAnswers& answers_;
+  std::vector<motion::HomingState> states_;  ///< by axis
+};
+
+}  // namespace takt
