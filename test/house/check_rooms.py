@@ -143,6 +143,7 @@ ROOMS = {
     "apps/move": ("takt-move", "apps/axis apps/command_line master/motion master/lcm"),
     "apps/follow": ("takt-follow", "apps/axis apps/command_line master/lcm"),
     "apps/jog": ("takt-jog", "apps/axis apps/command_line master/lcm"),
+    "apps/home": ("takt-home", "apps/axis apps/command_line master/lcm"),
     "apps/takt/live": ("commands for a running daemon: status, top, timing, EMCY, record",
                        "apps/command_line master/core master/explain master/gateway/message master/gateway/notice "
                        "master/rt/exchange master/linux " + LCM),

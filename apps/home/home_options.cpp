@@ -1,0 +1,52 @@
+#include "apps/home/home_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "apps/command_line/duration.hpp"
+#include "apps/command_line/known_words.hpp"
+#include "apps/command_line/live_arguments.hpp"
+
+namespace takt {
+namespace {
+
+template <class Duration>
+void add_time(CLI::App& app, const std::string& name, Duration& time, const std::string& what) {
+  app.add_option_function<std::string>(
+         name, [&time](const std::string& text) { time = parse_duration(text).value_or(time); },
+         what)
+      ->check(duration_error);
+}
+
+}  // namespace
+
+ParsedHome parse_home(int argc, char** argv) {
+  HomeOptions options;
+  CLI::App app{"Homes axes: each drive finds its home position by the method that it has.",
+               "takt-home"};
+  app.footer(
+      "Example:  takt-home demo shoulder elbow\n"
+      "The method, the speeds and the longest time are those of `homing:` in the network file.\n"
+      "Ctrl-C ends the homing; the axes stop, and are disabled.\n"
+      "Exit codes: 0 all axes are homed and disabled, 1 an axis was not homed, 2 wrong use,\n"
+      "3 no message of a daemon came.");
+  app.set_version_flag("--version", "takt-home " TAKT_VERSION);
+  app.add_option("bus", options.bus, "name of the bus")->required();
+  app.add_option("axes", options.axes,
+                 "names of the axes, in the order of their homing (default: all axes of the bus)");
+  app.add_flag_callback(
+      "--together", [&] { options.homing.order = HomingOptions::Order::together; },
+      "home all axes at once, not one after the other");
+  app.add_flag("--reset", options.reset, "reset the faults of the axes first");
+  add_time(app, "--within", options.homing.longest,
+           "longest time of a homing run (default: that of the network file, else 60s)");
+  add_time(
+      app, "--timeout", options.timeout,
+      "the drives take their fallback if this program is silent for so long, up to 10s (500ms)");
+  add_time(app, "--wait", options.wait, "longest wait for the daemon and the drives (10s)");
+  app.add_option("--lcm-url", options.lcm.url, "LCM URL of the daemon; default: LCM_DEFAULT_URL");
+  add_key_options(app, options.lcm.keys, options.lcm.check_images);
+  const auto exit_code = parse_arguments(app, argc, argv);
+  return {options, exit_code};
+}
+
+}  // namespace takt
