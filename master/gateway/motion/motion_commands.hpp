@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <takt/motion_command_t.hpp>
+#include <takt/motion_gear_t.hpp>
 #include <takt/motion_t.hpp>
 #include <vector>
 
