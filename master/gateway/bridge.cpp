@@ -20,6 +20,10 @@ constexpr Time longest_wait = std::chrono::milliseconds{20};
 constexpr unsigned most_behind = 8;  // further images of a backlog go out without typed messages
 constexpr std::uint64_t not_yet = ~0ULL;
 
+bool is_good_limit(const Event& event) noexcept {
+  return static_cast<LimitVerdict>(event.detail & 0xFFU) == LimitVerdict::good;
+}
+
 }  // namespace
 
 Channels::Channels(const std::string& bus)
@@ -58,6 +62,7 @@ Bridge::Bridge(MasterRun& master, Transport& transport, const Clocks& clocks, Br
                 {.session = options_.session, .observe = options_.observe},
                 [this](SignalIndex signal, std::int64_t value, std::uint32_t time_to_live) {
                   outputs_staged_ |= master_.set(signal, value, time_to_live);
+                  releases_ |= time_to_live == output_released;
                 },
                 [this](const Notice& notice) { this->announce(notice); }},
       motions_{master.plan(), commands_,
@@ -189,7 +194,9 @@ void Bridge::publish_image(const ImageView& image, bool typed) {
   ++images_;
 }
 
+/// The bus thread has to know that an axis moves for nobody before its outputs are released.
 void Bridge::publish_outputs() {
+  if (std::exchange(releases_, false)) tell_released();
   // Uses the time at which the age was judged, because this thread may have stood still since then.
   if (std::exchange(outputs_staged_, false)) master_.publish_outputs(judged_);
 }
@@ -294,6 +301,9 @@ void Bridge::take_events() {
 void Bridge::take_event(const Event& event) {
   if (guest_ != nullptr) guest_->hear(event);
   emcy_log_.take(event, wall_microseconds(event.when));
+  if (event.kind == EventKind::limit_read && is_good_limit(event)) {
+    motions_.learn(event.detail >> 8U, event.value);
+  }
   announce(event);
 }
 

@@ -23,7 +23,8 @@ template void Bridge::on_motion<motion_stream_t>(std::string_view channel, Bytes
 /// are known then.
 void Bridge::serve_motions() {
   if (!options_.motions) return;
-  motions_.watch();
+  motions_.begin();
+  if (!motions_.watches()) return;
   const Time now = clocks_.now();
   const std::uint64_t published = motion_reports_.cycle;
   master_.motions(motion_reports_);
@@ -33,6 +34,10 @@ void Bridge::serve_motions() {
   motions_.observe(motion_reports_, context_at(now));
   if (!motions_.active()) return;
   for (motion_t& part : motions_.messages()) publish(channels_.motion, part, now);
+}
+
+void Bridge::tell_released() {
+  if (motions_.watches()) motions_.serve(context_at(clocks_.now()));
 }
 
 }  // namespace takt

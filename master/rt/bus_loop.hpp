@@ -144,7 +144,7 @@ void BusLoop<P, L, S>::begin_beat() noexcept {
   if (beat_.follows()) stop_.follow_sync(beat_.sync_lost());
   const bool beats = beat_.follows() ? beat_.began_by_sync() : send_sync();
   bus_.pdos.inputs().begin(beat_.cycle(), beat_.sync_at(), beats);
-  bus_.status.beats += beats;
+  bus_.status.beats += beats || beat_.has_sync();
   slack_.relieve_services();
 }
 

@@ -86,6 +86,7 @@ class MotionBus final : public AxesInVirtualTime {
   void enable(std::int64_t instance = 5) {
     each_cycle = [this, instance] { send_enable(instance); };
     ASSERT_TRUE(run_until([&] { return enabled(0) && enabled(1); }));
+    keep_alive();  // from now on, the bus thread reads the axes
     run(5);
     each_cycle = {};
   }

@@ -18,11 +18,16 @@ using test::standing;
 using test::stopped;
 using test::stopping;
 
-/// Only then, a target position that nobody has commanded follows the actual position.
-TEST(MotionCommand, TheBusThreadReadsTheAxesBeforeTheFirstCommand) {
+/// Until then, motions cost the bus thread nothing. From then on, a target position that nobody has
+/// commanded follows the actual position.
+TEST(MotionCommand, TheBusThreadReadsTheAxesFromTheFirstSignOfLifeOn) {
   MotionBus bus;
   bus.run(10);
   MotionSnapshot now;
+  bus.master.motions(now);
+  EXPECT_EQ(now.cycle, 0U);
+  bus.keep_alive();
+  bus.run(10);
   bus.master.motions(now);
   EXPECT_NE(now.cycle, 0U);
   EXPECT_TRUE(bus.lcm.motion.axes.empty());
@@ -340,7 +345,7 @@ TEST(MotionCommand, RefusesWithTheReason) {
   refusal([](Command& m) { m.synchronisation = "some"; }, "its synchronisation is none of");
   refusal([](Command& m) { m.timeout_ms = 10'001; }, "its timeout of 10001 ms");
   refusal([](Command& m) { m.goals[0].max_velocity = 41.0; },
-          "`limits:` of the network file allow 40");
+          "`limits:` of the network file or the drive allow 40");
   refusal([](Command& m) { m.goals[0].max_acceleration = -1.0; }, "must be above 0");
   refusal([&](Command& m) { m.goals[0].max_jerk = nan; }, "must be above 0");
   refusal([&](Command& m) { m.goals[0].position = nan; }, "infinite, NaN or too large");
@@ -370,7 +375,7 @@ TEST(MotionCommand, TheNetworkFileLimitsTheFollowingError) {
   message.goals[0].max_following_error = 0.2;
   bus.send(message);
   bus.run(3);
-  EXPECT_TRUE(bus.said("motion_refused", "`limits:` of the network file allow 0.1"));
+  EXPECT_TRUE(bus.said("motion_refused", "`limits:` of the network file or the drive allow 0.1"));
   bus.move_both(6, 10.0, 10.0);
   bus.each_cycle = [&] { bus.keep_alive(); };
   ASSERT_TRUE(bus.run_until([&] { return bus.axis(1).state == stopping; }, 200));

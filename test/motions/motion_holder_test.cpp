@@ -100,9 +100,34 @@ TEST(MotionHolder, ASignOfLifeWithoutGoalsIsForTheNodesThatAreReady) {
   EXPECT_EQ(bus.axis(0).state, moving);
 }
 
+/// A release ends the claim of the sender: the axis stops along its limits, and then its drive is
+/// disabled. 20 rad/s^2 are 0.13 counts in a beat squared, and rounding adds at most two counts.
+TEST(MotionHolder, AReleaseStopsTheAxisBeforeItsDriveIsDisabled) {
+  MotionBus bus;
+  bus.enable();
+  bus.move_one(1, 50.0);
+  std::vector<std::int64_t> targets;
+  bus.each_cycle = [&] { targets.push_back(bus.target(0)); };
+  bus.run(200);
+  ASSERT_EQ(bus.axis(0).state, moving);
+  bus.release();
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == stopping; }, 5));
+  EXPECT_TRUE(bus.enabled(0));
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state != stopping; }, 500));
+  EXPECT_TRUE(bus.enabled(0));
+  ASSERT_TRUE(bus.run_until([&] { return !bus.enabled(0); }, 10));
+  EXPECT_TRUE(bus.said("motion_stopped", "does not hold the node any longer"));
+  EXPECT_FALSE(bus.said("fallback_begun", ""));
+  for (std::size_t i = 2; i < targets.size(); ++i) {
+    EXPECT_LE(std::abs(targets[i] - 2 * targets[i - 1] + targets[i - 2]), 2) << i;
+  }
+}
+
 TEST(MotionHolder, AMotionThatIsRefusedTakesNoNode) {
   MotionBus bus;
   ASSERT_TRUE(bus.run_until([&] { return bus.bridge.status().bus.cycle > 500; }));
+  bus.keep_alive();
+  bus.run(3);
   bus.move_one(1, std::numeric_limits<double>::quiet_NaN(), 9);
   bus.move_one(2, 1.0, 9);  // is planned, but the drive is not enabled
   bus.run(3);

@@ -118,6 +118,24 @@ TEST(MotionMessages, AStopIsNotLostIfAnotherNodeIsNotReady) {
   EXPECT_TRUE(bus.run_until([&] { return bus.axis(0).state == axis_brakes; }, 10));
 }
 
+TEST(MotionMessages, ACopyOfAStopDoesNotStopTheNextMotion) {
+  MotionBus bus;
+  bus.enable();
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  motion_command_t stop = stop_of(bus, {"shoulder"});
+  stop.utime = 1000;
+  bus.send(stop);
+  bus.run(3);
+  bus.send(move_of(bus, 1, 20.0, 2000));
+  ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == axis_moves; }, 20));
+  bus.send(stop);
+  bus.run(10);
+  EXPECT_EQ(bus.axis(0).state, axis_moves);
+  stop.utime = 3000;
+  bus.send(stop);
+  EXPECT_TRUE(bus.run_until([&] { return bus.axis(0).state == axis_brakes; }, 10));
+}
+
 TEST(MotionMessages, AStopThatALaterMessageHasOvertakenIsNotLost) {
   MotionBus bus;
   bus.enable();

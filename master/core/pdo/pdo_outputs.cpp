@@ -13,6 +13,7 @@ PdoOutputs::PdoOutputs(const BusPlan& plan, WorkingImage& image, const PdoInputs
       outputs_(plan.layout.outputs()),
       rows_(plan.pdos.rpdos.size()),
       begun_(plan.nodes.size(), 0),
+      led_(plan.nodes.size(), 0),
       frames_(plan.pdos.rpdos.size()),
       packed_(plan.pdos.rpdos.size()) {
   fields_.reserve(plan.pdos.fields.size());
@@ -29,7 +30,7 @@ void PdoOutputs::open(std::size_t node_index, std::span<const SetPoint> set_poin
     if (pdo.node_index != node_index || pdo.on_request) continue;
     rows_[i] = Row{.sent = rows_[i].sent, .open = true};
   }
-  begun_[node_index] = 0;
+  begun_[node_index] = led_[node_index] = 0;
   limits_.open(node_index);
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const Signal& signal = plan_.layout.signals[inputs_count_ + i];
@@ -80,10 +81,11 @@ void PdoOutputs::seed(Output& output, SignalIndex signal) noexcept {
 }
 
 /// Takes a new command of the front thread that has waited, leads out of a fallback or is refused.
-/// Returns true if it was taken.
+/// Returns true if it was taken. A release that waits stays new.
 bool PdoOutputs::hear(Row& row, Output& output, SignalIndex signal, const SetPoint& set_point,
                       OutputMoment moment) noexcept {
   const bool released = set_point.time_to_live == output_released;
+  if (released && release_waits(output, signal)) return false;
   if (released || refuses(output) || is_late(output, set_point, moment)) {
     output.generation = set_point.generation;
     if (released && !refuses(output)) release_output(output, signal);
@@ -294,7 +296,7 @@ void PdoOutputs::command_limited(SignalIndex signal, std::int64_t value, std::ui
 bool PdoOutputs::lead(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept {
   Output& output = outputs_[output_of(signal)];
   if (is_overruled(signal)) return false;
-  output.led = true;
+  set_led(signal, true);
   if (!limits_.empty() && !within_limits(signal, value, moment)) return false;
   take(output, signal,
        {.value = value, .generation = output.generation, .time_to_live = 0, .when = moment.now},

@@ -92,8 +92,9 @@ class PdoOutputs {
   void release(SignalIndex signal) noexcept;
 
   /// Commands an output from a motion of the bus thread. Until release_lead(), commands of others
-  /// to this output are refused, and none of them takes effect later. Returns false if the value
-  /// was not taken: it is outside the limits, or the output is_overruled().
+  /// to this output are refused, and none of them takes effect later. A release of any output of
+  /// its node takes effect after release_lead(). Returns false if the value was not taken: it is
+  /// outside the limits, or the output is_overruled().
   bool lead(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
   /// Returns true if lead() takes no value, whatever it is, because an ordered stop, an NMT command
   /// or the loss of a node commands the output.
@@ -103,8 +104,11 @@ class PdoOutputs {
   /// Commands the value that the last lead() has commanded once more. It is not judged: the axis
   /// stands, although the limits would have it brake. Does nothing if another value is in force.
   void hold(SignalIndex signal, OutputMoment moment) noexcept;
+  /// Does what trail() does for the target position of an axis that is enabled but has a Halt. The
+  /// next step is measured from this value.
+  bool settle(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
   /// Ends lead(). The output keeps its value and accepts its next command.
-  void release_lead(SignalIndex signal) noexcept { outputs_[output_of(signal)].led = false; }
+  void release_lead(SignalIndex signal) noexcept { set_led(signal, false); }
   /// Sets the value of an output of a motion without judging it: a target position that has no
   /// effect because its axis is not enabled, or the velocity offset 0 of an axis whose target
   /// position stands still. This is no command. Returns false if another value is in force.
@@ -128,7 +132,7 @@ class PdoOutputs {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(outputs_, rows_, begun_, limits_, turn_, stopping_);
+    state(outputs_, rows_, begun_, led_, limits_, turn_, stopping_);
     state.position(next_event_, rows_.size());
   }
 
@@ -245,6 +249,17 @@ class PdoOutputs {
   bool refuses(const Output& output) const noexcept {
     return stopping_ || output.forced || output.led;
   }
+  void set_led(SignalIndex signal, bool led) noexcept {
+    Output& output = outputs_[output_of(signal)];
+    if (output.led == led) return;
+    output.led = led;
+    std::uint8_t& count = led_[plan_.layout.signals[signal].node_index];
+    count = static_cast<std::uint8_t>(led ? count + 1 : count - 1);
+  }
+  /// Returns true if a release of this output waits until the motions of its node have ended.
+  bool release_waits(const Output& output, SignalIndex signal) const noexcept {
+    return led_[plan_.layout.signals[signal].node_index] != 0 && !stopping_ && !output.forced;
+  }
 
   [[gnu::noinline]] void command_limited(SignalIndex signal, std::int64_t value,
                                          std::uint32_t time_to_live, OutputMoment moment) noexcept;
@@ -314,6 +329,7 @@ class PdoOutputs {
   std::vector<Row> rows_;
   /// By node: an output was commanded, so seeds no longer follow the feedback.
   std::vector<std::uint8_t> begun_;
+  std::vector<std::uint8_t> led_;  ///< by node: number of its outputs that motions command
   std::vector<Frame> frames_;
   std::vector<std::uint16_t> packed_;
   std::size_t packed_count_ = 0;

@@ -270,6 +270,15 @@ bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
   return true;
 }
 
+bool PdoOutputs::settle(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept {
+  if (!trail(signal, value)) return false;
+  const std::uint16_t place = limits_.place_of(signal);
+  if (place != OutputLimits::no_place) {
+    limits_.admit(place, command_with(place, signal, value), moment.cycle);
+  }
+  return true;
+}
+
 /// The next step is measured from a standing axis.
 void PdoOutputs::hold(SignalIndex signal, OutputMoment moment) noexcept {
   Output& output = outputs_[output_of(signal)];

@@ -1,6 +1,7 @@
 #include "master/gateway/motion/axis_motion_limits.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <fmt/format.h>
@@ -38,8 +39,9 @@ std::expected<double, std::string> limit(double wanted, std::optional<double> of
                     name, name, name)};
   }
   if (of_file && wanted > *of_file) {
-    return std::unexpected{fmt::format("max_{} is {}, but `limits:` of the network file allow {}",
-                                       name, wanted, *of_file)};
+    return std::unexpected{
+        fmt::format("max_{} is {}, but `limits:` of the network file or the drive allow {}", name,
+                    wanted, *of_file)};
   }
   return wanted;
 }
@@ -52,33 +54,70 @@ motion::PositionRange range_of_integer32(const Signal& target) {
   return {.min = std::min(one, other), .max = std::max(one, other)};
 }
 
+/// A set-point is rounded to a count, so a step may be longer than the way of its cycle by one.
+double velocity_of_step(double step, const Signal& target, Time period) {
+  const double way = std::max(step - std::abs(target.scale), step / 2);
+  return way / std::chrono::duration<double>{period}.count();
+}
+
+/// Returns the narrower one of two limits.
+std::optional<double> narrower(std::optional<double> a, std::optional<double> b) {
+  return a && b ? std::min(*a, *b) : a ? a : b;
+}
+
 /// Without a limit of jerk, the acceleration reaches its limit within this time, in s.
 constexpr double default_rise = 0.05;
 
 }  // namespace
 
-AxisMotionLimits::AxisMotionLimits(const BusPlan& plan) {
-  for (const MotionAxis& axis : motion_axes(plan)) axes_.push_back(limits_of(plan, axis));
+AxisMotionLimits::AxisMotionLimits(const BusPlan& plan) : signals_{motion_axes(plan)} {
+  for (const MotionAxis& axis : signals_) {
+    axes_.push_back({.range = range_of_integer32(plan.layout.signals[axis.target])});
+  }
+  for (const LimitLine& line : plan.limits.lines) add(plan, line);
 }
 
-AxisMotionLimits::Axis AxisMotionLimits::limits_of(const BusPlan& plan, const MotionAxis& axis) {
-  const std::string& unit = plan.layout.signals[axis.target].unit;
-  Axis found{.range = range_of_integer32(plan.layout.signals[axis.target])};
-  for (const LimitLine& line : plan.limits.lines) {
+void AxisMotionLimits::add(const BusPlan& plan, const LimitLine& line) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const MotionAxis& axis = signals_[i];
     if (line.node_index != axis.node_index || line.axis != axis.number + 1 || !line.high) continue;
-    if (line.kind == LimitKind::position && line.unit == unit) {
-      found.range = {.min = std::max(found.range.min, line.low.value_or(found.range.min)),
-                     .max = std::min(found.range.max, *line.high)};
+    const Signal& target = plan.layout.signals[axis.target];
+    Axis& found = axes_[i];
+    if (line.kind == LimitKind::position && line.unit == target.unit) {
+      const motion::PositionRange widest = range_of_integer32(target);
+      found.range = {.min = std::max(widest.min, line.low.value_or(widest.min)),
+                     .max = std::min(widest.max, *line.high)};
     }
-    if (line.kind == LimitKind::following_error && line.unit == unit) {
+    if (line.kind == LimitKind::following_error && line.unit == target.unit) {
       found.following_error = line.high;
     }
-    if (!is_rate_of(line.unit, unit)) continue;
+    if (line.kind == LimitKind::step && line.unit == target.unit) {
+      found.step_velocity = velocity_of_step(*line.high, target, plan.cycle.period);
+    }
+    if (!is_rate_of(line.unit, target.unit)) continue;
     if (line.kind == LimitKind::velocity) found.velocity = line.high;
     if (line.kind == LimitKind::acceleration) found.acceleration = line.high;
     if (line.kind == LimitKind::jerk) found.jerk = line.high;
   }
-  return found;
+}
+
+/// See LimitLine::scale.
+void AxisMotionLimits::learn(const BusPlan& plan, std::size_t place, std::int64_t read) {
+  if (place >= plan.limits.lines.size()) return;
+  LimitLine line = plan.limits.lines[place];
+  if (line.source != LimitSource::device) return;
+  const auto value = [&](std::int64_t raw) {
+    return static_cast<double>(raw) * line.scale + line.offset;
+  };
+  if (line.kind == LimitKind::position) {
+    const double one = value(read >> 32);
+    const double other = value(static_cast<std::int32_t>(read & 0xFFFF'FFFF));
+    line.low = std::min(one, other);
+    line.high = std::max(one, other);
+  } else {
+    line.high = std::abs(value(read));
+  }
+  add(plan, line);
 }
 
 std::expected<double, std::string> AxisMotionLimits::following_error(
@@ -93,7 +132,8 @@ std::expected<double, std::string> AxisMotionLimits::following_error(
 std::expected<motion::Limits, std::string> AxisMotionLimits::of(std::size_t axis,
                                                                 const motion_goal_t& goal) const {
   const Axis& known = axes_[axis];
-  const auto velocity = limit(goal.max_velocity, known.velocity, "velocity");
+  const auto velocity =
+      limit(goal.max_velocity, narrower(known.velocity, known.step_velocity), "velocity");
   if (!velocity) return std::unexpected{velocity.error()};
   const auto acceleration = limit(goal.max_acceleration, known.acceleration, "acceleration");
   if (!acceleration) return std::unexpected{acceleration.error()};

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <expected>
 #include <optional>
 #include <string>
@@ -12,8 +13,8 @@
 
 namespace takt {
 
-/// The limits of the motions of each axis: those of the network file, and narrower ones of a
-/// command.
+/// The limits of the motions of each axis: those of the network file, those that the master has
+/// read from the drive in its boot, and narrower ones of a command.
 class AxisMotionLimits {
  public:
   /// Limits and targets must lie between these magnitudes, in the unit of the axis. They keep the
@@ -23,6 +24,9 @@ class AxisMotionLimits {
 
   explicit AxisMotionLimits(const BusPlan& plan);
 
+  /// The motions keep this limit from now on, which was read from a drive. `line` is a position in
+  /// LimitsPlan::lines, `value` that of its object; of a range, the lower end is in the upper half.
+  void learn(const BusPlan& plan, std::size_t line, std::int64_t value);
   /// Returns the limits of a motion, or why there are none. `axis` is a position in motion_axes().
   std::expected<motion::Limits, std::string> of(std::size_t axis, const motion_goal_t& goal) const;
   /// Returns the largest following error of a motion, or why there is none; infinite if neither the
@@ -34,13 +38,15 @@ class AxisMotionLimits {
  private:
   struct Axis {
     std::optional<double> velocity{};
+    std::optional<double> step_velocity{};  ///< of a limit of the step from cycle to cycle
     std::optional<double> acceleration{};
     std::optional<double> jerk{};
     std::optional<double> following_error{};
     motion::PositionRange range{};
   };
-  static Axis limits_of(const BusPlan& plan, const MotionAxis& axis);
+  void add(const BusPlan& plan, const LimitLine& line);
 
+  std::vector<MotionAxis> signals_;
   std::vector<Axis> axes_;
 };
 

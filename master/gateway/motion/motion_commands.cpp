@@ -121,6 +121,7 @@ std::vector<std::size_t> MotionCommands::nodes_of(const motion_command_t& comman
 
 void MotionCommands::take(const motion_command_t& command, const CommandContext& context) {
   if (!commands_.admits(header_of(command), context)) return;
+  watch();
   const auto axes = axes_of(command, context);
   if (!axes) return;
   const bool known = is_motion(command) || command.kind == "stop" || command.kind == "alive";
@@ -157,6 +158,7 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
 void MotionCommands::take(const motion_gear_t& gear, const CommandContext& context) {
   const motion_command_t command = command_of(gear);
   if (!commands_.admits(header_of(command), context)) return;
+  watch();
   const auto axes = axes_of(command, context);
   if (!axes) return;
   if (axes->empty()) return refuse(command, {.why = "it names no axis"}, context);
@@ -180,6 +182,7 @@ void MotionCommands::take(const motion_gear_t& gear, const CommandContext& conte
 void MotionCommands::take(const motion_stream_t& stream, const CommandContext& context) {
   const motion_command_t command = command_of(stream);
   if (!commands_.admits(header_of(command), context)) return;
+  watch();
   const auto axes = axes_of(command, context);
   if (!axes) return;
   if (axes->empty()) return refuse(command, {.why = "it names no axis"}, context);
@@ -289,9 +292,10 @@ void MotionCommands::take_stop(const motion_command_t& command, std::span<const 
   bool any = false;
   for (const std::size_t axis : axes) {
     if (!commands_.admits_stop(header, axes_[axis].node_index, context)) continue;
+    any = true;
+    if (sequences_[axis].is_copy(command)) continue;
     sequences_[axis].stopped(command);
     stop(axis);
-    any = true;
   }
   const auto sender = any ? senders_.number_of(command.instance, context.now) : std::nullopt;
   const auto lease = lease_of(command, context);

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -28,9 +29,13 @@ class MotionCommands {
  public:
   MotionCommands(const BusPlan& plan, Commands& commands, SubmitMotion submit, NoticeSink announce);
 
-  /// Lets the bus thread read the axes from now on: the target position of an axis that nobody has
-  /// moved follows its actual position while its drive is not enabled.
-  void watch() { watched_ = watched_ || submit_({.kind = motion::MessageKind::watch}); }
+  /// Call this in each round. Where an axis has to be homed, the bus thread reads the axes from the
+  /// begin on, because another program may home it.
+  void begin() {
+    if (std::ranges::any_of(axes_, &MotionAxis::needs_homing)) watch();
+  }
+  /// From the first message of this session on, the bus thread reads the axes: the target position
+  /// of an axis that nobody has moved follows its actual position while its drive is not enabled.
   void take(const motion_command_t& command, const CommandContext& context);
   void take(const motion_gear_t& gear, const CommandContext& context);
   void take(const motion_stream_t& stream, const CommandContext& context);
@@ -39,9 +44,13 @@ class MotionCommands {
   /// Does what waits for time and not for reports: stops that the bus thread could not take, jobs
   /// that did not begin in time, and senders that have lost a node.
   void serve(const CommandContext& context);
+  /// See AxisMotionLimits::learn().
+  void learn(std::size_t line, std::int64_t value) { limits_.learn(plan_, line, value); }
   /// Takes the end of an order.
   void take(const motion::MotionEnd& end, const CommandContext& context);
 
+  /// Returns true once the bus thread reads the axes.
+  bool watches() const noexcept { return watched_; }
   /// Returns true once a command other than a stop, or a stream, has come from a sender that may
   /// hold the nodes. No motion_t is sent before.
   bool active() const noexcept { return active_; }
@@ -80,6 +89,7 @@ class MotionCommands {
                    const CommandContext& context);
   std::optional<std::uint32_t> lease_of(const motion_command_t& command,
                                         const CommandContext& context) const;
+  void watch() { watched_ = watched_ || submit_({.kind = motion::MessageKind::watch}); }
   void stop(std::size_t axis);
   void tell_heard(const motion_command_t& command, std::span<const std::size_t> named,
                   std::uint8_t sender);

@@ -15,6 +15,13 @@ class MotionSequence {
     const bool same = stop_.instance == stop.instance;
     const std::int64_t cycle = same ? std::max(stop_.cycle, stop.cycle) : stop.cycle;
     stop_ = {.instance = stop.instance, .cycle = cycle, .utime = stop.utime};
+    newest_stop_ = {.instance = stop.instance, .cycle = stop.cycle, .utime = stop.utime};
+  }
+  /// Returns true if the stop that has come last was the same. A copy of it must not stop a motion
+  /// that has begun since.
+  bool is_copy(const motion_command_t& stop) const noexcept {
+    return newest_stop_.instance == stop.instance && newest_stop_.cycle == stop.cycle &&
+           newest_stop_.utime == stop.utime;
   }
   void moved(const motion_command_t& move) noexcept {
     move_ = {.instance = move.instance, .cycle = move.cycle, .utime = move.utime, .id = move.id};
@@ -62,7 +69,8 @@ class MotionSequence {
     std::int64_t utime = 0;
     std::int32_t id = 0;
   };
-  Message stop_;
+  Message stop_;         ///< its cycle is the latest one of all stops of its sender
+  Message newest_stop_;  ///< the one that has come last
   Message move_;
   Message stream_;  ///< without its cycle and time
 };

@@ -60,11 +60,13 @@ bool MotionStreams::has_axes(std::int64_t instance, std::int32_t id,
   return stream != nullptr && std::ranges::equal(stream->goals, axes, {}, &motion::AxisGoal::axis);
 }
 
-/// An order begins exactly in its cycle, or never.
+/// An order begins exactly in its cycle, or never. A stream is delayed where beats are missing.
 void MotionStreams::observe(const MotionSnapshot& snapshot) {
-  std::erase_if(streams_, [&](const Stream& stream) {
-    const std::uint32_t running = snapshot.axes[stream.goals.front().axis].running;
-    return snapshot.cycle >= stream.begin && running != stream.order;
+  std::erase_if(streams_, [&](Stream& stream) {
+    const motion::AxisReport& axis = snapshot.axes[stream.goals.front().axis];
+    const bool runs = axis.running == stream.order;
+    if (runs) stream.begin = axis.began;
+    return snapshot.cycle >= stream.begin && !runs;
   });
 }
 

@@ -57,7 +57,7 @@ class MotionStreams {
     std::int32_t id = 0;
     std::int64_t instance = 0;
     std::uint32_t order = 0;
-    std::uint64_t begin = 0;                  ///< cycle
+    std::uint64_t begin = 0;                  ///< cycle, see AxisReport::began
     double first_time = 0.0;                  ///< time of its first point in its messages, in s
     std::vector<motion::AxisGoal> goals{};    ///< its axes and their limits
     std::vector<motion::StreamPoint> last{};  ///< newest point of each of them

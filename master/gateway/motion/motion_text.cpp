@@ -112,6 +112,8 @@ std::string_view text(motion::StopCause cause) noexcept {
       break;
     case sender_silent:
       return "its sender was silent for longer than the timeout";
+    case sender_left:
+      return "its sender does not hold the node any longer";
     case disabled:
       return "the drive has left Operation enabled";
     case fault:

@@ -125,21 +125,27 @@ void AxisMotions::follow(std::size_t axis, CycleNumber cycle,
   if (cause != StopCause::none) add_stop(axis, cause);
 }
 
-/// All axes of a stream end in the same cycle. If one axis has ended while another goes on, the
-/// next points have reached them in different cycles, too late for the first. The group stops in
-/// the next cycle.
+/// All axes of a stream have the same last point. If one axis has ended while another has more
+/// points, these have come too late for the first one. The group stops in the next cycle.
 void AxisMotions::stop_split_streams() noexcept {
   const auto is_done = [](const AxisRunner& runner) { return runner.has_done_stream(); };
   if (std::ranges::none_of(runners_, is_done)) return;
-  std::array<std::uint32_t, max_axes> moving{};  // the stream of each group
+  struct Moving {
+    std::uint32_t stream = 0;
+    double until = 0.0;
+  };
+  std::array<Moving, max_axes> moving{};  // of each group
   for (const AxisRunner& runner : runners_) {
-    if (runner.is_streaming()) moving[runner.group()] = runner.newest();
+    Moving& other = moving[runner.group()];
+    const bool is_first = other.stream != runner.newest();
+    if (!runner.is_streaming() || (!is_first && other.until > runner.end_of_points())) continue;
+    other = {.stream = runner.newest(), .until = runner.end_of_points()};
   }
   for (std::size_t i = 0; i < runners_.size(); ++i) {
     const AxisRunner& runner = runners_[i];
-    if (is_done(runner) && moving[runner.group()] == runner.newest()) {
-      add_stop(i, StopCause::points_ended);
-    }
+    const Moving& other = moving[runner.group()];
+    const bool has_less = is_done(runner) && other.until > runner.end_of_points();
+    if (has_less && other.stream == runner.newest()) add_stop(i, StopCause::points_ended);
   }
 }
 

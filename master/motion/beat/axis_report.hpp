@@ -37,6 +37,8 @@ struct AxisInput {
   /// commanded position of the last report.
   std::optional<double> set_point;
   LeaderSample leader{};  ///< of the gear of the axis, if its leader is measured
+  /// The set-point of the last beat was due on the bus, and was not sent.
+  bool is_unsent = false;
 };
 
 enum class AxisState : std::uint8_t { unpowered, standing, moving, stopping };
@@ -45,6 +47,7 @@ enum class AxisState : std::uint8_t { unpowered, standing, moving, stopping };
 enum class StopCause : std::uint8_t {
   none,
   sender_silent,    ///< longer than the timeout of the motion
+  sender_left,      ///< it may not command the axis any longer, for example after its release
   disabled,         ///< an axis left Operation enabled
   fault,            ///< of an axis
   node_lost,        ///< of an axis
@@ -129,6 +132,7 @@ struct AxisReport {
   double following_error = 0.0;  ///< last commanded position minus actual position
   std::uint32_t running = 0;     ///< id of the motion of this cycle, 0 for none
   CycleNumber cycles_left = 0;   ///< until the end of the profile that runs
+  CycleNumber began = 0;         ///< first cycle of the motion, as if no beat had been missed since
   /// The sender of the newest motion is alive, or the axis moves: the drive has to stay enabled.
   bool kept_alive = false;
   GearPhase gear = GearPhase::none;  ///< of the gear that the axis follows
@@ -139,8 +143,8 @@ struct AxisReport {
   /// Not the orders that have ended: they are told in the cycle in which they end.
   template <class Archive>
   void keep(Archive& archive) noexcept {
-    archive(state, homing, commanded, actual, following_error, running, cycles_left, kept_alive,
-            gear, phase_error, stop);
+    archive(state, homing, commanded, actual, following_error, running, cycles_left, began,
+            kept_alive, gear, phase_error, stop);
   }
 };
 

@@ -104,7 +104,7 @@ void AxisRunner::begin(CycleNumber cycle) noexcept {
     range_ = widened(order.gear.range, report_.commanded.position);
   }
   player_ = ProfilePlayer{order.profile, order.from, order.ending};
-  began_ = cycle;
+  report_.began = cycle;
   stop_limits_ = order.stop;
   timeout_ = order.timeout;
   latest_stop_ = order.latest_stop;
@@ -123,8 +123,18 @@ void AxisRunner::refuse(Outcome why) noexcept {
   waiting_.reset();
 }
 
+/// The way of a motion from one set-point to the next is never longer than that of one period:
+/// where a beat is missing, the motion is delayed by a period.
+void AxisRunner::wait_for_drive(CycleNumber cycle, bool is_unsent) noexcept {
+  const bool runs = report_.state == AxisState::moving || report_.state == AxisState::stopping;
+  is_unsent_ = is_unsent;
+  if (runs) report_.began += cycle - last_run_ - (is_unsent ? 0U : 1U);
+  last_run_ = cycle - 1;
+}
+
 StopCause AxisRunner::observe(CycleNumber cycle, const AxisInput& input,
                               const Silence& silence) noexcept {
+  wait_for_drive(cycle, input.is_unsent);
   const bool followed = std::exchange(follows_, input.condition == AxisCondition::enabled);
   report_.homing = input.homing;
   report_.actual = input.actual;
@@ -158,11 +168,12 @@ StopCause AxisRunner::observe(CycleNumber cycle, const AxisInput& input,
 StopCause AxisRunner::cause_of_motion(CycleNumber cycle, const Silence& silence) const noexcept {
   if (std::abs(report_.following_error) > max_following_error_) return StopCause::following_error;
   const bool is_jog = source_ == Source::profile && player_.ending() == Ending::cruise;
+  if (sender_ == no_sender) return StopCause::sender_left;
   if ((is_jog ? silence.jog : silence.sender) > timeout_) return StopCause::sender_silent;
   if (source_ == Source::points && time_at(cycle) > stream_.last().time && !points_end_at_rest()) {
     return StopCause::points_ended;
   }
-  if (cycle - began_ > latest_stop_) return StopCause::end_of_range;
+  if (cycle - report_.began > latest_stop_) return StopCause::end_of_range;
   return StopCause::none;
 }
 
@@ -174,7 +185,7 @@ void AxisRunner::stop(const Stop& stop) noexcept {
   report_.state = AxisState::stopping;
   source_ = Source::profile;
   player_ = {stop_profile(report_.commanded, stop_limits_), report_.commanded, Ending::rest};
-  began_ = last_run_;
+  report_.began = last_run_ + (is_unsent_ ? 1U : 0U);
 }
 
 void AxisRunner::abandon(const Stop& stop) noexcept {

@@ -108,6 +108,8 @@ class AxisRunner {
     const auto is_done = [](const EndedOrder& order) { return order.outcome == Outcome::done; };
     return source_ == Source::points && std::ranges::any_of(report_.ended.orders(), is_done);
   }
+  /// Time of the last point of the stream, in s.
+  double end_of_points() const noexcept { return stream_.last().time; }
   /// Number of points that wait in the stream.
   std::size_t points() const noexcept { return stream_.size(); }
   /// The sender of the newest motion, or `no_sender`.
@@ -123,8 +125,8 @@ class AxisRunner {
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(report_, source_, player_, stream_, gear_, geared_, range_.min, range_.max, named_,
-          began_, stop_limits_, timeout_, latest_stop_, max_following_error_, waiting_, newest_,
-          last_run_, has_taken_, follows_);
+          stop_limits_, timeout_, latest_stop_, max_following_error_, waiting_, newest_, last_run_,
+          has_taken_, follows_, is_unsent_);
     state.position(group_, max_axes);
     state.position(sender_, max_axes + 1);
   }
@@ -138,9 +140,10 @@ class AxisRunner {
     return ending == Ending::gear ? Source::gear : Source::profile;
   }
 
+  void wait_for_drive(CycleNumber cycle, bool is_unsent) noexcept;
   State commanded_at(CycleNumber cycle) noexcept;
   double time_at(CycleNumber cycle) const noexcept {
-    return static_cast<double>(cycle - began_) * period_;
+    return static_cast<double>(cycle - report_.began) * period_;
   }
   bool points_end_at_rest() const noexcept;
   bool can_stop_from(const State& state) const noexcept;
@@ -156,12 +159,11 @@ class AxisRunner {
   AxisReport report_;
   Source source_ = Source::profile;
   ProfilePlayer player_;
-  StreamPlayer stream_;  ///< of the motion that runs, or of an order that waits
-  GearPlayer gear_;      ///< of the motion that runs
-  State geared_;         ///< the state of this cycle, while the axis follows a gear
-  PositionRange range_;  ///< of the gear
-  LifeSign named_;       ///< the newest message that has named the axis
-  CycleNumber began_ = 0;
+  StreamPlayer stream_;       ///< of the motion that runs, or of an order that waits
+  GearPlayer gear_;           ///< of the motion that runs
+  State geared_;              ///< the state of this cycle, while the axis follows a gear
+  PositionRange range_;       ///< of the gear
+  LifeSign named_;            ///< the newest message that has named the axis
   CycleNumber last_run_ = 0;  ///< the cycle of the commanded state
   Limits stop_limits_;
   CycleNumber timeout_ = 0;
@@ -171,6 +173,7 @@ class AxisRunner {
   std::uint32_t newest_ = 0;
   bool has_taken_ = false;  ///< an order since the last run()
   bool follows_ = false;    ///< the drive follows set-points in this cycle
+  bool is_unsent_ = false;  ///< the set-point of the beat before was not sent
   std::uint8_t group_;
   std::uint8_t sender_ = 0;
 };

@@ -11,9 +11,10 @@ namespace {
 
 std::uint32_t id_of(const TaggedOrder& sent) noexcept { return sent.order.id; }
 
-State state_of(const MotionOrder& order, CycleNumber cycle, double period) {
+/// `time` is that since the begin of the motion.
+State state_of(const MotionOrder& order, double time) {
   ProfilePlayer player{order.profile, order.from, order.ending};
-  return player.at(static_cast<double>(cycle - order.begin) * period);
+  return player.at(time);
 }
 
 /// Returns true if the first point of a stream is where the axis stands.
@@ -86,7 +87,7 @@ std::expected<State, PlanFault> MotionPlanner::state_at(const Axis& axis, CycleN
   if (running->order.ending == Ending::gear) {
     return released_at(axis.report, running->order.stop, cycle);
   }
-  return state_of(running->order, cycle, period_);
+  return state_of(running->order, static_cast<double>(cycle - axis.report.began) * period_);
 }
 
 /// The state of an axis whose gear is released. An axis whose gear is not released yet counts as if

@@ -73,6 +73,8 @@ class Beat {
   bool next_sync_came() const noexcept { return follower_.arrived(); }
   /// SYNC began this cycle.
   bool began_by_sync() const noexcept { return began_ == Began::by_sync; }
+  /// This cycle has a SYNC: that which began it, or one that this thread has found too late.
+  bool has_sync() const noexcept { return began_ != Began::by_clock; }
   bool sync_lost() const noexcept { return follower_.lost(); }
 
   SyncState sync_state() const noexcept;
@@ -96,7 +98,11 @@ class Beat {
     open,
     held,  ///< earlier frames may still be in the interface, so this cycle sends nothing
   };
-  enum class Began : std::uint8_t { by_clock, by_sync };
+  enum class Began : std::uint8_t {
+    by_clock,
+    by_sync,
+    after_sync,  ///< by the clock, because its SYNC was too old when this thread has found it
+  };
 
   template <Port P>
   void await_deadline(P& port) noexcept;
@@ -164,6 +170,7 @@ template <Port P, class Drain>
 void Beat::await_sync(P& port, std::span<const NodeStatus> nodes, Drain drain) noexcept {
   const bool was_locked = follower_.locked();
   const Time until = follower_.end_of_wait(clock_.deadline());
+  Began without = Began::by_clock;
   for (bool more = follower_.arrived() || port.wait_frame(until); more;) {
     drain();
     if (!follower_.arrived()) {
@@ -172,9 +179,10 @@ void Beat::await_sync(P& port, std::span<const NodeStatus> nodes, Drain drain) n
       break;
     } else {
       follower_.take();  // The SYNC is too old to begin a cycle; a newer one may be behind it.
+      without = Began::after_sync;
     }
   }
-  began_ = follower_.arrived() ? Began::by_sync : Began::by_clock;
+  began_ = follower_.arrived() ? Began::by_sync : without;
   const std::uint64_t missed = began_ == Began::by_sync
                                    ? begin_by_sync(was_locked)
                                    : begin_without_sync(port.now(), nodes, was_locked);

@@ -15,6 +15,9 @@ using motion::AxisState;
 
 constexpr std::int64_t halt = 0x100;  // of the controlword, CiA 402-2, 0x6040
 
+/// CiA 402-2, 0x6041 in cyclic synchronous position mode: the drive follows the target position.
+constexpr std::int64_t follows_command = 0x1000;
+
 /// CiA 402-2, 0x6041.
 AxisCondition condition_of(std::int64_t statusword) noexcept {
   if ((statusword & 0x6F) == 0x27) return AxisCondition::enabled;
@@ -79,7 +82,7 @@ AxisCondition DrivenAxis::condition(PdoExchange& pdos, bool exchanging) noexcept
   const WorkingImage& image = pdos.image();
   const RpdoStatus rpdo = pdos.outputs().status(row_);
   count_unsent(rpdo, image.values[axis_.target]);
-  ignores_target_ = false;
+  ignores_target_ = obeys_halt_ = false;
   if (!exchanging) return AxisCondition::lost;
   if (image.is_stale(axis_.statusword)) return without_statusword();
   silent_beats_ = 0;
@@ -91,7 +94,10 @@ AxisCondition DrivenAxis::condition(PdoExchange& pdos, bool exchanging) noexcept
   if (found != AxisCondition::enabled) return found;
   if (!in_mode || !rpdo.ready) return AxisCondition::disabled;
   if (unsent_beats_ > longest_wait_) return AxisCondition::unsent;
+  const bool follows_it = (image.values[axis_.statusword] & follows_command) != 0;
+  tells_following_ |= follows_it;
   const bool halted = axis_.controlword && (image.values[*axis_.controlword] & halt) != 0;
+  obeys_halt_ = halted && tells_following_ && !follows_it;
   return halted ? AxisCondition::halted : found;
 }
 
@@ -131,7 +137,8 @@ motion::AxisInput DrivenAxis::read(PdoExchange& pdos, bool exchanging,
   motion::AxisInput input{.condition = condition_,
                           .homing = homing(pdos, exchanging),
                           .actual = last.actual,
-                          .set_point = {}};
+                          .set_point = {},
+                          .is_unsent = unsent_beats_ >= longest_wait_};
   input.actual.position = image.is_stale(axis_.position)
                               ? last.commanded.position - last.following_error
                               : position_.number(image.values[axis_.position]);
@@ -143,6 +150,8 @@ motion::AxisInput DrivenAxis::read(PdoExchange& pdos, bool exchanging,
   if ((starts || !by_motion) && pdos.outputs().known(axis_.target)) {
     input.set_point = target_.number(target);
   }
+  follows_actual_ = obeys_halt_ && by_motion && last.state == AxisState::standing;
+  if (follows_actual_) input.set_point = input.actual.position;
   return input;
 }
 
@@ -154,7 +163,10 @@ bool DrivenAxis::write(PdoOutputs& outputs, const motion::AxisReport& report,
   const bool ends = report.state == AxisState::standing && writer_ == Writer::in_motion;
   if (ends) return end_motion(outputs, report.commanded, moment);
   stop_leading(outputs);
-  if (report.state == AxisState::standing) return true;
+  if (report.state == AxisState::standing) {
+    if (follows_actual_) follow_actual(outputs, report, moment);
+    return true;
+  }
   const auto raw = target_.raw(report.actual.position);
   const bool by_others =
       writer_ == Writer::others && !outputs.is_seeded(axis_.target) && !in_homing_mode_;
@@ -194,6 +206,13 @@ bool DrivenAxis::end_motion(PdoOutputs& outputs, const motion::State& state,
   }
   writer_ = Writer::motion;
   return true;
+}
+
+/// A drive that obeys a Halt has stopped elsewhere. When the Halt ends, it must not move back.
+void DrivenAxis::follow_actual(PdoOutputs& outputs, const motion::AxisReport& report,
+                               OutputMoment moment) noexcept {
+  const auto raw = target_.raw(report.commanded.position);
+  if (raw && outputs.settle(axis_.target, *raw, moment)) written_ = *raw;
 }
 
 void DrivenAxis::clear_velocity(PdoOutputs& outputs) const noexcept {

@@ -25,7 +25,8 @@ class DrivenAxis {
   /// drive says that it does not follow its target position, this one follows the actual position
   /// if a motion has commanded it last, or if nobody has, so that the drive does not jump when it
   /// is enabled. In homing mode it does so whoever has commanded it: the coordinates of the drive
-  /// change. Returns false if a set-point was not taken, see PdoOutputs::lead().
+  /// change. The same holds where a drive obeys a Halt, as bit 12 of its statusword tells. Returns
+  /// false if a set-point was not taken, see PdoOutputs::lead().
   bool write(PdoOutputs& outputs, const motion::AxisReport& report, OutputMoment moment) noexcept;
   /// Returns true if no set-point is taken at present, because the master stops the axis itself.
   bool is_overruled(const PdoOutputs& outputs) const noexcept {
@@ -39,7 +40,8 @@ class DrivenAxis {
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(condition_, silent_beats_, unsent_beats_, frames_, sent_target_, ignores_target_,
-          in_homing_mode_, written_, writer_, homing_);
+          in_homing_mode_, tells_following_, obeys_halt_, follows_actual_, written_, writer_,
+          homing_);
   }
 
  private:
@@ -72,6 +74,8 @@ class DrivenAxis {
   bool lead(PdoOutputs& outputs, const motion::State& state, OutputMoment moment) noexcept;
   bool end_motion(PdoOutputs& outputs, const motion::State& state, OutputMoment moment) noexcept;
   void stop_leading(PdoOutputs& outputs) noexcept;
+  void follow_actual(PdoOutputs& outputs, const motion::AxisReport& report,
+                     OutputMoment moment) noexcept;
   void clear_velocity(PdoOutputs& outputs) const noexcept;
 
   MotionAxis axis_;
@@ -89,7 +93,10 @@ class DrivenAxis {
   std::uint8_t silent_beats_ = 0;
   bool ignores_target_ = false;  ///< the statusword of this beat says so
   bool in_homing_mode_ = false;
-  std::int64_t written_ = 0;  ///< target position that a motion has written last
+  bool tells_following_ = false;  ///< bit 12 of the statusword was set: the drive uses it
+  bool obeys_halt_ = false;       ///< in this beat
+  bool follows_actual_ = false;   ///< the target position follows the actual one in this beat
+  std::int64_t written_ = 0;      ///< target position that a motion has written last
   Writer writer_ = Writer::others;
   motion::HomingWatch homing_;
 };

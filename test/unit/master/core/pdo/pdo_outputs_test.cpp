@@ -180,6 +180,22 @@ TEST(PdoOutputs, ReleasedOutputsTakeTheirFallbackWithoutAWarning) {
   EXPECT_TRUE(out.reported().empty());
 }
 
+/// The axis moves for nobody any more, and has to come to rest before it is disabled.
+TEST(PdoOutputs, AReleaseWaitsUntilTheMotionOfItsNodeHasEnded) {
+  OutputsRig out{one_axis()};
+  out.command(controlword, 0x000F);
+  out.command(target, 5);
+  out.pack();
+  for (const std::int64_t position : {6, 7, 8}) {
+    out.command(controlword, 0, output_released);
+    out.command(target, 0, output_released);
+    ASSERT_TRUE(out.pdos.outputs().lead(3, position, {.cycle = 1}));
+    EXPECT_EQ(out.pack().at(0).data[0], 0x0F);
+  }
+  out.pdos.outputs().release_lead(3);
+  EXPECT_EQ(out.pack().at(0), make_frame(CobId::base(0x201), {0x02, 0, 8, 0, 0, 0}));
+}
+
 TEST(PdoOutputs, CommandWithoutTimeToLiveNeverGrowsOld) {
   BusPlan plan = one_axis();
   for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;

@@ -53,7 +53,48 @@ TEST(MotionStops, AMotionStopsWhenItsSenderMayNotCommandTheAxisAnyLonger) {
   plant.motions.sender_left(0, 0);
   plant.step();
   EXPECT_EQ(plant.last[0].state, AxisState::stopping);
-  EXPECT_EQ(plant.last[0].stop.cause, StopCause::sender_silent);
+  EXPECT_EQ(plant.last[0].stop.cause, StopCause::sender_left);
+}
+
+/// The plant judges each step as one of a single period.
+TEST(MotionStops, WhereBeatsAreMissingTheMotionAndItsStopAreDelayedByTheirPeriods) {
+  Plant plant{1};
+  plant.step();
+  ASSERT_TRUE(plant.take(plant.order(0, {.position = 5.0}, 1)));
+  plant.steps(300);
+  const CycleNumber left = plant.last[0].cycles_left;
+  ++plant.cycle;
+  plant.step();
+  EXPECT_EQ(plant.last[0].cycles_left, left - 1);
+  plant.cycle += 2;
+  plant.motions.stop_axis(0, StopCause::application);
+  plant.step();
+  ASSERT_EQ(plant.last[0].state, AxisState::stopping);
+  ++plant.cycle;
+  plant.steps(1000);
+  EXPECT_EQ(plant.last[0].state, AxisState::standing);
+}
+
+/// The next set-point would be twice as far from the last one that the drive has received.
+TEST(MotionStops, AMotionWaitsForASetPointThatWasNotSent) {
+  Plant plant{2};
+  plant.step();
+  ASSERT_TRUE(plant.take(plant.order(0, {.position = 5.0}, 1)));
+  plant.steps(300);
+  const State before = plant.last[0].commanded;
+  const CycleNumber left = plant.last[0].cycles_left;
+  plant.inputs[0].is_unsent = true;
+  plant.inputs[0].set_point = before.position;  // so that the plant does not judge the step
+  plant.step();
+  EXPECT_EQ(plant.last[0].commanded.position, before.position);
+  EXPECT_EQ(plant.last[0].cycles_left, left);
+  plant.motions.stop_axis(0, StopCause::application);
+  plant.step();
+  EXPECT_EQ(plant.last[0].commanded.position, before.position) << "its stop waits as well";
+  plant.inputs[0].is_unsent = false;
+  plant.inputs[0].set_point.reset();
+  plant.steps(1000);
+  EXPECT_EQ(plant.last[0].state, AxisState::standing);
 }
 
 /// A motion that went on would reach the drive as one step.

@@ -129,5 +129,20 @@ TEST_F(FollowedBeat, PassesOverASyncThatIsTooOldToBeginACycle) {
   EXPECT_EQ(parts.beat.sync_at(), 10'004ms);
 }
 
+/// The drives have acted on this SYNC, so the motions must go on.
+TEST_F(FollowedBeat, ACycleWhoseSyncIsTooOldWhenItIsFoundHasASync) {
+  parts.arrive(10'002ms, sync);
+  parts.await();
+  parts.beat.next();
+  parts.arrive(10'004ms, sync);
+  parts.port.sleep_until(10'005'500us);
+  parts.await();
+  EXPECT_FALSE(parts.beat.began_by_sync());
+  EXPECT_TRUE(parts.beat.has_sync());
+  parts.beat.next();
+  parts.await();
+  EXPECT_FALSE(parts.beat.has_sync());
+}
+
 }  // namespace
 }  // namespace takt

@@ -153,6 +153,32 @@ TEST(DrivenAxis, AHaltIsNoLossOfOperationEnabled) {
   EXPECT_EQ(bench.condition(), AxisCondition::fault);
 }
 
+/// Bit 12 of the statusword is 1 while the drive follows its target position.
+TEST(DrivenAxis, TheTargetFollowsTheActualPositionWhileADriveObeysAHalt) {
+  Bench bench;
+  const auto beat = [&](std::uint16_t statusword, std::int32_t position, AxisState state) {
+    bench.hear(statusword, position);
+    const motion::AxisInput input = bench.axis.read(bench.pdos, true, bench.last);
+    if (input.set_point) bench.last.commanded.position = *input.set_point;
+    EXPECT_TRUE(bench.write(state, bench.last.commanded));
+    bench.pack();
+  };
+  bench.last.commanded.position = 1.0;
+  beat(0x1027, 100, AxisState::moving);
+  bench.command(0, 0x010F);
+  beat(0x1027, 100, AxisState::standing);
+  beat(0x1027, 90, AxisState::standing);
+  EXPECT_EQ(bench.target(), 100) << "it follows its target in spite of the Halt";
+  beat(0x0027, 80, AxisState::standing);
+  EXPECT_EQ(bench.target(), 80);
+  beat(0x0027, 75, AxisState::standing);
+  EXPECT_EQ(bench.target(), 75);
+  bench.command(0, 0x000F);
+  beat(0x0027, 75, AxisState::standing);
+  beat(0x1027, 74, AxisState::standing);
+  EXPECT_EQ(bench.target(), 75);
+}
+
 /// A drive that nobody hears may still follow its target position.
 TEST(DrivenAxis, TheTargetFollowsTheActualPositionOnlyWhileTheStatuswordSaysThatItHasNoEffect) {
   Bench bench;
@@ -363,6 +389,21 @@ TEST(DrivenAxis, ATargetThatDoesNotChangeNeedsNoFrame) {
     EXPECT_EQ(bench.condition(), AxisCondition::enabled) << beat;
     ASSERT_TRUE(bench.write(AxisState::moving, {.position = 1.2}));
   }
+}
+
+TEST(DrivenAxis, ASetPointThatWasDueAndNotSentIsTold) {
+  Bench bench;
+  const auto is_unsent = [&](double position, bool sends) {
+    bench.hear(0x0027, 0);
+    const bool found = bench.axis.read(bench.pdos, true, bench.last).is_unsent;
+    EXPECT_TRUE(bench.write(AxisState::moving, {.position = position}));
+    bench.pack(sends);
+    return found;
+  };
+  EXPECT_FALSE(is_unsent(0.1, true));
+  EXPECT_FALSE(is_unsent(0.2, false));
+  EXPECT_TRUE(is_unsent(0.2, true));
+  EXPECT_FALSE(is_unsent(0.3, true));
 }
 
 TEST(DrivenAxis, OneSetPointMayWaitForItsFrameButNotTwo) {
