@@ -35,6 +35,7 @@ class JudgedMotions : public testing::Test {
   void run(Time span, const std::function<void()>& programs = {}) {
     for (const Time end = now + span; now < end; now += 2ms) {
       judge.begin_cycle(now);
+      judge.heard(make_frame(network.plan.cycle.sync_cob_id, {}));
       if (programs) programs();
       for (std::size_t axis = 0; axis < 2; ++axis) send(axis);
     }
@@ -171,6 +172,57 @@ TEST_F(JudgedMotions, BeginWithoutAJump) {
   run(100ms, [&] { alive(); });
 
   EXPECT_EQ(broken(), "a motion keeps its limits");
+}
+
+TEST_F(JudgedMotions, EndAlongTheirLimits) {
+  command({{"shoulder", 20'000}});
+  lead(0, 20'000, now + 6ms);
+  run(500ms, [&] { alive(); });
+  ASSERT_EQ(broken(), "");
+  path[0] = [at = path[0](now)](Time) { return at; };
+
+  run(100ms, [&] { alive(); });
+
+  EXPECT_EQ(broken(), "a motion keeps its limits");
+}
+
+/// The drive gets one set-point twice, and then one that is two periods away.
+TEST_F(JudgedMotions, MoveByTheWayOfOnePeriodFromSyncToSync) {
+  command({{"shoulder", 20'000}});
+  lead(0, 20'000, now + 6ms);
+  run(500ms, [&] { alive(); });
+  ASSERT_EQ(broken(), "");
+  now += 2ms;
+  judge.begin_cycle(now);
+  now += 2ms;
+
+  run(2ms, [&] { alive(); });
+
+  EXPECT_EQ(broken(), "a motion keeps its limits");
+}
+
+/// A program that is alive does not hold the button of a jog.
+TEST_F(JudgedMotions, OfAJogEndIfItsAxisIsNotNamed) {
+  motion_command_t jog = message("jog");
+  motion_goal_t goal{};
+  goal.node = "shoulder";
+  goal.velocity = goal.max_velocity = limits.max_velocity * scale;
+  goal.max_acceleration = limits.max_acceleration * scale;
+  goal.max_jerk = limits.jerk * scale;
+  jog.goals.push_back(goal);
+  judge.commanded({jog, program, now - 2ms}, now);
+  lead(0, 50'000, now + 6ms);
+  run(300ms, [&] {
+    motion_command_t named = message("alive");
+    named.goals.push_back(goal);
+    judge.commanded({named, program, now - 2ms}, now);
+  });
+
+  run(350ms, [&] { alive(); });
+  EXPECT_EQ(broken(), "");
+  run(350ms, [&] { alive(); });
+
+  EXPECT_EQ(broken(), "an axis moves only while its sender commands it");
 }
 
 /// The second axis begins one cycle later.

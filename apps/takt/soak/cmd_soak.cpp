@@ -139,10 +139,16 @@ void add_soak(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command.add_option("--candump", arguments.plan.run.candump,
                      "write all frames of one seed (front thread part: FILE.front)");
+  arguments.plan.run.motions = soak::MotionRuns::all;
   command.add_flag_callback(
-      "--motions", [plan = &arguments.plan] { plan->run.motions = soak::MotionRuns::all; },
-      "let the programs command motions with each seed; the default is every fifth, and only if "
-      "the master sends SYNC");
+      "--few-motions", [plan = &arguments.plan] { plan->run.motions = soak::MotionRuns::some; },
+      "let the programs command motions with every fifth seed only, and set-points with the "
+      "others");
+  command
+      .add_flag_callback(
+          "--motions", [plan = &arguments.plan] { plan->run.motions = soak::MotionRuns::all; },
+          "the default: the programs command motions with each seed")
+      ->group("");
   command.add_flag("--verbose", arguments.plan.run.verbose, "print faults and events of one seed");
   command.footer(
       "The bus part has lost, late, doubled and broken frames, babbling nodes, arbitrary frames,\n"
@@ -153,14 +159,12 @@ void add_soak(CLI::App& app, int& exit_code) {
       "answered once, memory use stays flat, all nodes come back, the stop ends in time.\n"
       "The front thread part runs taktd with its LCM gateway and several programs that move\n"
       "axes. The programs are stalled, die, end, restart, jump, or have the name of another\n"
-      "program; messages are slow, repeated, forged and damaged. With every fifth seed (with\n"
-      "--motions: each), the programs also command motions. takt checks: no output is older than "
-      "its\n"
-      "time to live by the true clock, no axis moves without a command of a living program, "
-      "motions\n"
-      "keep their limits, groups begin together, no program moves what another one holds, no\n"
-      "output leaves `limits:`, no wait of the front thread is too long, every program receives\n"
-      "its messages, no stop confirms more than the drives did.\n"
+      "program; messages are slow, repeated, forged and damaged. The programs command motions and\n"
+      "set-points by turns. takt checks: no output is older than its time to live by the true\n"
+      "clock, no axis moves without a command of a living program, motions keep their limits and\n"
+      "end along them, groups begin together, no program moves what another one holds, no output\n"
+      "leaves `limits:`, no wait of the front thread is too long, every program receives its\n"
+      "messages, no stop confirms more than the drives did.\n"
       "Exit code 1: an invariant was violated; each line names seed, cycle and invariant.\n\n"
       "Example:\n"
       "  takt soak share/demo/two_axes.yaml --hours 24 --jobs 2\n"

@@ -31,11 +31,9 @@ constexpr std::size_t most_applications = 3;
 constexpr std::array<Time, 3> front_latenesses{0us, 60us, 300us};
 constexpr Time longest_still = 5s;  // between two motions of a program that is alive
 
-/// Returns how the programs of this run command their axes. Motions on a bus whose SYNC comes from
-/// a device are not clean yet, see test/soak/found.md.
-Commanding commanding_of(const BusPlan& plan, const SoakOptions& options) {
-  const bool some = options.seed % 5 == 4 && !plan.cycle.sync_followed;
-  const bool by_turns = options.motions == MotionRuns::all || some;
+/// Returns how the programs of this run command their axes.
+Commanding commanding_of(const SoakOptions& options) {
+  const bool by_turns = options.motions == MotionRuns::all || options.seed % 5 == 4;
   return by_turns ? Commanding::by_turns : Commanding::set_points;
 }
 
@@ -47,14 +45,14 @@ std::vector<bool> every(std::size_t nodes, std::size_t first, std::size_t step) 
 }
 
 /// Motions need some time without faults until they end.
-int slowness_of(const BusPlan& plan, const SoakOptions& options) {
-  return commanding_of(plan, options) == Commanding::set_points ? 1 : 4;
+int slowness_of(const SoakOptions& options) {
+  return commanding_of(options) == Commanding::set_points ? 1 : 4;
 }
 
 /// Returns the number of programs. In two thirds of the runs with motions, it is one, which moves
 /// all axes as a group.
 std::size_t applications_of(const BusPlan& plan, const SoakOptions& options) {
-  const bool alone = commanding_of(plan, options) == Commanding::by_turns && options.seed % 3 != 0;
+  const bool alone = commanding_of(options) == Commanding::by_turns && options.seed % 3 != 0;
   return alone ? 1 : std::min(most_applications, plan.nodes.size());
 }
 
@@ -62,7 +60,7 @@ std::size_t applications_of(const BusPlan& plan, const SoakOptions& options) {
 sim::Faults front_faults(const BusPlan& plan, const SoakOptions& options) {
   if (options.seed % 2 != 0) return {};
   return fault_walk(plan, sim::Random{options.seed}.fork(11), front_calm,
-                    front_calm + options.duration, slowness_of(plan, options));
+                    front_calm + options.duration, slowness_of(options));
 }
 
 sim::RemotePortOptions port_options(const BusPlan& plan, const SoakOptions& options) {
@@ -110,7 +108,7 @@ class FrontWalk {
                         random_.fork(4),
                         {.from = front_calm,
                          .until = front_calm + options.duration,
-                         .mean_pause = slowness_of(plan_, options) * Time{400ms}},
+                         .mean_pause = slowness_of(options) * Time{400ms}},
                         options.verbose} {
     world_.observe(&listener_);
     daemon_.hear({.image = [this](const ImageView& image, Time now) { judge_wait(image, now); },
@@ -162,7 +160,7 @@ class FrontWalk {
     ApplicationOptions options{.name = std::move(name),
                                .number = number,
                                .nodes = std::move(nodes),
-                               .commanding = commanding_of(plan_, options_)};
+                               .commanding = commanding_of(options_)};
     options.commanded = [this, number](const command_t& command, Time computed_from) {
       judge_command(command, {.sender = SenderBit{1} << number, .computed_from = computed_from});
     };
@@ -254,8 +252,7 @@ class FrontWalk {
   void settle() {
     const Time limit = world_.now() + front_recovery;
     const auto leads = [&](const auto& application) {
-      const Time still =
-          commanding_of(plan_, options_) == Commanding::set_points ? 100ms : longest_still;
+      const Time still = commanding_of(options_) == Commanding::set_points ? 100ms : longest_still;
       return world_.now() - wire_.last_move(SenderBit{1} << application->number()) < still ||
              !has_axes(*application);
     };
@@ -276,6 +273,7 @@ class FrontWalk {
   /// Stops in order while the programs run on.
   void stop() {
     stop_.begin();
+    wire_.begin_stop();
     daemon_.request_stop();
     const Time limit = world_.now() + plan_.stop_timeout + plan_.cycle.period;
     while (!daemon_.finished() && world_.now() <= limit && verdict_.good()) {

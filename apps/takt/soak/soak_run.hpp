@@ -19,7 +19,7 @@ namespace takt::soak {
 
 /// In which runs of the front thread the programs also command motions.
 enum class MotionRuns : std::uint8_t {
-  some,  ///< those whose seed has the remainder 4 when it is divided by 5, if the master sends SYNC
+  some,  ///< those whose seed has the remainder 4 when it is divided by 5
   all,
 };
 

@@ -19,6 +19,8 @@ constexpr unsigned cycles_after_late = 3;  // in which a late frame may be follo
 constexpr Time short_rest = 150ms;         // a motion that ends has ended by then
 constexpr Time long_rest = 100ms;          // no motion runs
 
+constexpr std::uint64_t cyclic_synchronous_position = 8;  // 6061
+
 bool is_enabled(std::uint64_t statusword) noexcept { return (statusword & 0x6F) == 0x27; }
 
 }  // namespace
@@ -85,6 +87,7 @@ void MotionJudge::begin_cycle(Time now) {
     groups_.forget_all();
     late_cycles_ = cycles_after_late + 1;
   }
+  ++cycles_without_sync_;
   if (late_cycles_ != 0) --late_cycles_;
   last_cycle_ = now;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -130,19 +133,40 @@ void MotionJudge::judge_rest(std::size_t axis) {
   if (!cause->creeps) orders_.arrived(axis, *cause);  // otherwise it may still end
 }
 
+/// If SYNC was missing in more than one period, the motions have ended at once.
+void MotionJudge::sync_heard() noexcept {
+  ++syncs_;
+  if (cycles_without_sync_ > 2) late_cycles_ = cycles_after_late + 1;
+  cycles_without_sync_ = 0;
+  if (!plan_.cycle.sync_followed) return;
+  for (Axis& axis : axes_) ++axis.silent_cycles;
+}
+
 void MotionJudge::heard(const Frame& frame) {
+  if (plan_.cycle.sync && frame.id == plan_.cycle.sync_cob_id) sync_heard();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const Signal& signal = plan_.layout.signals[orders_.axes()[i].statusword];
-    const PdoRow& row = plan_.pdos.tpdos[signal.row];
-    if (row.cob_id != frame.id) continue;
-    for (const PdoField& field : plan_.pdos.fields_of(row)) {
-      if (field.signal != orders_.axes()[i].statusword) continue;
-      if (field.bit_offset + field.bits > frame.length * 8U) continue;
-      axes_[i].enabled = is_enabled(bits_of(frame, field.bit_offset, field.bits));
-      axes_[i].silent_cycles = 0;
-      if (!axes_[i].enabled) axes_[i].doubt = state_doubt;
+    Axis& axis = axes_[i];
+    if (const auto word = value_in(frame, orders_.axes()[i].statusword)) {
+      axis.enabled = is_enabled(*word);
+      axis.silent_cycles = 0;
+      if (!axis.enabled) axis.doubt = state_doubt;
     }
+    // A frame of a babbling node may also tell another mode.
+    const auto mode = orders_.axes()[i].mode;
+    const auto told = mode && !is_output(*mode) ? value_in(frame, *mode) : std::nullopt;
+    if (told && *told != cyclic_synchronous_position) axis.doubt = state_doubt;
   }
+}
+
+/// The value of an input in a frame; empty if the frame does not have it.
+std::optional<std::uint64_t> MotionJudge::value_in(const Frame& frame, SignalIndex input) const {
+  const PdoRow& row = plan_.pdos.tpdos[plan_.layout.signals[input].row];
+  if (row.cob_id != frame.id) return std::nullopt;
+  for (const PdoField& field : plan_.pdos.fields_of(row)) {
+    if (field.signal != input || field.bit_offset + field.bits > frame.length * 8U) continue;
+    return bits_of(frame, field.bit_offset, field.bits);
+  }
+  return std::nullopt;
 }
 
 void MotionJudge::sync_sent() {
@@ -154,6 +178,9 @@ void MotionJudge::sent(SignalIndex target, std::int64_t value, const Cause& caus
   if (!found) return;
   Axis& axis = axes_[*found];
   const auto counts = static_cast<double>(value);
+  const auto syncs = static_cast<unsigned>(std::min<std::uint64_t>(syncs_ - axis.syncs, 1000));
+  axis.syncs = syncs_;
+  if (plan_.cycle.sync && syncs == 0 && axis.value == counts) return;  // the drive has not acted
   if (cause.begins) axis.doubt = state_doubt;
   groups_.sent(*found, counts, now);
   const bool follows = axis.enabled && axis.doubt == 0;
@@ -165,8 +192,9 @@ void MotionJudge::sent(SignalIndex target, std::int64_t value, const Cause& caus
   }
   axis.sent_at = now;
   const bool moves = axis.value != counts;
-  const bool judged = follows && moves && !cause.by_set_point && now >= released_until_;
-  if (way && judged) judge_way(*found, *way, now);
+  const bool ends = !moves && axis.last_way && late_cycles_ == 0 && !stops_;
+  const bool judged = follows && (moves || ends) && !cause.by_set_point;
+  if (way && judged) judge_way(*found, *way, syncs, now);
   axis.last_way = follows ? way : std::nullopt;
   if (!moves) return;
   axis.value = counts;
@@ -177,18 +205,20 @@ void MotionJudge::sent(SignalIndex target, std::int64_t value, const Cause& caus
   }
 }
 
-/// Each of the values is rounded to a count.
-void MotionJudge::judge_way(std::size_t axis, const Way& way, Time now) {
+/// Each of the values is rounded to a count. From one SYNC to the next, an axis moves by the way of
+/// one period at most, however late this SYNC is.
+void MotionJudge::judge_way(std::size_t axis, const Way& way, unsigned syncs, Time now) {
   const auto bounds = orders_.bounds(axis, now);
   if (!bounds) return;
   const double period = std::chrono::duration<double>(plan_.cycle.period).count();
-  const double most = bounds->velocity * period * way.cycles * (1 + 1e-6) + 1;
+  const unsigned cycles = plan_.cycle.sync ? std::max(syncs, 1U) : way.cycles;
+  const double most = bounds->velocity * period * cycles * (1 + 1e-6) + 1;
   if (std::abs(way.length) > most) {
     return report_violation(
         axis, "a motion keeps its limits",
         fmt::format(
             "target position moves by {:.0f} counts in {} cycles, its velocity allows {:.1f}",
-            way.length, way.cycles, most));
+            way.length, cycles, most));
   }
   const auto& last = axes_[axis].last_way;
   const double bend = bounds->acceleration * period * period;

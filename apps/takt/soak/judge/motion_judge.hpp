@@ -25,9 +25,8 @@ class MotionJudge {
   void commanded(const SentMotion& sent, Time now);
   /// Call this when the daemon is a new process.
   void begin_anew();
-  /// Call this when a sender has given up its outputs. Its release may leave one set-point out, see
-  /// share/doc/motion.md.
-  void released(Time now) noexcept { released_until_ = now + MotionOrders::longest_way; }
+  /// Call this when the ordered stop begins: the master then commands the outputs itself.
+  void begin_stop() noexcept { stops_ = true; }
   /// Call this when the master begins a cycle.
   void begin_cycle(Time now);
   /// Call this with each frame on the wire.
@@ -60,6 +59,7 @@ class MotionJudge {
     Time when{};                    ///< when `value` was first sent
     Time sent_at{};                 ///< when the last frame was sent
     std::optional<Way> last_way{};  ///< way of that frame; empty if the drive did not follow
+    std::uint64_t syncs = 0;        ///< SYNCs on the wire until that frame
     bool enabled = false;           ///< the last statusword is that of an enabled drive
     unsigned doubt = 0;             ///< cycles in which the master may not know the state
     unsigned disabled_cycles = 0;   ///< cycles that have begun since the drive was disabled
@@ -70,7 +70,10 @@ class MotionJudge {
   void watch(const SentMotion& sent, Time now);
   void judge_failure(std::size_t axis, Time now);
   void judge_rest(std::size_t axis);
-  void judge_way(std::size_t axis, const Way& way, Time now);
+  void judge_way(std::size_t axis, const Way& way, unsigned syncs, Time now);
+  void sync_heard() noexcept;
+  std::optional<std::uint64_t> value_in(const Frame& frame, SignalIndex input) const;
+  bool is_output(SignalIndex signal) const { return plan_.layout.signals[signal].output; }
   void report_violation(std::size_t axis, const char* invariant, const std::string& what);
 
   const BusPlan& plan_;
@@ -81,8 +84,10 @@ class MotionJudge {
   std::vector<Axis> axes_;
   double most_cycles_;  // greatest number of cycles that counts for one distance
   Time last_cycle_{};
-  Time released_until_{};     // until then, a release may come to the master
   unsigned late_cycles_ = 0;  // a SYNC was left out in the last cycles
+  unsigned cycles_without_sync_ = 0;
+  std::uint64_t syncs_ = 0;  // on the wire
+  bool stops_ = false;       // the ordered stop has begun
   std::uint64_t arrivals_ = 0;
 };
 

@@ -43,7 +43,8 @@ MotionOrders::MotionOrders(const BusPlan& plan)
       axes_{motion_axes(plan)},
       file_(axes_.size()),
       orders_(axes_.size()),
-      longest_(axes_.size()) {
+      longest_(axes_.size()),
+      named_(axes_.size()) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const double size = std::abs(plan.layout.signals[axes_[i].target].scale);
     for (const LimitLine& line : plan.limits.lines) {
@@ -66,13 +67,18 @@ std::optional<std::size_t> MotionOrders::axis_of(SignalIndex output) const noexc
 void MotionOrders::commanded(const SentMotion& sent, Time now) {
   Time& newest = heard_[number_of(sent.sender)];
   newest = std::max(newest, sent.computed_from);
-  if (sent.command.kind != "move" && sent.command.kind != "jog") return;
-  ++messages_;
+  const std::string& kind = sent.command.kind;
+  if (kind == "stop") return;
+  const bool begins = kind == "move" || kind == "jog";
+  if (begins) ++messages_;
   for (const motion_goal_t& goal : sent.command.goals) {
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       const bool named = plan_.nodes[axes_[i].node_index].name == goal.node &&
                          axes_[i].number + 1 == std::max<int>(goal.axis, 1);
-      if (named) add(sent, goal, i, now);
+      if (!named) continue;
+      Time& renewed = named_[i][number_of(sent.sender)];
+      if (kind != "move") renewed = std::max(renewed, sent.computed_from);
+      if (begins) add(sent, goal, i, now);
     }
   }
 }
@@ -96,7 +102,8 @@ void MotionOrders::add(const SentMotion& sent, const motion_goal_t& goal, std::s
   }
   order.fastest = larger(order.bounds, bounds(axis, now).value_or(order.bounds));
   std::vector<OrderedMotion>& orders = orders_[axis];
-  std::erase_if(orders, [&](const OrderedMotion& older) { return end_of(older) + 500ms < now; });
+  std::erase_if(orders,
+                [&](const OrderedMotion& older) { return end_of(axis, older) + 500ms < now; });
   Time& longest = longest_[axis][number_of(order.sender)];
   longest = std::max(longest, order.timeout + stop_time(order.bounds, order.fastest));
   orders.push_back(order);
@@ -115,6 +122,7 @@ MotionBounds MotionOrders::bounds_of(const motion_goal_t& goal, std::size_t axis
 void MotionOrders::begin_anew() {
   for (auto& orders : orders_) orders.clear();
   for (auto& longest : longest_) longest.fill({});
+  for (auto& named : named_) named.fill({});
   heard_.fill({});
 }
 
@@ -125,8 +133,9 @@ Time MotionOrders::latest_begin(const OrderedMotion& order) const noexcept {
   return order.computed_from + oldest_message + order.timeout + 20 * plan_.cycle.period;
 }
 
-Time MotionOrders::end_of(const OrderedMotion& order) const noexcept {
-  const Time silent = heard(order.sender) + order.timeout + stop_time(order.bounds, order.fastest) +
+Time MotionOrders::end_of(std::size_t axis, const OrderedMotion& order) const noexcept {
+  const Time last = order.target ? heard(order.sender) : named_[axis][number_of(order.sender)];
+  const Time silent = last + order.timeout + stop_time(order.bounds, order.fastest) +
                       cycles_to_the_wire * plan_.cycle.period;
   return std::min(silent, order.ended);
 }
@@ -166,7 +175,7 @@ void MotionOrders::failed(std::size_t axis, Time now) {
 std::optional<MotionBounds> MotionOrders::bounds(std::size_t axis, Time now) const noexcept {
   std::optional<MotionBounds> found;
   for (const OrderedMotion& order : orders_[axis]) {
-    if (now > end_of(order)) continue;
+    if (now > end_of(axis, order)) continue;
     const Time slow = order.sent + longest_way + stop_time(order.bounds, order.fastest);
     const MotionBounds& own = now <= slow ? order.fastest : order.bounds;
     found = larger(found.value_or(own), own);
@@ -177,7 +186,7 @@ std::optional<MotionBounds> MotionOrders::bounds(std::size_t axis, Time now) con
 SenderBit MotionOrders::mover(std::size_t axis, Time now) const noexcept {
   SenderBit senders = 0;
   for (const OrderedMotion& order : orders_[axis]) {
-    if (now <= end_of(order)) senders |= order.sender;
+    if (now <= end_of(axis, order)) senders |= order.sender;
   }
   return std::has_single_bit(senders) ? senders : 0;
 }

@@ -43,8 +43,9 @@ struct OrderedMotion {
 };
 
 /// Knows from the messages of the programs which motions may run at this moment. A motion may run
-/// while its sender was heard within the timeout, and then for as long as its stop takes. The
-/// answers are upper limits: a message may have been refused.
+/// while its sender was heard within the timeout, and then for as long as its stop takes. For a
+/// jog, only the messages count that name its axis. The answers are upper limits: a message may
+/// have been refused.
 class MotionOrders {
  public:
   /// So long after it was sent, a motion has begun, or it never does: messages are not slower, and
@@ -90,7 +91,8 @@ class MotionOrders {
 
   void add(const SentMotion& sent, const motion_goal_t& goal, std::size_t axis, Time now);
   MotionBounds bounds_of(const motion_goal_t& goal, std::size_t axis) const noexcept;
-  Time end_of(const OrderedMotion& order) const noexcept;
+  /// `axis` is that of the order.
+  Time end_of(std::size_t axis, const OrderedMotion& order) const noexcept;
   Time latest_begin(const OrderedMotion& order) const noexcept;
   Time heard(SenderBit sender) const noexcept;
 
@@ -100,6 +102,7 @@ class MotionOrders {
   std::vector<std::vector<OrderedMotion>> orders_;       // by axis, oldest first
   std::vector<std::array<Time, most_senders>> longest_;  // by axis and sender: timeout and stop
   std::array<Time, most_senders> heard_{};
+  std::vector<std::array<Time, most_senders>> named_;  // by axis: a message that renews its jog
   std::uint64_t messages_ = 0;
   std::uint64_t motions_ = 0;
 };

@@ -36,10 +36,9 @@ class WireJudge {
   /// Call this with a forged value, which must never appear on the wire.
   void forged(SignalIndex signal, std::int64_t value);
   /// Call this when this sender has given up its outputs.
-  void released(SenderBit sender, Time now) {
-    holders_.released(sender, now);
-    motions_.released(now);
-  }
+  void released(SenderBit sender, Time now) { holders_.released(sender, now); }
+  /// Call this when the ordered stop begins.
+  void begin_stop() noexcept { motions_.begin_stop(); }
   /// Call this when the daemon is a new process: no sender holds the outputs, and nothing was sent
   /// so far.
   void begin_anew();
