@@ -31,7 +31,7 @@ std::string Axes::State::why_not_ready_text() const {
     std::vector<std::string> lines = why_not_ready(group, axis, mode_);
     if (group.axes().drive(axis).enabled() && !group.motion(axis)) {
       lines = {name +
-               ": taktd reports no motion of it: was taktd started with --motions, and are "
+               ": taktd reports no motion of it: was taktd started with --no-motions, and are "
                "6041 and 6064 in TPDOs and 607A in an RPDO of the drive?"};
     } else if (lines.empty() && !is_ready(axis)) {
       lines = {name +

@@ -15,13 +15,13 @@ the fallback of `on_timeout` in the network file. A program that has nothing to 
 of time.sleep(). A jog goes on until stop(), until another motion, or until an exception ends a wait.
 
 Inverters, and CiA 402 drives in velocity mode, are speed axes: they obey the same calls except those that need a position,
-and taktd needs no --motions for them. All axes of an object are of one kind. See share/doc/speed.md.
+and taktd --no-motions runs them, too. All axes of an object are of one kind. See share/doc/speed.md.
 
 How to try it on the simulated bus of share/demo/two_axes.yaml:
 
     python3 -m venv venv && venv/bin/pip install lcm
     lcm-gen -p --ppath venv/lib/python3*/site-packages share/lcm/*.lcm    # makes the module takt
-    taktd share/demo/two_axes.yaml --bus sim --motions &
+    taktd share/demo/two_axes.yaml --bus sim &
     venv/bin/python apps/python/first_motion.py
 
 share/doc/motion.md has the rules of motions. A bus with keys (share/doc/security.md) refuses this
@@ -704,7 +704,7 @@ class Axes:
                 text += "; " + (told or f"its newest error is 0x{node.emcys[0] & 0xFFFF:04X}")
             return text
         if axis.motion is None:
-            return (f"{axis.name}: taktd reports no motion of it: was taktd started with --motions, and are 6041 and 6064 in "
+            return (f"{axis.name}: taktd reports no motion of it: was taktd started with --no-motions, and are 6041 and 6064 in "
                     "TPDOs and 607A in an RPDO of the drive?")
         return "" if axis.motion.state != NOT_ENABLED else (
             f"{axis.name}: taktd does not count it as enabled: is its mode of operation 8, and is its target position sent?")

@@ -75,8 +75,8 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
   app.add_option("--black-box", options.black_box,
                  "record frames and decisions; write them here after a fault or SIGUSR1")
       ->type_name("DIR");
-  app.add_flag("--motions", options.motions,
-               "run the motions that applications command (new; see share/doc/motion.md)");
+  app.add_flag("--motions,!--no-motions", options.motions,
+               "run the motions that applications command (default), or refuse them");
   app.add_flag("--typed,!--no-typed", typed,
                "use BUS_NODE_STATE and BUS_NODE_COMMAND in the types of `takt export lcm`");
   app.add_flag("--check", options.check, "check the network file, print a summary, use no bus");

@@ -20,7 +20,7 @@ struct DaemonOptions {
   Time run_for{};         ///< 0 means until a signal
   bool check = false;
   bool observe = false;
-  bool motions = false;       ///< runs the motions of motion_command_t
+  bool motions = true;        ///< runs the motions of motion_command_t
   std::optional<bool> typed;  ///< overrides the setting of the network file
 };
 

@@ -53,7 +53,7 @@ constexpr Key<AxisLimitsSpec> axis_keys[] = {
     magnitude_key<&AxisLimitsSpec::jerk>("jerk", "Not checked: for planned motion."),
     magnitude_key<&AxisLimitsSpec::following_error>(
         "following_error",
-        "The largest following error in a motion of `taktd --motions`, which stops the motion."),
+        "The largest following error in a motion that `taktd` runs, which stops the motion."),
     magnitude_key<&AxisLimitsSpec::step>(
         "step", "Change of a position set-point from one cycle to the next."),
     magnitude_key<&AxisLimitsSpec::torque>("torque", "Of 0x6071 plus the torque offset 0x60B2."),

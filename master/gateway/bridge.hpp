@@ -44,7 +44,7 @@ struct BridgeOptions {
   bool observe = false;
   std::string interface;  ///< reported in status_t
   std::string realtime;   ///< reported in status_t
-  bool motions = false;   ///< runs the motions of motion_command_t
+  bool motions = true;    ///< runs the motions of motion_command_t
   bool typed = true;      ///< also publishes a typed message for each node, see TypedChannels
 };
 

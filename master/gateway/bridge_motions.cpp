@@ -7,7 +7,7 @@ void Bridge::on_motion(std::string_view channel, Bytes data) {
   const auto command = decode<T>(data);
   if (!command) return report_damaged(std::string{channel}, command.error());
   if (!options_.motions) {
-    return warn("motion_refused", "taktd runs no motions: it was started without --motions");
+    return warn("motion_refused", "taktd runs no motions: it was started with --no-motions");
   }
   const Time now = clocks_.now();
   if (waited(command->cycle, now)) return commands_.discard();

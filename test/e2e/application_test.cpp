@@ -269,7 +269,7 @@ TEST(MovingApplication, NamesTheProgramThatHoldsItsAxesAndEnds) {
 
 TEST(MovingApplication, LetsTaktdRunTheMoveWhereItRunsMotions) {
   const Folder folder;
-  DaemonProcess daemon{slow_network(folder.path()), {"--bus", "sim", "--motions"}};
+  DaemonProcess daemon{slow_network(folder.path()), {"--bus", "sim"}};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
   Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--to", "0.5"}, folder / "move"};
   int rounds = 0;

@@ -30,7 +30,7 @@ class Follow : public ::testing::Test {
   }
 
   Folder folder_;
-  DaemonProcess daemon_{slow_network(folder_.path()), {"--bus", "sim", "--motions"}};
+  DaemonProcess daemon_{slow_network(folder_.path()), {"--bus", "sim"}};
 };
 
 TEST_F(Follow, TheAxisLocksToAnInputAndIsDisabledAtTheEnd) {

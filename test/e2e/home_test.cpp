@@ -32,7 +32,7 @@ class Home : public ::testing::Test {
  protected:
   void start(const std::string& method_of_elbow) {
     daemon_.emplace(homing_network(folder_.path(), method_of_elbow),
-                    std::vector<std::string>{"--bus", "sim", "--motions"});
+                    std::vector<std::string>{"--bus", "sim"});
     ASSERT_TRUE(daemon_->hear([this] { return daemon_->all_ready(); }));
   }
   /// With a timeout of 10 s, a busy machine does not end the homing.

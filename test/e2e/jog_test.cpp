@@ -57,7 +57,7 @@ class Jog : public ::testing::Test {
   }
 
   Folder folder_;
-  DaemonProcess daemon_{slow_network(folder_.path()), {"--bus", "sim", "--motions"}};
+  DaemonProcess daemon_{slow_network(folder_.path()), {"--bus", "sim"}};
 };
 
 TEST_F(Jog, MovesWhileTheKeyIsRepeatedAndStopsAfterwards) {

@@ -14,7 +14,7 @@ python=$(sh "$here/test/vcan/python_environment.sh" "$build/judges")
 lcm-gen -p --ppath "$tmp" "$here"/share/lcm/*.lcm
 
 export LCM_DEFAULT_URL=tcpq://127.0.0.1:$((20000 + $$ % 12000))
-"$bin/taktd" "$here/share/demo/two_axes.yaml" --bus sim --motions --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/log" &
+"$bin/taktd" "$here/share/demo/two_axes.yaml" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/log" &
 daemon=$!
 for _ in $(seq 600); do grep -q 'serving' "$tmp/log" && break || sleep 0.1; done
 # The program ends where no image comes for a second, as may be on a busy machine: one of three runs has to be good.

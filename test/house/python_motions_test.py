@@ -100,7 +100,7 @@ class Daemon:
             self.late.append((self.cycle + self.delay, takt.motion_command_t.decode(data)))
             self.take_due()
         else:
-            self.say("motion_refused", "taktd runs no motions: it was started without --motions")
+            self.say("motion_refused", "taktd runs no motions: it was started with --no-motions")
 
     def take_due(self):
         while self.late and self.late[0][0] <= self.cycle:
@@ -564,7 +564,7 @@ check("a fault ends the homing", kind == "stopped" and "the homing was interrupt
 
 daemon, axes = on_a_bus()
 daemon.motions = False
-check("a taktd without motions is named", "it was started without --motions" in obstacle(axes.enable)[1])
+check("a taktd without motions is named", "it was started with --no-motions" in obstacle(axes.enable)[1])
 daemon, axes = on_a_bus()
 daemon.holder = "another"
 check("another program is named", "shoulder belongs to 'another'" in obstacle(axes.enable)[1])

@@ -1,8 +1,8 @@
 #pragma once
 /// @file
-/// Motions of CiA 402 axes that taktd runs (`taktd --motions`): enable, move, jog, gear, stop. The
-/// bus thread of taktd gives the drives their set-points, so the program may be late. Inverters
-/// obey the same calls, as axes with a speed and without a position.
+/// Motions of CiA 402 axes that taktd runs: enable, move, jog, gear, stop. The bus thread of taktd
+/// gives the drives their set-points, so the program may be late. Inverters obey the same calls, as
+/// axes with a speed and without a position.
 #include <Eigen/Core>
 #include <chrono>
 #include <cstdint>
@@ -114,10 +114,10 @@ struct HomingOptions {
 ///
 /// **Speed axes** are inverters whose words the device data of takt or `speed_axis` of the network
 /// file describe, and CiA 402 drives with 0x6042. All axes of an object are of one kind; without
-/// names, they are the axes with positions if there are any. A speed axis needs no
-/// `taktd --motions`: this program computes its words from each image, and the drive runs along its
-/// own ramps. Each call sends words; a silence of AxesOptions::timeout, or of the time in
-/// `on_timeout`, stops the drives along their ramps, and a jog that was stopped does not begin
+/// names, they are the axes with positions if there are any. taktd runs no
+/// motions of speed axes: this program computes their words from each image, and the drives run
+/// along their own ramps. Each call sends words; a silence of AxesOptions::timeout, or of the time
+/// in `on_timeout`, stops the drives along their ramps, and a jog that was stopped does not begin
 /// again by itself. Calls that need a position are refused.
 ///
 /// The axes of one call begin in the same cycle, and a stop of one stops all of them. Vectors have

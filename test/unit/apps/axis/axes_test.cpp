@@ -235,7 +235,7 @@ TEST_F(AxesOnABus, NameTheBitThatKeepsADriveFromBeingEnabled) {
 TEST_F(AxesOnABus, SayThatTaktdRunsNoMotions) {
   daemon_.has_motions = false;
   Axes axes = open();
-  EXPECT_THAT(obstacle_of(axes.enable()).text, HasSubstr("it was started without --motions"));
+  EXPECT_THAT(obstacle_of(axes.enable()).text, HasSubstr("it was started with --no-motions"));
 }
 
 TEST_F(AxesOnABus, NameTheProgramThatHoldsThem) {

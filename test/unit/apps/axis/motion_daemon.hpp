@@ -60,7 +60,7 @@ class MotionDaemonTransport final : public Transport {
     if (daemon_.has_motions) {
       take(*decode<motion_command_t>(data));
     } else {
-      say("motion_refused", "taktd runs no motions: it was started without --motions");
+      say("motion_refused", "taktd runs no motions: it was started with --no-motions");
     }
     return true;
   }
