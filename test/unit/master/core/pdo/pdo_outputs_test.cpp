@@ -182,7 +182,9 @@ TEST(PdoOutputs, ReleasedOutputsTakeTheirFallbackWithoutAWarning) {
 
 /// The axis moves for nobody any more, and has to come to rest before it is disabled.
 TEST(PdoOutputs, AReleaseWaitsUntilTheMotionOfItsNodeHasEnded) {
-  OutputsRig out{one_axis()};
+  BusPlan plan = one_axis();
+  for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 10;
+  OutputsRig out{plan};
   out.command(controlword, 0x000F);
   out.command(target, 5);
   out.pack();

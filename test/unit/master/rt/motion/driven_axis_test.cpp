@@ -163,8 +163,10 @@ TEST(DrivenAxis, TheTargetFollowsTheActualPositionWhileADriveObeysAHalt) {
     EXPECT_TRUE(bench.write(state, bench.last.commanded));
     bench.pack();
   };
-  bench.last.commanded.position = 1.0;
-  beat(0x1027, 100, AxisState::moving);
+  bench.hear(0x1027, 100);
+  bench.condition();
+  ASSERT_TRUE(bench.write(AxisState::moving, {.position = 1.0}));
+  bench.pack();
   bench.command(0, 0x010F);
   beat(0x1027, 100, AxisState::standing);
   beat(0x1027, 90, AxisState::standing);
