@@ -16,8 +16,9 @@ constexpr unsigned failed_cycles = 3;   // after so many, the master knows that 
 constexpr unsigned silent_cycles = 8;   // after so many, the master knows that a drive is silent
 constexpr unsigned hold_tolerance = 5;  // a lease may end this much early
 constexpr unsigned cycles_after_late = 3;  // in which a late frame may be followed by an early one
-constexpr Time short_rest = 150ms;         // a motion that ends has ended by then
-constexpr Time long_rest = 100ms;          // no motion runs
+constexpr unsigned most_cycles_of_frame = 2;  // one frame may be missing
+constexpr Time short_rest = 150ms;            // a motion that ends has ended by then
+constexpr Time long_rest = 100ms;             // no motion runs
 
 constexpr std::uint64_t cyclic_synchronous_position = 8;  // 6061
 
@@ -192,7 +193,9 @@ void MotionJudge::sent(SignalIndex target, std::int64_t value, const Cause& caus
   }
   axis.sent_at = now;
   const bool moves = axis.value != counts;
-  const bool ends = !moves && axis.last_way && late_cycles_ == 0 && !stops_;
+  // If two frames in a row were not sent, the motion has ended at once.
+  const bool was_sent = axis.last_way && axis.last_way->cycles <= most_cycles_of_frame;
+  const bool ends = !moves && was_sent && late_cycles_ == 0 && !stops_;
   const bool judged = follows && (moves || ends) && !cause.by_set_point;
   if (way && judged) judge_way(*found, *way, syncs, now);
   axis.last_way = follows ? way : std::nullopt;
