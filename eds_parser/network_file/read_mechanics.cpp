@@ -16,7 +16,10 @@ std::optional<double> number_within(const KeyInput& in, double low, double high)
 
 template <auto Member, double Low, double High>
 void bounded(const KeyInput& in, typename KeyTarget<decltype(Member)>::Type& out) {
-  if (const auto number = number_within(in, Low, High)) out.*Member = *number;
+  const auto number = number_within(in, Low, High);
+  if (!number) return;
+  const double value = *number;
+  out.*Member = value;
 }
 
 template <auto Member, double Low, double High>

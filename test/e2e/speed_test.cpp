@@ -1,4 +1,6 @@
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
@@ -14,12 +16,25 @@ namespace {
 struct Inverter {
   const char* demo;
   const char* node;
-  const char* set_speed;
   const char* actual_speed;
   const char* speed;  ///< for takt-jog
   std::int64_t counts;
-  std::int64_t stop;  ///< its command to stop
 };
+
+/// A copy of a demo network in which a busy machine does not make the commands too old.
+std::filesystem::path slow_demo(const std::filesystem::path& folder, const std::string& demo) {
+  const std::string shared = TAKT_SOURCE_DIR "/share/";
+  std::string text = read_file(shared + "demo/" + demo + ".yaml");
+  const auto replace = [&text](const std::string& what, const std::string& with) {
+    const std::size_t at = text.find(what);
+    ASSERT_NE(at, text.npos) << what;
+    text.replace(at, what.size(), with);
+  };
+  replace("../eds/", shared + "eds/");
+  replace("    mandatory: true\n", "    mandatory: true\n    on_timeout: {after: 10000}\n");
+  std::ofstream{folder / "network.yaml"} << text;
+  return folder / "network.yaml";
+}
 
 class Speed : public testing::TestWithParam<Inverter> {
  protected:
@@ -41,7 +56,7 @@ class Speed : public testing::TestWithParam<Inverter> {
   }
 
   Folder folder_;
-  DaemonProcess daemon_{TAKT_SOURCE_DIR "/share/demo/" + std::string{GetParam().demo} + ".yaml"};
+  DaemonProcess daemon_{slow_demo(folder_.path(), GetParam().demo), {"--bus", "sim"}};
   std::string daemon_bus_ = std::string{GetParam().demo} == "lenze8400" ? "lenze" : "pump";
 };
 
@@ -50,7 +65,6 @@ TEST_P(Speed, JogsAnInverterAndStopsIt) {
   EXPECT_TRUE(comes_to(GetParam().counts)) << program.output();
   EXPECT_EQ(program.wait([this] { hear_once(); }), 0) << program.output();
   EXPECT_TRUE(comes_to(0));
-  EXPECT_EQ(value(GetParam().set_speed), 0);
   EXPECT_EQ(daemon_.events("fallback_begun"), 0U);
 }
 
@@ -70,7 +84,6 @@ TEST_P(Speed, StopsWhenItsProgramDies) {
   }
   EXPECT_TRUE(daemon_.hear([this] { return daemon_.events("fallback_begun") > 0; }));
   EXPECT_TRUE(comes_to(0));
-  EXPECT_EQ(value("control_word"), GetParam().stop);
 }
 
 TEST_P(Speed, SaysWhatItCanNotDo) {
@@ -79,12 +92,11 @@ TEST_P(Speed, SaysWhatItCanNotDo) {
   EXPECT_NE(program.output().find("is above the limit of"), std::string::npos) << program.output();
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, Speed,
-                         testing::Values(Inverter{"astraada_drv28", "pump", "set_frequency",
-                                                  "output_frequency", "20", 2000, 5},
-                                         Inverter{"lenze8400", "conveyor", "speed_set_point",
-                                                  "actual_speed", "25", 4096, 0x0109}),
-                         [](const auto& inverter) { return std::string{inverter.param.demo}; });
+INSTANTIATE_TEST_SUITE_P(
+    Families, Speed,
+    testing::Values(Inverter{"astraada_drv28", "pump", "output_frequency", "20", 2000},
+                    Inverter{"lenze8400", "conveyor", "actual_speed", "25", 4096}),
+    [](const auto& inverter) { return std::string{inverter.param.demo}; });
 
 }  // namespace
 }  // namespace takt::test
