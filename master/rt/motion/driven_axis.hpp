@@ -32,6 +32,9 @@ class DrivenAxis {
   bool is_overruled(const PdoOutputs& outputs) const noexcept {
     return outputs.is_overruled(axis_.target);
   }
+  /// Forgets that the axis is homed. The node exchanges no PDOs in this cycle, so nobody knows what
+  /// its device does: it may have been switched off.
+  void lose_home() noexcept { homing_.step({.heard = false}); }
   /// Keeps the commands of all outputs of the node valid in this cycle.
   void keep_alive(PdoOutputs& outputs, OutputMoment moment) const noexcept {
     for (const SignalIndex output : node_outputs_) outputs.keep_alive(output, moment);

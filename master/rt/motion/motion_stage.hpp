@@ -37,6 +37,7 @@ class MotionStage {
     if (bus_.observe) return;
     take_messages(moment.cycle);
     if (!active_) return;
+    forget_homes();
     if (bus_.status.beats != beats_) run_beat(moment, stopping);
     const bool late = is_late(moment);
     for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -71,6 +72,12 @@ class MotionStage {
   }
   void accept(const motion::MotionMessage& message, motion::CycleNumber cycle) noexcept;
   void run_beat(OutputMoment moment, bool stopping) noexcept;
+  /// Not only in beats: a device may be switched off and on while there is no SYNC.
+  void forget_homes() noexcept {
+    for (DrivenAxis& axis : axes_) {
+      if (!bus_.exchanging[axis.node_index()]) axis.lose_home();
+    }
+  }
   void tell_ends() noexcept;
   motion::LeaderSample sample_of(std::uint16_t signal) const noexcept;
 

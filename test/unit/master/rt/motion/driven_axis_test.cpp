@@ -349,6 +349,27 @@ TEST(DrivenAxis, SeesAHomingRunOfTheEnabledDriveInHomingMode) {
   EXPECT_EQ(bench.axis.read(bench.pdos, false, bench.last).homing, HomingState::none);
 }
 
+/// The node was away only while there was no SYNC, so that no beat has seen it away.
+TEST(DrivenAxis, LosesItsHomeBetweenBeats) {
+  using motion::HomingState;
+  Bench bench{{.commands_controlword = true, .mode = true}};
+  const auto homing = [&](std::uint16_t statusword) {
+    bench.hear(statusword, 0);
+    return bench.axis.read(bench.pdos, true, bench.last).homing;
+  };
+  bench.command(0, 0x1F);
+  bench.command(3, 6);
+  bench.pack();
+  ASSERT_EQ(homing(0x0027), HomingState::runs);
+  ASSERT_EQ(homing(0x1427), HomingState::homed);
+  bench.command(0, 0x0F);
+  bench.command(3, 8);
+  bench.pack();
+  ASSERT_EQ(homing(0x1027), HomingState::homed);
+  bench.axis.lose_home();
+  EXPECT_EQ(homing(0x1027), HomingState::none);
+}
+
 /// The application enables the drive by its controlword only, and the axis was pushed.
 TEST(DrivenAxis, ATargetThatNobodyHasCommandedFollowsTheActualPositionWhileTheDriveIsNotEnabled) {
   Bench bench;
