@@ -47,7 +47,16 @@ Task commanded_leader(const motion_gear_t& gear, std::size_t node,
                           .leader_axis = static_cast<std::uint8_t>(place)};
 }
 
-Task measured_leader(const motion_gear_t& gear, std::size_t node, const KnownAxes& known) {
+/// Returns true if the signal is one of the objects of this axis. Its axes have 0x800 indices each.
+bool is_of(const Signal& signal, const MotionAxis& axis) noexcept {
+  constexpr unsigned first = 0x6000;
+  const unsigned index = signal.object.index;
+  return signal.node_index == axis.node_index && index >= first &&
+         (index - first) / 0x800 == axis.number;
+}
+
+Task measured_leader(const motion_gear_t& gear, std::size_t node, std::span<const std::size_t> axes,
+                     const KnownAxes& known) {
   const ImageLayout& layout = known.plan.layout;
   const auto inputs = std::span{layout.signals}.first(layout.inputs);
   const auto found = std::ranges::find_if(inputs, [&](const Signal& signal) {
@@ -57,6 +66,12 @@ Task measured_leader(const motion_gear_t& gear, std::size_t node, const KnownAxe
     return refused(
         fmt::format("its leader '{:.64}' has no input '{:.64}'", gear.leader, gear.signal));
   }
+  if (is_real(found->type) || found->bits < 8) {
+    return refused(fmt::format("the input '{:.64}' of its leader is no integer of at least 8 bits",
+                               gear.signal));
+  }
+  const auto leads_itself = [&](std::size_t axis) { return is_of(*found, known.axes[axis]); };
+  if (std::ranges::any_of(axes, leads_itself)) return refused("an axis can't lead itself");
   const auto signal = static_cast<SignalIndex>(found - inputs.begin());
   motion::GearTask task{
       .kind = motion::LeaderKind::measured,
@@ -85,7 +100,7 @@ Task leader_of(const motion_gear_t& gear, std::span<const std::size_t> axes,
     return refused(fmt::format("its filter time is not between 0 and {} s", longest_filter_time));
   }
   if (gear.signal.empty()) return commanded_leader(gear, *node, axes, known);
-  return measured_leader(gear, *node, known);
+  return measured_leader(gear, *node, axes, known);
 }
 
 }  // namespace

@@ -94,6 +94,9 @@ std::string_view text(motion::Outcome outcome) noexcept {
       return text(motion::PlanRefusal{.fault = motion::PlanFault::stopping});
     case sender_was_silent:
       return "the sender was silent for longer than the timeout";
+    case no_stop:
+      return "with the limits of the gear, the axis could not stop from its present motion inside "
+             "its range and its velocity";
     case too_late:
       return "taktd could not plan the motion in time";
     case group_incomplete:

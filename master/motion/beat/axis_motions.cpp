@@ -113,11 +113,13 @@ void AxisMotions::follow(std::size_t axis, CycleNumber cycle,
   LeaderState leader;
   if (task.leader_axis < runners_.size()) {
     const AxisReport& report = reports_[task.leader_axis];
-    const AxisCondition condition = inputs[task.leader_axis].condition;
+    const AxisInput& input = inputs[task.leader_axis];
     leader.state = report.commanded;
     leader.is_lost = task.kind == LeaderKind::commanded
                          ? report.state == AxisState::unpowered
-                         : condition == AxisCondition::fault || condition == AxisCondition::lost;
+                         : input.condition == AxisCondition::fault ||
+                               input.condition == AxisCondition::lost ||
+                               input.homing == HomingState::runs;
   } else {
     leader.is_lost = task.kind == LeaderKind::commanded;
   }

@@ -88,6 +88,7 @@ enum class Outcome : std::uint8_t {
   too_late,           ///< its first cycle had passed
   other_start,        ///< it does not begin where the axis is commanded to be
   no_rest,            ///< the end of its profile contradicts `ending`
+  no_stop,            ///< a gear whose limits do not allow a stop in time, range and velocity
   not_powered,        ///< the drive does not follow set-points
   is_stopping,        ///< the axis must come to rest first
   sender_was_silent,  ///< longer than the timeout, before its first cycle

@@ -89,7 +89,8 @@ Outcome AxisRunner::objection(CycleNumber cycle) noexcept {
   if (report_.state == AxisState::stopping) return Outcome::is_stopping;
   const bool is_stream = waiting_->ending == Ending::points;
   if (is_stream && report_.state != AxisState::standing) return Outcome::is_stopping;
-  if (waiting_->ending == Ending::gear) return Outcome::none;
+  if (waiting_->ending == Ending::gear)
+    return can_stop_with(*waiting_) ? Outcome::none : Outcome::no_stop;
   if (!ends_as_it_says(*waiting_)) return Outcome::no_rest;
   return is_same(waiting_->from, commanded_at(cycle), waiting_->stop) ? Outcome::none
                                                                       : Outcome::other_start;
@@ -216,6 +217,21 @@ bool AxisRunner::can_stop_from(const State& state) const noexcept {
   return stays_inside(range_, stop_profile(state, limits), state);
 }
 
+/// A gear replaces the limits of the motion before, so it may only begin where a stop along its own
+/// limits stays inside its range, its limits of velocity, and a bounded time.
+bool AxisRunner::can_stop_with(const MotionOrder& gear) const noexcept {
+  const State& state = report_.commanded;
+  const Profile profile = stop_profile(state, gear.stop);
+  const double gain = state.acceleration * std::abs(state.acceleration) / (2 * gear.stop.jerk);
+  const double fastest = std::max(gear.stop.max_velocity, state.velocity);
+  const double slowest = std::min(gear.stop.min_velocity, state.velocity);
+  const double tolerance = start_tolerance * (gear.stop.max_velocity - gear.stop.min_velocity);
+  const double peak = state.velocity + gain;
+  return peak <= fastest + tolerance && peak >= slowest - tolerance &&
+         profile.duration() <= longest_stop &&
+         stays_inside(widened(gear.gear.range, state.position), profile, state);
+}
+
 /// A gear that begins in this cycle needs its sample in it.
 std::optional<std::uint16_t> AxisRunner::leader_signal(CycleNumber cycle) const noexcept {
   const MotionOrder* next = due(cycle);
@@ -230,6 +246,7 @@ StopCause AxisRunner::follow(CycleNumber cycle, const LeaderState& leader,
   const CycleNumber cycles = std::max<CycleNumber>(cycle - std::min(last_run_, cycle), 1);
   geared_ =
       gear_.step(report_.commanded, leader, sample, static_cast<double>(cycles) * period_, period_);
+  if (is_unsent_) geared_ = report_.commanded;
   StopCause cause = StopCause::none;
   if (gear_.has_lost_leader()) {
     cause = StopCause::leader_lost;
@@ -289,6 +306,7 @@ bool AxisRunner::points_end_at_rest() const noexcept {
 State AxisRunner::commanded_at(CycleNumber cycle) noexcept {
   if (report_.state == AxisState::standing) return report_.commanded;
   if (source_ == Source::gear) {
+    if (is_unsent_) return report_.commanded;
     return gear_.released(report_.commanded, static_cast<double>(cycle - last_run_) * period_);
   }
   return source_ == Source::points ? stream_.at(time_at(cycle)) : player_.at(time_at(cycle));

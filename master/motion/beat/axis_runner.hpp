@@ -133,6 +133,7 @@ class AxisRunner {
 
  private:
   static constexpr std::uint8_t no_sender = max_axes;
+  static constexpr double longest_stop = 60.0;  // of a gear that begins in a motion, s
   /// Where the states of a motion come from.
   enum class Source : std::uint8_t { profile, points, gear };
   static constexpr Source source_of(Ending ending) noexcept {
@@ -147,6 +148,7 @@ class AxisRunner {
   }
   bool points_end_at_rest() const noexcept;
   bool can_stop_from(const State& state) const noexcept;
+  bool can_stop_with(const MotionOrder& gear) const noexcept;
   StopCause cause_of_motion(CycleNumber cycle, const Silence& silence) const noexcept;
   void end_or_count_down(CycleNumber cycle) noexcept;
   void end(Outcome outcome) noexcept;

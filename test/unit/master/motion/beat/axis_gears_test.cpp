@@ -172,6 +172,71 @@ TEST(AxisGears, AFaultOfTheLeaderStopsTheAxisAlongItsLimits) {
   EXPECT_EQ(plant.last[1].stop.cause, StopCause::leader_lost);
 }
 
+/// The coordinates of the leader jump at the end of its homing run, although it stands then.
+TEST(AxisGears, AHomingRunOfAMeasuredLeaderStopsTheAxis) {
+  Plant plant{2};
+  plant.step();
+  Encoder encoder{plant, 32};
+  GearTask task = encoder.task(0.001);
+  task.leader_axis = 1;
+  ASSERT_TRUE(plant.take(gear_order(plant, 0, task)));
+  for (int beat = 0; beat < 100; ++beat) {
+    encoder.show(beat);
+    plant.step();
+  }
+  ASSERT_EQ(plant.last[0].state, AxisState::moving);
+  plant.inputs[1].homing = HomingState::runs;
+  encoder.show(100);
+  plant.step();
+  EXPECT_EQ(plant.last[0].stop.cause, StopCause::leader_lost);
+}
+
+TEST(AxisGears, BeginsOnlyWhereAStopAlongItsOwnLimitsIsPossible) {
+  Plant plant{2};
+  plant.step();
+  ASSERT_TRUE(plant.take(jog(plant, 0.9)));
+  plant.steps(100);
+  ASSERT_GT(plant.last[0].commanded.acceleration, 1.0);
+  const auto outcome = [&](const GearTask& task, double acceleration, double jerk) {
+    ++plant.ids;
+    MotionOrder gear = gear_order(plant, 0, task);
+    gear.stop.max_acceleration = acceleration;
+    gear.stop.min_acceleration = -acceleration;
+    gear.stop.jerk = jerk;
+    EXPECT_TRUE(plant.take(gear));
+    plant.steps(1);
+    return plant.ended[0].outcome;
+  };
+  GearTask task{.kind = LeaderKind::commanded, .leader_axis = 1};
+  EXPECT_EQ(outcome(task, 5.0, 1.0), Outcome::no_stop) << "it would become faster than its limit";
+  plant.steps(1000);
+  EXPECT_EQ(outcome(task, 1e-6, 50.0), Outcome::no_stop) << "it would stop too late";
+  task.range = {.min = -10.0, .max = plant.last[0].commanded.position + 1.0};
+  EXPECT_EQ(outcome(task, 0.1, 50.0), Outcome::no_stop) << "it would leave its range";
+  EXPECT_EQ(plant.last[0].running, 1U) << "the jog goes on";
+  EXPECT_EQ(outcome(task, 5.0, 50.0), Outcome::replaced) << "the jog is replaced";
+}
+
+/// From one frame to the next, an axis moves by the way of one period at most.
+TEST(AxisGears, WaitsForASetPointThatWasNotSent) {
+  Plant plant{2};
+  plant.step();
+  ASSERT_TRUE(plant.take(jog(plant, 0.6)));
+  ++plant.ids;
+  ASSERT_TRUE(plant.take(gear_order(plant, 1, behind_axis(1.0))));
+  plant.steps(1000);
+  ASSERT_EQ(plant.last[1].gear, GearPhase::locked);
+  const double before = plant.last[1].commanded.position;
+  plant.inputs[1].is_unsent = true;
+  plant.step();
+  EXPECT_EQ(plant.last[1].commanded.position, before);
+  plant.inputs[1].is_unsent = false;
+  plant.step();
+  EXPECT_LE(plant.last[1].commanded.position - before, Plant::limits.max_velocity * period);
+  plant.steps(2000);
+  EXPECT_EQ(plant.last[1].gear, GearPhase::locked);
+}
+
 TEST(AxisGears, ARingOfGearsStopsAtOnce) {
   Plant plant{2};
   plant.step();

@@ -36,7 +36,8 @@ class Plant {
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       const bool powered =
           last[i].state != AxisState::unpowered && reports[i].state != AxisState::unpowered;
-      if (powered && !inputs[i].set_point) judge(last[i].commanded, reports[i].commanded);
+      const bool waits = inputs[i].is_unsent;
+      if (powered && !waits && !inputs[i].set_point) judge(last[i].commanded, reports[i].commanded);
       last[i] = reports[i];
       for (const EndedOrder& order : reports[i].ended.orders()) ended[i] = order;
       if (follows) inputs[i].actual = reports[i].commanded;
