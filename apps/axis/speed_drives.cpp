@@ -90,7 +90,8 @@ std::string SpeedDrives::why_not_ready(const AxisGroup& group) const {
     } else if (const std::string why = axis.why_not_ready(); !why.empty()) {
       const bool fault = axis.state() == SpeedState::fault;
       const std::string error = node && fault ? newest_error(*node) : "";
-      add(why + (error.empty() ? "" : "; " + error));
+      add(why);
+      if (!error.empty()) add(error);
     }
     if (holder.is_other()) {
       add(fmt::format("{} belongs to '{}', and the commands of this program are refused",

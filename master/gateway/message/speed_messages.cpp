@@ -65,9 +65,9 @@ std::vector<speed_axes_t> speed_messages(const BusPlan& plan, std::int64_t sessi
   std::vector<speed_axes_t> messages;
   for (const SpeedAxisPlan& one : plan.speed_axes) {
     speed_axis_t axis = to_message(plan, one);
-    const bool fits = !messages.empty() &&
-                      static_cast<std::size_t>(messages.back().getEncodedSize() +
-                                               axis._getEncodedSizeNoHash()) <= message_bytes;
+    const bool fits = !messages.empty() && std::cmp_less_equal(messages.back().getEncodedSize() +
+                                                                   axis._getEncodedSizeNoHash(),
+                                                               message_bytes);
     if (!fits) messages.push_back(empty_message(plan, session));
     messages.back().axes.push_back(std::move(axis));
     ++messages.back().num_axes;
