@@ -18,6 +18,11 @@ constexpr int held_statuses_of_speed = 20;
 /// Cycles in which the last words before release() are sent.
 constexpr std::int64_t cycles_before_release = 3;
 
+double acceleration_of(const MotionBounds& bounds, Eigen::Index axis) {
+  const Eigen::VectorXd& all = bounds.acceleration;
+  return all.size() == 0 ? 0.0 : all(all.size() == 1 ? 0 : axis);
+}
+
 }  // namespace
 
 /// Finds the speed axes of these names, or all of them. Returns false if there are none.
@@ -47,6 +52,14 @@ bool Axes::State::find_speed_axes() {
   return true;
 }
 
+/// Ends a run that something has ended: the drives must not run again by themselves when its cause
+/// is gone. All axes of the run stop.
+void Axes::State::end_stopped_run() {
+  if (!speed->any_wants_to_run()) return;
+  stopped_text_ = why_speed_ended();
+  if (!stopped_text_.empty()) speed->end_run();
+}
+
 /// Sends the words that follow from the newest image. A program that was silent for longer than its
 /// timeout must not make the drives run again by itself.
 void Axes::State::send_speeds() {
@@ -55,8 +68,11 @@ void Axes::State::send_speeds() {
   if (was_silent && speed->moving()) {
     stopped_text_ = fmt::format("this program was silent for {} ms, so the drives were stopped",
                                 (now - last_sent_) / std::chrono::milliseconds{1});
-    speed->set_goal(SpeedGoal::standing);
+    speed->end_run();
   }
+  end_stopped_run();
+  speed->read(group.input());
+  end_stopped_run();
   speed->step(group.input());
   if (sending_ == Sending::nothing) return;
   last_sent_ = now;
@@ -70,7 +86,10 @@ std::string Axes::State::why_speed_ended() const {
   for (const event_t& event : events_) {
     if (event.kind == "fallback_begun" && speed->has_node(event.node_id)) return event.text;
   }
-  return speed->all_ready() ? "" : speed->why_not_ready(group);
+  const bool held = speed->any([&](const SpeedAxis& axis) {
+    return group.holder_of_node(axis.words().node_id).is_other(held_statuses_of_speed);
+  });
+  return speed->all_ready() && !held ? "" : speed->why_not_ready(group);
 }
 
 Done Axes::State::enable_speed() {
@@ -146,11 +165,27 @@ Done Axes::State::check_speeds(const Values& velocities, const MotionBounds& bou
                       fmt::format("{} {} is above the limit of {}, {} {}", velocities(i),
                                   words.unit, words.node, words.max_speed, words.unit));
     }
+    const double acceleration = acceleration_of(bounds, i);
+    if (words.max_acceleration > 0.0 && acceleration > words.max_acceleration) {
+      return obstacle(
+          Obstacle::Kind::refused,
+          fmt::format("an acceleration of {} {}/s is above the limit of {}, {} {}/s", acceleration,
+                      words.unit, words.node, words.max_acceleration, words.unit));
+    }
   }
   return {};
 }
 
+/// An older run does not go on if the new one fails.
 Done Axes::State::run_speed(const Values& velocities, const MotionBounds& bounds) {
+  Done done = begin_run(velocities, bounds);
+  // The first obstacle is the one to tell.
+  if (!done && is_current()) [[maybe_unused]]
+    const Done stood = stop_speed();
+  return done;
+}
+
+Done Axes::State::begin_run(const Values& velocities, const MotionBounds& bounds) {
   if (Done fits = check_speeds(velocities, bounds); !fits) return fits;
   if (!is_current()) return restarted();
   if (sending_ == Sending::nothing) {
@@ -167,11 +202,8 @@ Done Axes::State::run_speed(const Values& velocities, const MotionBounds& bounds
   const auto begun = [&] { return speed->all_run() || !why_speed_ended().empty(); };
   const auto waited = wait_until(begun, options.longest);
   if (waited && *waited && speed->all_run()) return {};
+  if (waited && !*waited) return *waited;
   const std::string why = why_speed_ended();
-  const bool interrupted = waited && !*waited;
-  // The first obstacle is the one to tell.
-  [[maybe_unused]] const Done done = stop_speed();
-  if (interrupted) return *waited;
   return obstacle(Obstacle::Kind::blocked, why.empty() ? "the drives do not begin to run" : why);
 }
 

@@ -102,6 +102,8 @@ class Axes::State {
   bool is_speed_axis(const std::string& name) const;
   bool lacks_speed_axes() const;
   void send_speeds();
+  void end_stopped_run();
+  Done begin_run(const Values& velocities, const MotionBounds& bounds);
   std::string why_speed_ended() const;
   Done check_speeds(const Values& velocities, const MotionBounds& bounds) const;
   /// Sends a sign of life if one is due. It names the axes only for a jog that runs and has to go

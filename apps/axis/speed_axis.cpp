@@ -15,6 +15,11 @@ constexpr std::int8_t reset_by_level = 1;
 constexpr int steps_before_reset = 3;
 /// Longest time for which the set speed changes in one step.
 constexpr double longest_step = 0.05;
+/// A status word that is missing in so many images in a row is unknown.
+constexpr int most_silent_images = 3;
+/// CiA 402-2, 0x6041.
+constexpr unsigned state_bits = 0x6F;
+constexpr unsigned operation_enabled = 0x27;
 
 bool is_position(std::int32_t place, bool output, std::int16_t node, const ImageInput& input) {
   if (place < 0 || static_cast<std::size_t>(place) >= input.signals().size()) return false;
@@ -56,16 +61,23 @@ bool SpeedAxis::shows(const speed_pattern_t& pattern, std::uint16_t word) noexce
 void SpeedAxis::step(const ImageInput& input) noexcept {
   const double cycles = cycle_ < 0 ? 1.0 : static_cast<double>(input.cycle() - cycle_);
   cycle_ = input.cycle();
-  if (input.stale(static_cast<std::size_t>(words_.status))) {
-    state_ = SpeedState::unknown;
-    return;  // the last command is held
-  }
-  read(input);
+  if (is_stale(input)) return;  // the last command is held
   ramp(std::min(longest_step, cycles * static_cast<double>(input.period_ns()) * 1e-9));
   control_ = word_for_goal();
 }
 
+bool SpeedAxis::is_stale(const ImageInput& input) const noexcept {
+  return input.stale(static_cast<std::size_t>(words_.status));
+}
+
+/// A single missing status word does not end a run.
 void SpeedAxis::read(const ImageInput& input) noexcept {
+  if (is_stale(input)) {
+    if (silent_images_ < most_silent_images) ++silent_images_;
+    if (silent_images_ == most_silent_images) state_ = SpeedState::unknown;
+    return;
+  }
+  silent_images_ = 0;
   status_ = static_cast<std::uint16_t>(input.values()[static_cast<std::size_t>(words_.status)]);
   if (words_.actual_speed >= 0) {
     actual_counts_ = input.values()[static_cast<std::size_t>(words_.actual_speed)];
@@ -78,8 +90,17 @@ void SpeedAxis::read(const ImageInput& input) noexcept {
     return;
   }
   reset_steps_.reset();
+  leave_with_drive();
   const bool is_ready = words_.ready.mask == 0 || shows(words_.ready, status_);
   state_ = is_ready ? SpeedState::ready : SpeedState::not_ready;
+}
+
+/// A CiA 402 drive that has left Operation enabled by itself is not led back by itself.
+void SpeedAxis::leave_with_drive() noexcept {
+  if (words_.sequence != sequence_of_cia402) return;
+  const bool is_enabled = (status_ & state_bits) == operation_enabled;
+  if (was_enabled_ && !is_enabled) set_goal(SpeedGoal::off);
+  was_enabled_ = is_enabled;
 }
 
 void SpeedAxis::ramp(double seconds) noexcept {

@@ -20,7 +20,7 @@ enum class SpeedGoal : std::uint8_t {
 enum class SpeedState : std::uint8_t { unknown, fault, not_ready, ready };
 
 /// One speed axis: turns each image into its control word and its set speed. It uses neither LCM
-/// nor a clock. A fault makes the goal SpeedGoal::off.
+/// nor a clock.
 class SpeedAxis {
  public:
   /// `words` must have passed is_usable().
@@ -35,7 +35,10 @@ class SpeedAxis {
   void set_goal(SpeedGoal goal, double speed = 0.0, double acceleration = 0.0) noexcept;
   /// Begins to reset a fault.
   void reset_fault() noexcept;
-  /// Takes the newest image and computes the commands.
+  /// Takes the status of the newest image. A drive that has left Operation enabled by itself, and a
+  /// fault, make the goal SpeedGoal::off.
+  void read(const ImageInput& input) noexcept;
+  /// Computes the commands, once for each image, after read().
   void step(const ImageInput& input) noexcept;
 
   /// Returns the value of the control word that is to be sent.
@@ -59,7 +62,8 @@ class SpeedAxis {
 
  private:
   static bool shows(const speed_pattern_t& pattern, std::uint16_t word) noexcept;
-  void read(const ImageInput& input) noexcept;
+  bool is_stale(const ImageInput& input) const noexcept;
+  void leave_with_drive() noexcept;
   void ramp(double seconds) noexcept;
   std::int64_t word_for_goal() noexcept;
   std::int64_t word_to_move() const noexcept;
@@ -77,6 +81,8 @@ class SpeedAxis {
   std::int64_t control_ = 0;
   std::int64_t cycle_ = -1;
   std::uint16_t status_ = 0;
+  int silent_images_ = 0;           // in a row, without the status word
+  bool was_enabled_ = false;        // in the newest image; of the sequence of CiA 402
   std::optional<int> reset_steps_;  // images since the reset began; empty if none runs
 };
 

@@ -20,6 +20,12 @@ void SpeedDrives::stop() {
   }
 }
 
+void SpeedDrives::end_run() {
+  for (SpeedAxis& axis : axes_) {
+    if (axis.goal() == SpeedGoal::running) axis.set_goal(SpeedGoal::standing);
+  }
+}
+
 void SpeedDrives::run(const Eigen::Ref<const Eigen::VectorXd>& speeds,
                       const Eigen::VectorXd& accelerations) {
   accelerations_.assign(axes_.size(), 0.0);
@@ -30,6 +36,10 @@ void SpeedDrives::run(const Eigen::Ref<const Eigen::VectorXd>& speeds,
     acceleration = asked > 0.0 ? asked : at(i).words().max_acceleration;
     at(i).set_goal(SpeedGoal::running, speeds(i), acceleration);
   }
+}
+
+void SpeedDrives::read(const ImageInput& input) {
+  for (SpeedAxis& axis : axes_) axis.read(input);
 }
 
 void SpeedDrives::step(const ImageInput& input) {
@@ -62,8 +72,11 @@ bool SpeedDrives::all_run() const {
 }
 
 bool SpeedDrives::any_in_fault() const {
-  return std::ranges::any_of(
-      axes_, [](const SpeedAxis& axis) { return axis.state() == SpeedState::fault; });
+  return any([](const SpeedAxis& axis) { return axis.state() == SpeedState::fault; });
+}
+
+bool SpeedDrives::any_wants_to_run() const {
+  return any([](const SpeedAxis& axis) { return axis.goal() == SpeedGoal::running; });
 }
 
 bool SpeedDrives::moving() const {

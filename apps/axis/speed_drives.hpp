@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <span>
 #include <string>
 #include <takt/axis.hpp>
@@ -27,6 +28,11 @@ class SpeedDrives {
   /// The axes stop: their set speeds go to 0 with the acceleration of the newest run.
   void stop();
   void run(const Eigen::Ref<const Eigen::VectorXd>& speeds, const Eigen::VectorXd& accelerations);
+  /// Ends the run of the axes that run: their set speeds are 0 at once.
+  void end_run();
+  /// Takes the status words of the newest image.
+  void read(const ImageInput& input);
+  /// Computes the commands, once for each image, after read().
   void step(const ImageInput& input);
   /// Returns the command of all axes.
   command_t command() const;
@@ -35,6 +41,11 @@ class SpeedDrives {
   bool all_stand() const;
   bool all_run() const;
   bool any_in_fault() const;
+  bool any_wants_to_run() const;
+  template <class Is>
+  bool any(const Is& is) const {
+    return std::ranges::any_of(axes_, is);
+  }
   /// Returns true if at least one axis is to run, or does not stand.
   bool moving() const;
   /// Returns true if this is the node-ID of an axis.

@@ -502,13 +502,28 @@ class Axes:
             raise Obstacle("blocked", self._why_speed())
 
     def _run_speed(self, speeds, limits: dict) -> None:
+        """An older run does not go on if the new one fails."""
+        try:
+            self._begin_run(speeds, **limits)
+        except BaseException:
+            self._speed.stop()
+            raise
+
+    def _begin_run(self, speeds, *, acceleration=0.0) -> None:
         self._check(speeds)
+        asked = acceleration if isinstance(acceleration, (list, tuple)) else [acceleration] * len(speeds)
+        self._check(asked)
+        speeds, asked = list(map(float, speeds)), list(map(float, asked))
         for axis, speed in zip(self._speed.axes, speeds):
             most, unit = axis.words.max_speed, axis.words.unit
             if not axis.can_hold(speed):
                 raise Obstacle("wrong use", f"{axis.name} can't be commanded to run at {speed} {unit}")
             if 0 < most < abs(speed):
                 raise Obstacle("refused", f"{speed} {unit} is above the limit of {axis.name}, {most} {unit}")
+        for axis, value in zip(self._speed.axes, asked):
+            most, unit = axis.words.max_acceleration, axis.words.unit
+            if 0 < most < value:
+                raise Obstacle("refused", f"an acceleration of {value} {unit}/s is above the limit of {axis.name}, {most} {unit}/s")
         if not self._enabled:
             raise Obstacle("blocked", f"{', '.join(self.names)}: call enable() first")
         self._events.clear()
@@ -516,15 +531,11 @@ class Axes:
         self._step()  # after a long silence, the messages that wait tell that the drives were stopped
         if self._speed_ended():
             raise Obstacle("blocked", self._speed_ended())
-        self._speed.run(speeds, limits.get("acceleration", 0.0))
+        self._speed.run(speeds, asked)
         runs = lambda: all(axis.runs for axis in self._speed.axes)
-        try:
-            self._wait(lambda: runs() or self._speed_ended(), self.longest)
-            if not runs():
-                raise Obstacle("blocked", self._speed_ended() or "the drives do not begin to run")
-        except BaseException:
-            self._speed.stop()
-            raise
+        self._wait(lambda: runs() or self._speed_ended(), self.longest)
+        if not runs():
+            raise Obstacle("blocked", self._speed_ended() or "the drives do not begin to run")
 
     def _wait_speed(self, seconds: float) -> None:
         if not self._wait(lambda: not self._speed.moving or self._speed_ended(), seconds):
@@ -728,6 +739,8 @@ class Axes:
                     return False
         except BaseException:
             self._jog_wanted = False  # who catches it may wait again, which must not renew a jog
+            if self._speed:
+                self._speed.stop()
             raise
 
     def _step(self) -> None:
@@ -752,7 +765,8 @@ class Axes:
                 if not self._link.handle_timeout(0):
                     break
         if self._speed and self._cycle != cycle:
-            self._speed.step(self._values, self._stale, self._cycle, self._period, self.timeout if self._commanding else None)
+            self._speed.step(self._values, self._stale, self._cycle, self._period, self.timeout if self._commanding else None,
+                             self._speed_ended)
             if self._commanding:
                 self._command()
         elif self._words is not None and self._cycle != cycle:

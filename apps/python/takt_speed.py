@@ -13,6 +13,7 @@ OFF, STANDING, RUNNING = "off", "standing", "running"  # what the program wants
 UNKNOWN, FAULT, NOT_READY, READY = "unknown", "fault", "not ready", "ready"  # what the status word shows
 LONGEST_STEP = 0.05  # seconds for which the set speed changes in one step
 STEPS_BEFORE_RESET = 3  # images for which the command before a fault reset is sent
+SILENT_IMAGES = 3  # a status word that is missing in so many images in a row is unknown
 # The controlword of CiA 402 for each state (mask, pattern) on the way to Operation enabled, and on the way back.
 ENABLING = ((0x4F, 0x40, 0x06), (0x6F, 0x21, 0x07), (0x6F, 0x23, 0x0F), (0x6F, 0x27, 0x0F))
 DISABLING = ((0x6F, 0x27, 0x07), (0x6F, 0x23, 0x06))
@@ -39,20 +40,22 @@ class SpeedAxis:
         self.goal, self.state, self.control = OFF, UNKNOWN, words.off
         self.target = self.acceleration = self.commanded = self.actual = 0.0
         self.counts, self.status, self.cycle, self.reset_steps = 0, 0, None, None
+        self.silent_images, self.was_enabled = 0, False  # was_enabled: in the newest image, of CiA 402
 
     def want(self, goal: str, speed: float = 0.0, acceleration: float = 0.0) -> None:
         self.goal, self.target, self.acceleration = goal, speed if goal == RUNNING else 0.0, acceleration
         if goal == OFF:
             self.commanded = 0.0
 
-    def step(self, values: dict, stale: set, cycle: int, period: float) -> None:
-        """Takes an image."""
-        cycles = 1 if self.cycle is None else cycle - self.cycle
-        self.cycle = cycle
+    def read(self, values: dict, stale: set) -> None:
+        """Takes the status of an image. A fault, and a CiA 402 drive that has left Operation enabled by itself, end all wishes."""
         words = self.words
         if words.status in stale:
-            self.state = UNKNOWN
+            self.silent_images += 1
+            if self.silent_images >= SILENT_IMAGES:
+                self.state = UNKNOWN
             return
+        self.silent_images = 0
         self.status = values[words.status] & 0xFFFF
         if words.actual_speed >= 0:
             self.counts = values[words.actual_speed]
@@ -65,6 +68,17 @@ class SpeedAxis:
             self.reset_steps = None
             ready = words.ready.mask == 0 or _shows(words.ready, self.status)
             self.state = READY if ready else NOT_READY
+            enabled = words.sequence == CIA402 and self.status & 0x6F == 0x27
+            if self.was_enabled and not enabled:
+                self.want(OFF)
+            self.was_enabled = enabled
+
+    def step(self, stale: set, cycle: int, period: float) -> None:
+        """Computes the commands, once for each image, after read()."""
+        cycles = 1 if self.cycle is None else cycle - self.cycle
+        self.cycle = cycle
+        if self.words.status in stale:
+            return
         most = self.acceleration * min(LONGEST_STEP, cycles * period)
         change = self.target - self.commanded
         self.commanded = self.target if self.acceleration <= 0 else self.commanded + max(-most, min(most, change))
@@ -135,19 +149,34 @@ class SpeedDrives:
             if axis.goal != OFF:
                 axis.want(STANDING, 0.0, axis.acceleration)
 
-    def run(self, speeds, acceleration) -> None:
-        for place, (axis, speed) in enumerate(zip(self.axes, speeds)):
-            asked = acceleration[place] if isinstance(acceleration, (list, tuple)) else acceleration
-            axis.want(RUNNING, float(speed), float(asked) or axis.words.max_acceleration)
+    def run(self, speeds: list[float], accelerations: list[float]) -> None:
+        for axis, speed, asked in zip(self.axes, speeds, accelerations):
+            axis.want(RUNNING, speed, asked if asked > 0 else axis.words.max_acceleration)
 
-    def step(self, values: dict, stale: set, cycle: int, period: float, timeout: float | None) -> None:
-        """Takes an image. A program that was silent for longer than `timeout` does not make the drives run again."""
+    def end_run(self, why: str) -> None:
+        """Ends the run of all axes, which must not run again by themselves when the cause is gone."""
+        self.stopped = why
+        for axis in self.axes:
+            if axis.goal == RUNNING:
+                axis.want(STANDING)
+
+    @property
+    def wants_to_run(self) -> bool:
+        return any(axis.goal == RUNNING for axis in self.axes)
+
+    def step(self, values: dict, stale: set, cycle: int, period: float, timeout: float | None, why_ended) -> None:
+        """Takes an image. A program that was silent for longer than `timeout`, or whose run was ended as `why_ended()` says,
+        does not make the drives run again."""
         silence = time.monotonic() - self.sent
         if timeout is not None and silence > timeout and self.moving:
-            self.stopped = f"this program was silent for {silence:.3f} s, so the drives were stopped"
-            self.want(STANDING)
+            self.end_run(f"this program was silent for {silence:.3f} s, so the drives were stopped")
+        running = self.wants_to_run
         for axis in self.axes:
-            axis.step(values, stale, cycle, period)
+            axis.read(values, stale)
+        if running and why_ended():
+            self.end_run(why_ended())
+        for axis in self.axes:
+            axis.step(stale, cycle, period)
         self.sent = time.monotonic()
 
     def values(self) -> dict[int, int]:

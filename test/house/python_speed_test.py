@@ -36,7 +36,8 @@ class Drive:
 
     def image(self, status, speed=0, stale=()):
         self.cycle += 1
-        self.axis.step({0: status, 1: speed}, set(stale), self.cycle, PERIOD)
+        self.axis.read({0: status, 1: speed}, set(stale))
+        self.axis.step(set(stale), self.cycle, PERIOD)
         return self.axis.control, self.axis.raw
 
 
@@ -86,16 +87,31 @@ sent = [drive.image(status)[0] for status in (0x250, 0x231, 0x233, 0x237)]
 check("a drive in velocity mode is led to operation enabled", sent == [0x06, 0x07, 0x0F, 0x3F], sent)
 drive.axis.want(RUNNING, 100)
 check("its ramp gets the set speed", drive.image(0x237) == (0x7F, 100))
+drive.image(0x250)
+check("a drive that has left operation enabled by itself is not led back", drive.axis.goal == OFF and drive.image(0x250)[0] == 0)
 
 axes = SpeedDrives([SpeedAxis(words(), {3: types.SimpleNamespace(data_type=6, bits=16)})])
 clock = types.SimpleNamespace(now=0.0)
 takt_speed.time = types.SimpleNamespace(monotonic=lambda: clock.now)
-axes.run([20], 0.0)
-axes.step({0: 1, 1: 0}, set(), 1, PERIOD, 0.5)
+ended = ""
+image = lambda cycle, stale=(): axes.step({0: 1, 1: 2000}, set(stale), cycle, PERIOD, 0.5, lambda: ended)
+axes.run([20.0], [0.0])
+image(1)
 check("the words of an axis are its outputs", axes.values() == {2: 1, 3: 2000}, axes.values())
 clock.now = 0.6
-axes.step({0: 1, 1: 2000}, set(), 2, PERIOD, 0.5)
+image(2)
 check("an axis does not run again after a silence", axes.values() == {2: 5, 3: 0} and "was silent for" in axes.stopped, axes.values())
-axes.step({0: 1, 1: 2000}, {0}, 3, PERIOD, 0.5)
+image(3, [0])
+check("a single missing status word changes nothing", axes.values() == {2: 5, 3: 0})
+image(4, [0])
+image(5, [0])
 check("without its status word, an axis gets no command", axes.values() == {})
+axes.run([20.0], [0.0])
+image(6)
+ended = "its commands were too old"
+image(7)
+check("an axis whose run was ended gets the command to stop", axes.values() == {2: 5, 3: 0} and axes.stopped == ended, axes.values())
+ended = ""
+image(8)
+check("it does not run again when the cause is gone", axes.values() == {2: 5, 3: 0})
 sys.exit(1 if failures else 0)

@@ -124,9 +124,21 @@ class SpeedAxisCompiler {
     }
   }
 
-  /// Sets the fallback of the words. Those of a CiA 402 drive are set already.
+  /// Sets the time to live and the fallback of the words.
   void stop_when_silent(const SpeedAxisPlan& axis) {
-    if (plan_.nodes[index_].cia402) return;
+    // The fallback of a CiA 402 drive is set already.
+    if (!plan_.nodes[index_].cia402) set_fallback(axis);
+    const TimeoutSpec& timeout = node_.spec->on_timeout;
+    if (timeout.after.given || timeout.after_cycles.given) return;
+    TimeoutSpec longer;
+    longer.after = {static_cast<std::uint32_t>(speed_time_to_live.count()), {}, true};
+    for (Signal& one : plan_.layout.signals) {
+      if (one.node_index != index_ || !one.output) continue;
+      one.fallback_cycles = fallback_cycles(longer, plan_.cycle.period);
+    }
+  }
+
+  void set_fallback(const SpeedAxisPlan& axis) {
     const TimeoutSpec& timeout = node_.spec->on_timeout;
     const FallbackPolicy policy = timeout.fallback.value_or(FallbackPolicy::quick_stop);
     Signal& command = plan_.layout.signals[axis.control];
@@ -139,13 +151,6 @@ class SpeedAxisCompiler {
     if (policy == FallbackPolicy::disable) command.fallback_value = axis.commands.off;
     if (timeout.fallback.given && policy == FallbackPolicy::quick_stop) {
       command.fallback_value = axis.commands.quick_stop.value_or(axis.commands.stop);
-    }
-    if (timeout.after.given || timeout.after_cycles.given) return;
-    TimeoutSpec longer;
-    longer.after = {static_cast<std::uint32_t>(speed_time_to_live.count()), {}, true};
-    for (Signal& one : plan_.layout.signals) {
-      if (one.node_index != index_ || !one.output) continue;
-      one.fallback_cycles = fallback_cycles(longer, plan_.cycle.period);
     }
   }
 

@@ -140,6 +140,15 @@ TEST_F(SpeedAxesOnABus, TellThatTaktdHasStoppedThem) {
   ASSERT_TRUE(axes.jog(one(20.0)));
   daemon_.fell_back = true;
   EXPECT_EQ(obstacle_of(axes.wait()).text, "pump stops: its commands are too old");
+  EXPECT_TRUE(reaches(axes, 0)) << "it does not run again by itself";
+  EXPECT_EQ(daemon_.control, 5);
+}
+
+TEST_F(SpeedAxesOnABus, DoNotGoOnIfANewRunIsRefused) {
+  Axes axes = open_enabled();
+  ASSERT_TRUE(axes.jog(one(20.0)));
+  EXPECT_EQ(obstacle_of(axes.jog(one(120.0))).kind, Kind::refused);
+  EXPECT_TRUE(reaches(axes, 0));
 }
 
 TEST_F(SpeedAxesOnABus, SayWhoHoldsThem) {
