@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,11 +35,17 @@ class Follow : public ::testing::Test {
 };
 
 TEST_F(Follow, TheAxisLocksToAnInputAndIsDisabledAtTheEnd) {
-  Process program{follow(daemon_, {"--leader", "shoulder", "--signal", "position_actual_value",
-                                   "--ratio", "-1/2", "--for", "500ms"}),
-                  folder_ / "follow"};
-  EXPECT_EQ(program.wait([this] { hear_once(); }), 0) << program.output();
-  EXPECT_NE(program.output().find("elbow follows at"), std::string::npos) << program.output();
+  std::optional<int> code;
+  std::string output;
+  do {
+    Process program{follow(daemon_, {"--leader", "shoulder", "--signal", "position_actual_value",
+                                     "--ratio", "-1/2", "--for", "500ms"}),
+                    folder_ / "follow"};
+    code = program.wait([this] { hear_once(); });
+    output = program.output();
+  } while (code != 0 && missed_cycles(output));
+  EXPECT_EQ(code, 0) << output;
+  EXPECT_NE(output.find("elbow follows at"), std::string::npos) << output;
   EXPECT_TRUE(daemon_.hear([&] { return (daemon_.value("elbow", "statusword") & 0x6F) != 0x27; }));
 }
 

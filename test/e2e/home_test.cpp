@@ -13,9 +13,10 @@ namespace takt::test {
 namespace {
 
 /// The shoulder homes at its present position, the elbow by a switch, or by a method that its drive
-/// does not have.
+/// does not have. It leaves the switch at `speed_zero`, rad/s.
 std::filesystem::path homing_network(const std::filesystem::path& folder,
-                                     const std::string& method_of_elbow) {
+                                     const std::string& method_of_elbow,
+                                     const std::string& speed_zero) {
   return slow_network(folder, [&](std::string& text) {
     const auto add = [&](const std::string& node, const std::string& homing) {
       const std::size_t at = text.find(node);
@@ -23,15 +24,19 @@ std::filesystem::path homing_network(const std::filesystem::path& folder,
     };
     add("shoulder: {<<: *axis, node_id: 1", "37");
     add("elbow: {<<: *axis, node_id: 2", "{method: " + method_of_elbow +
-                                             ", speed_switch: 2, speed_zero: 0.5, "
+                                             ", speed_switch: 2, speed_zero: " + speed_zero +
+                                             ", "
                                              "acceleration: 20}");
   });
 }
 
+/// The homing run has not ended before a busy machine has ended it.
+const std::string slow = "0.001";
+
 class Home : public ::testing::Test {
  protected:
-  void start(const std::string& method_of_elbow) {
-    daemon_.emplace(homing_network(folder_.path(), method_of_elbow),
+  void start(const std::string& method_of_elbow, const std::string& speed_zero = "0.5") {
+    daemon_.emplace(homing_network(folder_.path(), method_of_elbow, speed_zero),
                     std::vector<std::string>{"--bus", "sim"});
     ASSERT_TRUE(daemon_->hear([this] { return daemon_->all_ready(); }));
   }
@@ -96,7 +101,7 @@ TEST_F(Home, SaysWhatIsWrongWithAnAxis) {
 }
 
 TEST_F(Home, ASignalStopsTheAxis) {
-  start("17");
+  start("17", slow);
   Process program = home({"elbow"});
   ASSERT_TRUE(daemon_->hear([&] { return std::abs(position("elbow")) > 100; }));
   program.signal(SIGINT);
@@ -108,7 +113,7 @@ TEST_F(Home, ASignalStopsTheAxis) {
 
 /// The program dies in the middle: the drive takes the fallback of `on_timeout`.
 TEST_F(Home, WithoutTheProgramTheAxisStops) {
-  start("17");
+  start("17", slow);
   {
     Process program = home({"elbow"});
     ASSERT_TRUE(daemon_->hear([&] { return std::abs(position("elbow")) > 100; }));

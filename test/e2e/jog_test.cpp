@@ -24,12 +24,6 @@ std::vector<std::string> jog(const DaemonProcess& daemon, std::vector<std::strin
   return line;
 }
 
-/// Whether a busy machine has stopped the motion: the bus thread has missed cycles.
-bool missed_cycles(const std::string& output) {
-  return output.find("its set-points were not sent in several cycles") != output.npos ||
-         output.find("SYNC was missing in several periods") != output.npos;
-}
-
 class Jog : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -81,6 +81,11 @@ Ended run(std::vector<std::string> arguments, const fs::path& folder) {
   return {exit_code, process.output()};
 }
 
+bool missed_cycles(const std::string& output) {
+  return output.find("its set-points were not sent in several cycles") != output.npos ||
+         output.find("SYNC was missing in several periods") != output.npos;
+}
+
 std::string read_file(const fs::path& path) {
   std::ifstream file{path};
   return {std::istreambuf_iterator<char>{file}, {}};

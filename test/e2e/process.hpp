@@ -41,6 +41,10 @@ struct Ended {
 };
 Ended run(std::vector<std::string> arguments, const std::filesystem::path& folder);
 
+/// Returns true if a program tells that a motion was stopped because the bus thread has missed
+/// cycles, as it does on a busy machine.
+bool missed_cycles(const std::string& output);
+
 std::string read_file(const std::filesystem::path& path);
 
 }  // namespace takt::test

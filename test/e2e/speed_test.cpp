@@ -61,17 +61,19 @@ class Speed : public testing::TestWithParam<Inverter> {
 };
 
 TEST_P(Speed, JogsAnInverterAndStopsIt) {
-  Process program{jog(GetParam().speed, "3s"), folder_ / "jog"};
+  Process program{jog(GetParam().speed, "100s"), folder_ / "jog"};
   EXPECT_TRUE(comes_to(GetParam().counts)) << program.output();
+  program.signal(SIGINT);
   EXPECT_EQ(program.wait([this] { hear_once(); }), 0) << program.output();
   EXPECT_TRUE(comes_to(0));
   EXPECT_EQ(daemon_.events("fallback_begun"), 0U);
 }
 
 TEST_P(Speed, RunsBackward) {
-  Process program{jog("-" + std::string{GetParam().speed}, "3s"), folder_ / "jog"};
+  Process program{jog("-" + std::string{GetParam().speed}, "100s"), folder_ / "jog"};
   const bool has_sign = GetParam().demo != std::string{"astraada_drv28"};
   EXPECT_TRUE(comes_to(has_sign ? -GetParam().counts : GetParam().counts)) << program.output();
+  program.signal(SIGINT);
   EXPECT_EQ(program.wait([this] { hear_once(); }), 0) << program.output();
 }
 
