@@ -24,9 +24,11 @@ for program in takt takt-move; do printf '#!/bin/sh\n' >"$fake/bin/$program"; do
 chmod +x "$fake"/bin/*
 (cd "$fake" && DEMO_NETWORK=net.yaml TAKT_DEMO_BIN=bin sh "$OLDPWD/share/demo.sh") >"$log" || { cat "$log" && exit 1; }
 
-for _ in 1 2 3; do
+# A busy machine may stand still, or miss cycles, which stops the move.
+busy="This machine stood still|its set-points were not sent in several cycles|SYNC was missing in several periods"
+for _ in 1 2 3 4 5 6; do
   if $alone sh share/demo.sh >"$log" 2>&1; then cat "$log" && exit 0; fi
   cat "$log"
-  grep -q "This machine stood still" "$log" || exit 1
+  grep -qE "$busy" "$log" || exit 1
 done
 exit 1
