@@ -271,14 +271,19 @@ TEST(MovingApplication, LetsTaktdRunTheMoveWhereItRunsMotions) {
   const Folder folder;
   DaemonProcess daemon{slow_network(folder.path()), {"--bus", "sim"}};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
-  Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--to", "0.5"}, folder / "move"};
   int rounds = 0;
   const auto hear_once = [&] { daemon.hear([&] { return rounds++ % 2 == 1; }); };
+  std::optional<int> code;
+  std::string output;
+  do {
+    Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--to", "0.5"}, folder / "move"};
+    code = move.wait(hear_once);
+    output = move.output();
+  } while (code != 0 && missed_cycles(output));
 
-  EXPECT_EQ(move.wait(hear_once), 0) << move.output();
-
-  EXPECT_NE(move.output().find(" s, by taktd"), std::string::npos) << move.output();
-  EXPECT_NE(move.output().find("The axes followed."), std::string::npos) << move.output();
+  EXPECT_EQ(code, 0) << output;
+  EXPECT_NE(output.find(" s, by taktd"), std::string::npos) << output;
+  EXPECT_NE(output.find("The axes followed."), std::string::npos) << output;
   EXPECT_NEAR(static_cast<double>(daemon.value("shoulder", "position_actual_value")), 796, 4)
       << "0.5 rad in counts";
 }

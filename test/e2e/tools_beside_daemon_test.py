@@ -60,7 +60,8 @@ class Bus:
 def main(binaries):
     with tempfile.TemporaryDirectory() as folder:
         bus = Bus(binaries, folder)
-        daemon = bus.start("taktd", bus.network, "--bus", "sim")
+        # A move that takt-move computes itself outlives the cycles that a busy machine misses.
+        daemon = bus.start("taktd", bus.network, "--bus", "sim", "--no-motions")
         try:
             check("shoulder" in bus.await_good("status"), "takt status names the axis")
             move = bus.start("takt-move", "--for", "6s", "--wait", str(PATIENCE))
