@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "apps/command_line/duration.hpp"
+#include "apps/command_line/duration_option.hpp"
 #include "apps/command_line/known_words.hpp"
 #include "apps/command_line/live_arguments.hpp"
 
@@ -37,13 +37,6 @@ std::string not_finite(const std::string& text) {
   return number(text) ? std::string{} : text + " is not a finite number";
 }
 
-void add_time(CLI::App& app, const std::string& name, Time& time, const std::string& what) {
-  app.add_option_function<std::string>(
-         name, [&time](const std::string& text) { time = parse_duration(text).value_or(time); },
-         what)
-      ->check(duration_error);
-}
-
 void add_limit(CLI::App& app, const std::string& name, double& limit, const std::string& what) {
   app.add_option(name, limit, what)->check(CLI::PositiveNumber & CLI::Validator{not_finite, ""});
 }
@@ -62,8 +55,11 @@ ParsedFollow parse_follow(int argc, char** argv) {
       "Exit codes: 0 the axis was stopped and disabled, 1 something blocks it, 2 wrong use,\n"
       "3 no message of a daemon came.");
   app.set_version_flag("--version", "takt-follow " TAKT_VERSION);
-  app.add_option("bus", options.bus, "name of the bus (default: the first bus whose daemon sends)");
-  app.add_option("--axis", options.axis, "axis that follows (default: the only axis of the bus)");
+  app.add_option("bus", options.program.bus,
+                 "name of the bus (default: the first bus whose daemon sends)");
+  app.add_option_function<std::string>(
+      "--axis", [&](const std::string& name) { options.program.axes = {name}; },
+      "axis that follows (default: the only axis of the bus)");
   app.add_option("--leader", options.leader, "axis that leads, or the node of --signal")
       ->required();
   app.add_option("--signal", options.signal,
@@ -78,23 +74,23 @@ ParsedFollow parse_follow(int argc, char** argv) {
                  "catch up the position ratio * leader + PHASE (default: match the velocities)")
       ->check(not_finite);
   add_limit(app, "--modulo", options.modulo, "value at which the signal begins again");
-  add_time(app, "--filter", options.filter_time,
-           "time constant of the estimate of the signal's velocity, up to 10s (20ms)");
+  add_duration(app, "--filter", options.filter_time,
+               "time constant of the estimate of the signal's velocity, up to 10s (20ms)");
   add_limit(app, "--max-phase-error", options.max_phase_error,
             "stop if the axis falls behind by more (default: catch up)");
   add_limit(app, "--velocity", options.velocity,
             "velocity limit, unit/s (default: that of the network file)");
   add_limit(app, "--acceleration", options.acceleration, "acceleration limit, unit/s^2 (the same)");
   add_limit(app, "--jerk", options.jerk, "jerk limit, unit/s^3 (the same)");
-  add_time(app, "--timeout", options.timeout,
-           "taktd stops the axis if this program is silent for so long, up to 10s (500ms)");
-  app.add_option_function<std::string>(
-         "--for", [&](const std::string& text) { options.seconds = parse_duration(text); },
-         "follow for this time once the axis is locked, then stop")
-      ->check(duration_error);
-  add_time(app, "--wait", options.wait, "longest wait for the daemon and the drive (10s)");
-  app.add_option("--lcm-url", options.lcm.url, "LCM URL of the daemon; default: LCM_DEFAULT_URL");
-  add_key_options(app, options.lcm.keys, options.lcm.check_images);
+  add_duration(app, "--timeout", options.program.timeout,
+               "taktd stops the axis if this program is silent for so long, up to 10s (500ms)");
+  add_duration(app, "--for", options.seconds,
+               "follow for this time once the axis is locked, then stop");
+  add_duration(app, "--wait", options.program.wait,
+               "longest wait for the daemon and the drive (10s)");
+  app.add_option("--lcm-url", options.program.lcm.url,
+                 "LCM URL of the daemon; default: LCM_DEFAULT_URL");
+  add_key_options(app, options.program.lcm.keys, options.program.lcm.check_images);
   const auto exit_code = parse_arguments(app, argc, argv);
   return {options, exit_code};
 }

@@ -2,18 +2,16 @@
 #include <optional>
 #include <string>
 
-#include "apps/axis/lcm_access.hpp"
+#include "apps/axis/axes_program.hpp"
 #include "eds_parser/table/time.hpp"
 
 namespace takt {
 
 /// Options of takt-follow. Lengths are in the unit of the axis, times of limits in seconds.
 struct FollowOptions {
-  std::string bus;     ///< empty: the first bus whose layout arrives
-  std::string axis;    ///< empty: the only axis of the bus
+  AxesProgram program{.name = "takt-follow"};
   std::string leader;  ///< an axis, or the node of `signal`
   std::string signal;  ///< empty: the commanded position of the leader
-  LcmAccess lcm;
   double ratio = 1.0;
   std::optional<double> phase;
   double modulo = 0.0;
@@ -22,9 +20,7 @@ struct FollowOptions {
   double velocity = 0.0;  ///< 0: that of the network file, as for the next two
   double acceleration = 0.0;
   double jerk = 0.0;
-  Time timeout = std::chrono::milliseconds{500};
   std::optional<Time> seconds;  ///< follow for so long, then stop
-  Time wait = std::chrono::seconds{10};
 };
 
 /// Result of reading the command line. If there is an exit code, the program ends with it.

@@ -2,22 +2,11 @@
 
 #include <CLI/CLI.hpp>
 
-#include "apps/command_line/duration.hpp"
+#include "apps/command_line/duration_option.hpp"
 #include "apps/command_line/known_words.hpp"
 #include "apps/command_line/live_arguments.hpp"
 
 namespace takt {
-namespace {
-
-template <class Duration>
-void add_time(CLI::App& app, const std::string& name, Duration& time, const std::string& what) {
-  app.add_option_function<std::string>(
-         name, [&time](const std::string& text) { time = parse_duration(text).value_or(time); },
-         what)
-      ->check(duration_error);
-}
-
-}  // namespace
 
 ParsedHome parse_home(int argc, char** argv) {
   HomeOptions options;
@@ -30,21 +19,23 @@ ParsedHome parse_home(int argc, char** argv) {
       "Exit codes: 0 all axes are homed and disabled, 1 an axis was not homed, 2 wrong use,\n"
       "3 no message of a daemon came.");
   app.set_version_flag("--version", "takt-home " TAKT_VERSION);
-  app.add_option("bus", options.bus, "name of the bus")->required();
-  app.add_option("axes", options.axes,
+  app.add_option("bus", options.program.bus, "name of the bus")->required();
+  app.add_option("axes", options.program.axes,
                  "names of the axes, in the order of their homing (default: all axes of the bus)");
   app.add_flag_callback(
       "--together", [&] { options.homing.order = HomingOptions::Order::together; },
       "home all axes at once, not one after the other");
   app.add_flag("--reset", options.reset, "reset the faults of the axes first");
-  add_time(app, "--within", options.homing.longest,
-           "longest time of a homing run (default: that of the network file, else 60s)");
-  add_time(
-      app, "--timeout", options.timeout,
+  add_duration(app, "--within", options.homing.longest,
+               "longest time of a homing run (default: that of the network file, else 60s)");
+  add_duration(
+      app, "--timeout", options.program.timeout,
       "the drives take their fallback if this program is silent for so long, up to 10s (500ms)");
-  add_time(app, "--wait", options.wait, "longest wait for the daemon and the drives (10s)");
-  app.add_option("--lcm-url", options.lcm.url, "LCM URL of the daemon; default: LCM_DEFAULT_URL");
-  add_key_options(app, options.lcm.keys, options.lcm.check_images);
+  add_duration(app, "--wait", options.program.wait,
+               "longest wait for the daemon and the drives (10s)");
+  app.add_option("--lcm-url", options.program.lcm.url,
+                 "LCM URL of the daemon; default: LCM_DEFAULT_URL");
+  add_key_options(app, options.program.lcm.keys, options.program.lcm.check_images);
   const auto exit_code = parse_arguments(app, argc, argv);
   return {options, exit_code};
 }

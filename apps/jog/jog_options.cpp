@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
-#include "apps/command_line/duration.hpp"
+#include "apps/command_line/duration_option.hpp"
 #include "apps/command_line/known_words.hpp"
 #include "apps/command_line/live_arguments.hpp"
 
@@ -15,13 +15,6 @@ std::string moving(const std::string& text) {
   double value = 0.0;
   const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value != 0.0;
   return good ? std::string{} : text + " is not a finite number other than 0";
-}
-
-void add_time(CLI::App& app, const std::string& name, Time& time, const std::string& what) {
-  app.add_option_function<std::string>(
-         name, [&time](const std::string& text) { time = parse_duration(text).value_or(time); },
-         what)
-      ->check(duration_error);
 }
 
 }  // namespace
@@ -39,8 +32,11 @@ ParsedJog parse_jog(int argc, char** argv) {
       "Exit codes: 0 the axis was stopped and disabled, 1 something blocks it, 2 wrong use,\n"
       "3 no message of a daemon came.");
   app.set_version_flag("--version", "takt-jog " TAKT_VERSION);
-  app.add_option("bus", options.bus, "name of the bus (default: the first bus whose daemon sends)");
-  app.add_option("--axis", options.axis, "name of the axis (default: the only axis of the bus)");
+  app.add_option("bus", options.program.bus,
+                 "name of the bus (default: the first bus whose daemon sends)");
+  app.add_option_function<std::string>(
+      "--axis", [&](const std::string& name) { options.program.axes = {name}; },
+      "name of the axis (default: the only axis of the bus)");
   app.add_option("--velocity", options.velocity,
                  "velocity of the jog, unit/s; a negative one swaps the directions of the keys")
       ->required()
@@ -52,19 +48,18 @@ ParsedJog parse_jog(int argc, char** argv) {
       ->check(CLI::PositiveNumber & CLI::Validator{moving, ""});
   app.add_option("--jerk", options.jerk, "jerk limit, unit/s^3 (default: that of the network file)")
       ->check(CLI::PositiveNumber & CLI::Validator{moving, ""});
-  add_time(app, "--dead-man", options.dead_man,
-           "the axis stops if the key is not repeated for so long (250ms)");
-  add_time(app, "--first", options.first,
-           "the same after the first press, before the terminal repeats (700ms)");
-  add_time(app, "--timeout", options.timeout,
-           "taktd stops the axis if this program is silent for so long, up to 10s (500ms)");
-  app.add_option_function<std::string>(
-         "--for", [&](const std::string& text) { options.seconds = parse_duration(text); },
-         "jog for this time without a keyboard, then stop")
-      ->check(duration_error);
-  add_time(app, "--wait", options.wait, "longest wait for the daemon and the drive (10s)");
-  app.add_option("--lcm-url", options.lcm.url, "LCM URL of the daemon; default: LCM_DEFAULT_URL");
-  add_key_options(app, options.lcm.keys, options.lcm.check_images);
+  add_duration(app, "--dead-man", options.dead_man,
+               "the axis stops if the key is not repeated for so long (250ms)");
+  add_duration(app, "--first", options.first,
+               "the same after the first press, before the terminal repeats (700ms)");
+  add_duration(app, "--timeout", options.program.timeout,
+               "taktd stops the axis if this program is silent for so long, up to 10s (500ms)");
+  add_duration(app, "--for", options.seconds, "jog for this time without a keyboard, then stop");
+  add_duration(app, "--wait", options.program.wait,
+               "longest wait for the daemon and the drive (10s)");
+  app.add_option("--lcm-url", options.program.lcm.url,
+                 "LCM URL of the daemon; default: LCM_DEFAULT_URL");
+  add_key_options(app, options.program.lcm.keys, options.program.lcm.check_images);
   const auto exit_code = parse_arguments(app, argc, argv);
   return {options, exit_code};
 }

@@ -2,25 +2,21 @@
 #include <optional>
 #include <string>
 
-#include "apps/axis/lcm_access.hpp"
+#include "apps/axis/axes_program.hpp"
 #include "eds_parser/table/time.hpp"
 
 namespace takt {
 
 /// Options of takt-jog. Lengths are in the unit of the axis, times of limits in seconds.
 struct JogOptions {
-  std::string bus;   ///< empty: the first bus whose layout arrives
-  std::string axis;  ///< empty: the only axis of the bus
-  LcmAccess lcm;
+  AxesProgram program{.name = "takt-jog"};
   double velocity = 0.0;
   /// Empty: the axis reaches its velocity in a quarter of a second.
   std::optional<double> acceleration;
   double jerk = 0.0;  ///< 0: that of the network file
   Time first = std::chrono::milliseconds{700};
   Time dead_man = std::chrono::milliseconds{250};
-  Time timeout = std::chrono::milliseconds{500};
   std::optional<Time> seconds;  ///< jog for so long without a keyboard
-  Time wait = std::chrono::seconds{10};
 };
 
 /// Result of reading the command line. If there is an exit code, the program ends with it.

@@ -1,0 +1,33 @@
+#pragma once
+#include <chrono>
+#include <expected>
+#include <functional>
+#include <string>
+#include <takt/motion.hpp>
+#include <vector>
+
+#include "apps/axis/lcm_access.hpp"
+
+namespace takt {
+
+/// What the programs that command axes have in common.
+struct AxesProgram {
+  std::string name;                    ///< for events and messages: "takt-jog"
+  std::string bus = {};                ///< empty: the first bus whose layout arrives
+  std::vector<std::string> axes = {};  ///< in this order; empty: all axes of the bus
+  LcmAccess lcm = {};
+  std::chrono::nanoseconds wait = std::chrono::seconds{10};  ///< for the daemon and the drives
+  std::chrono::nanoseconds timeout = std::chrono::milliseconds{500};  ///< as in AxesOptions
+};
+
+/// Opens the axes of a program. A signal interrupts their calls while run_program() runs.
+std::expected<Axes, Obstacle> open_axes(const AxesProgram& program);
+
+/// As above, for a program that moves one axis.
+std::expected<Axes, Obstacle> open_axis(const AxesProgram& program);
+
+/// Runs the work of a program. SIGINT, SIGTERM, SIGHUP and SIGPIPE interrupt it. Prints the
+/// obstacle and returns the exit code: 0 done, 1 something blocks it, 2 wrong use, 3 no bus.
+int run_program(const std::string& name, const std::function<Done()>& work);
+
+}  // namespace takt
