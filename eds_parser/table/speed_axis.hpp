@@ -10,7 +10,7 @@
 
 namespace takt {
 
-/// What one state of a drive looks like in its status word.
+/// States by which bits of its status word a drive shows one of its states.
 struct WordPattern {
   std::uint16_t mask = 0;               ///< the bits that count; 0 = the state is not shown
   std::vector<std::uint16_t> values{};  ///< the bits of `mask` in this state, one of these values

@@ -18,8 +18,8 @@ using test::standing;
 using test::stopped;
 using test::stopping;
 
-/// Until then, motions cost the bus thread nothing. From then on, a target position that nobody has
-/// commanded follows the actual position.
+/// Before the first sign of life, motions cost the bus thread nothing. After it, a target position
+/// that nobody has commanded follows the actual position.
 TEST(MotionCommand, TheBusThreadReadsTheAxesFromTheFirstSignOfLifeOn) {
   MotionBus bus;
   bus.run(10);

@@ -60,7 +60,7 @@ class HomingSteps : BootPart {
                    "position without homing");
   }
 
-  /// Compares the method with the list of the device file, 0x60E3.
+  /// Reports a method that is not in the list of the device file (0x60E3).
   void judge_method(unsigned axis, const Sourced<std::int8_t>& method) {
     std::string known;
     for (unsigned sub = 1; sub < 255; ++sub) {

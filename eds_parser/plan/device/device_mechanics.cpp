@@ -24,7 +24,8 @@ std::optional<double> quotient(const NodeSource& node, std::uint16_t index) {
   return static_cast<double>(numerator) / static_cast<double>(denominator);
 }
 
-/// Returns a turn of the shaft in the unit of the position, if that is a unit of angles.
+/// Returns the length of one turn of the shaft in the unit of the position, or std::nullopt if this
+/// unit is none of angles.
 std::optional<double> full_turn(const std::string& unit) {
   if (unit == "rad") return 2 * std::numbers::pi;
   return unit == "deg" ? std::optional{360.0} : std::nullopt;

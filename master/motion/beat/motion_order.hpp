@@ -47,7 +47,7 @@ struct MotionOrder {
   std::uint8_t axes = 1;  ///< number of orders with this id
   std::uint8_t sender = 0;  ///< less than max_axes
   Ending ending = Ending::rest;
-  CycleNumber begin = 0;  ///< the axis is at `from` in this cycle
+  CycleNumber begin = 0;  ///< the motion begins in this cycle, in the state `from`
   /// Must be what the axis is commanded in the cycle `begin`; not used with Ending::gear.
   State from;
   Profile profile;          ///< of the motion that starts at `from`; only of `rest` and `cruise`

@@ -99,7 +99,7 @@ class DrivenAxis {
   bool tells_following_ = false;  ///< bit 12 of the statusword was set: the drive uses it
   bool obeys_halt_ = false;       ///< in this beat
   bool follows_actual_ = false;   ///< the target position follows the actual one in this beat
-  std::int64_t written_ = 0;      ///< target position that a motion has written last
+  std::int64_t written_ = 0;      ///< the last target position that a motion has commanded
   Writer writer_ = Writer::others;
   motion::HomingWatch homing_;
 };

@@ -34,8 +34,8 @@ class Random {
   std::mt19937 generator_{1};
 };
 
-/// Largest excess over a limit of a step, as a part of the limit. The third difference of the
-/// positions is the mean of the jerks of three steps, so the jerk of each step is checked.
+/// Returns the largest excess over a limit in one step, as a part of this limit. It checks the jerk
+/// of the step itself: the third difference of the positions would be a mean of three steps.
 double excess(const State& from, const State& to, const Limits& limits) {
   const double jerk = std::abs(to.acceleration - from.acceleration) / period / limits.jerk;
   const State same = advanced(from, period, (to.acceleration - from.acceleration) / period);
