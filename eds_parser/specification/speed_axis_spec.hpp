@@ -45,8 +45,8 @@ struct SpeedAxisSpec {
   bool is_stated() const noexcept { return pos != SourcePos{}; }
 };
 
-/// Returns the name of the first part that is missing, for example "`control`". The name is empty if
-/// the axis has all parts that it needs.
+/// Returns the name of the first part that is missing, for example "`control`". The name is empty
+/// if the axis has all parts that it needs.
 std::string missing_part(const SpeedAxisSpec& axis);
 /// Returns `axis` with all that `own` states in the place of its own parts.
 SpeedAxisSpec merged(SpeedAxisSpec axis, const SpeedAxisSpec& own);

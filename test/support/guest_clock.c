@@ -1,8 +1,10 @@
-/* Preloaded into the programs of a user-mode-linux guest: most of their readings of the clock cost no system call.
+/* Preloaded into the programs of a user-mode-linux guest: most of their readings of the clock cost
+ * no system call.
  *
- * A program of the host reads a clock from memory. In a guest that is a system call, and it was two of three. A reading that
- * follows another within a few microseconds of the processor gives the same time here. No other system call can have been
- * between them, because each takes the guest longer.
+ * A program of the host reads a clock from memory. In a guest that is a system call, and it was two
+ * of three. A reading that follows another within a few microseconds of the processor gives the
+ * same time here. No other system call can have been between them, because each takes the guest
+ * longer.
  */
 #include <sys/syscall.h>
 #include <time.h>

@@ -1,6 +1,8 @@
-/* Preloaded into user-mode-linux by its test: a host whose register state is 11 kB, as with AMX, on any processor.
+/* Preloaded into user-mode-linux by its test: a host whose register state is 11 kB, as with AMX, on
+ * any processor.
  *
- * A caller may read as much of the state as it likes. What it sets has to be all of it, as in the host's own check.
+ * A caller may read as much of the state as it likes. What it sets has to be all of it, as in the
+ * host's own check.
  */
 #include <dlfcn.h>
 #include <elf.h>
@@ -17,7 +19,8 @@ typedef long Ptrace(enum __ptrace_request, pid_t, void*, void*);
 
 static size_t smaller(size_t a, size_t b) { return a < b ? a : b; }
 
-static long move_registers(Ptrace* system, enum __ptrace_request request, pid_t process, void* set, struct iovec* part) {
+static long move_registers(Ptrace* system, enum __ptrace_request request, pid_t process, void* set,
+                           struct iovec* part) {
   static unsigned char state[large];
   struct iovec host = {state, sizeof state};
   if (request == PTRACE_SETREGSET && part->iov_len < large) {
@@ -46,6 +49,7 @@ long ptrace(enum __ptrace_request request, ...) {
   va_end(arguments);
   if (!system) *(void**)&system = dlsym(RTLD_NEXT, "ptrace");
   const int moves = request == PTRACE_GETREGSET || request == PTRACE_SETREGSET;
-  if (moves && (long)address == NT_X86_XSTATE) return move_registers(system, request, process, address, data);
+  if (moves && (long)address == NT_X86_XSTATE)
+    return move_registers(system, request, process, address, data);
   return system(request, process, address, data);
 }

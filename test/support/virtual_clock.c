@@ -1,12 +1,14 @@
-/* Preloaded into user-mode-linux: the guest has a clock of its own, which a busy host does not disturb.
+/* Preloaded into user-mode-linux: the guest has a clock of its own, which a busy host does not
+ * disturb.
  *
- * The guest's time is the processor time that it has used, divided by `speed`, plus the time that it was idle. When it
- * has nothing to do, its clock is moved to its next timer at once. While the host runs other processes, the guest's
- * clock stands still. So no program in the guest is late because of the host, and a test that waits costs no time.
+ * The guest's time is the processor time that it has used, divided by `speed`, plus the time that
+ * it was idle. When it has nothing to do, its clock is moved to its next timer at once. While the
+ * host runs other processes, the guest's clock stands still. So no program in the guest is late
+ * because of the host, and a test that waits costs no time.
  *
- * UML 6.1 reads one clock (CLOCK_MONOTONIC), sets one timer of the host, and sleeps in sigsuspend. It runs a process of
- * the guest as a process of the host that it traces, and waits for that in waitpid. These are the functions that are
- * replaced here. UML calls all of them from one thread.
+ * UML 6.1 reads one clock (CLOCK_MONOTONIC), sets one timer of the host, and sleeps in sigsuspend.
+ * It runs a process of the guest as a process of the host that it traces, and waits for that in
+ * waitpid. These are the functions that are replaced here. UML calls all of them from one thread.
  */
 #include <dlfcn.h>
 #include <errno.h>
@@ -28,19 +30,23 @@ static int (*host_sigsuspend)(const sigset_t*);
 static pid_t (*host_waitpid)(pid_t, int*, int);
 static int (*host_clone)(int (*)(void*), void*, int, void*, ...);
 
-static Nanoseconds idle;               /* the sum of all jumps */
-static Nanoseconds of_processes;       /* processor time of the guest's processes */
-static Nanoseconds booted;             /* processor time that the kernel took until its first process */
-static pid_t last;                     /* the process that UML waited for last; the others stand still */
-static Nanoseconds counted;            /* its processor time that is in of_processes */
-static Nanoseconds expiry = -1;        /* of the guest's timer, by the guest's clock; -1: it is off */
+static Nanoseconds idle;         /* the sum of all jumps */
+static Nanoseconds of_processes; /* processor time of the guest's processes */
+static Nanoseconds booted;       /* processor time that the kernel took until its first process */
+static pid_t last;               /* the process that UML waited for last; the others stand still */
+static Nanoseconds counted;      /* its processor time that is in of_processes */
+static Nanoseconds expiry = -1;  /* of the guest's timer, by the guest's clock; -1: it is off */
 static Nanoseconds interval;
 static timer_t timer;
 static void (*guest_alarm)(int, siginfo_t*, void*);
 
-static Nanoseconds of(struct timespec time) { return (Nanoseconds)time.tv_sec * second + time.tv_nsec; }
+static Nanoseconds of(struct timespec time) {
+  return (Nanoseconds)time.tv_sec * second + time.tv_nsec;
+}
 
-static struct timespec to_timespec(Nanoseconds time) { return (struct timespec){time / second, time % second}; }
+static struct timespec to_timespec(Nanoseconds time) {
+  return (struct timespec){time / second, time % second};
+}
 
 static Nanoseconds processor_time(clockid_t clock) {
   struct timespec time;
@@ -63,7 +69,8 @@ static Nanoseconds used(void) {
 
 static Nanoseconds now(void) { return idle + (used() - booted) / speed + booted; }
 
-/* The processor time of the guest grows more slowly than the host's clock, so the host's timer is never too late. */
+/* The processor time of the guest grows more slowly than the host's clock, so the host's timer is
+ * never too late. */
 static void arm(Nanoseconds left) {
   const Nanoseconds host = left > 0 ? left * speed : 1;
   host_timer_settime(timer, 0, &(struct itimerspec){{0, 0}, to_timespec(host)}, NULL);
@@ -89,7 +96,8 @@ int clock_gettime(clockid_t clock, struct timespec* time) {
   return 0;
 }
 
-int timer_settime(timer_t which, int flags, const struct itimerspec* wanted, struct itimerspec* old) {
+int timer_settime(timer_t which, int flags, const struct itimerspec* wanted,
+                  struct itimerspec* old) {
   (void)flags, (void)old;
   timer = which;
   const Nanoseconds left = of(wanted->it_value);
@@ -105,19 +113,22 @@ int timer_settime(timer_t which, int flags, const struct itimerspec* wanted, str
 int timer_gettime(timer_t which, struct itimerspec* found) {
   (void)which;
   const Nanoseconds left = expiry < 0 ? 0 : expiry - now();
-  *found = (struct itimerspec){to_timespec(interval), to_timespec(expiry >= 0 && left < 1 ? 1 : left)};
+  *found =
+      (struct itimerspec){to_timespec(interval), to_timespec(expiry >= 0 && left < 1 ? 1 : left)};
   return 0;
 }
 
 int sigaction(int number, const struct sigaction* wanted, struct sigaction* old) {
-  if (number != SIGALRM || !wanted || !(wanted->sa_flags & SA_SIGINFO)) return host_sigaction(number, wanted, old);
+  if (number != SIGALRM || !wanted || !(wanted->sa_flags & SA_SIGINFO))
+    return host_sigaction(number, wanted, old);
   struct sigaction mine = *wanted;
   guest_alarm = wanted->sa_sigaction;
   mine.sa_sigaction = on_alarm;
   return host_sigaction(number, &mine, old);
 }
 
-/* UML has nothing to do: SIGALRM is blocked except in here. Another signal that waits comes before the jump. */
+/* UML has nothing to do: SIGALRM is blocked except in here. Another signal that waits comes before
+ * the jump. */
 int sigsuspend(const sigset_t* mask) {
   sigset_t pending;
   sigpending(&pending);
@@ -129,8 +140,8 @@ int sigsuspend(const sigset_t* mask) {
   return host_sigsuspend(mask);
 }
 
-/* The kernel measures the processor in ticks of its clock when it starts, so the guest is fast only from its first
- * process on. Threads of UML itself share its memory. */
+/* The kernel measures the processor in ticks of its clock when it starts, so the guest is fast only
+ * from its first process on. Threads of UML itself share its memory. */
 int clone(int (*function)(void*), void* stack, int flags, void* argument, ...) {
   if (!(flags & CLONE_VM) && speed == 1) {
     booted = used();

@@ -1,11 +1,12 @@
-/* Preloaded into user-mode-linux where the host has more register state than UML's buffer holds (AMX, since Intel's
- * Sapphire Rapids: 11 kB).
+/* Preloaded into user-mode-linux where the host has more register state than UML's buffer holds
+ * (AMX, since Intel's Sapphire Rapids: 11 kB).
  *
- * UML 6.1 keeps the registers of its processes in a buffer of a fixed size and moves them with PTRACE_GETREGSET and
- * PTRACE_SETREGSET of NT_X86_XSTATE. The host gives a part where only a part is asked for, but it refuses to set less
- * than the whole: UML then panics in put_fp_registers before its first process runs. So a part is set here in two
- * steps: the whole state is read from the host, UML's part replaces its beginning, and the whole is set. What UML does
- * not know of (the AMX tiles) stays as it was, which is right as long as no program in the guest uses it.
+ * UML 6.1 keeps the registers of its processes in a buffer of a fixed size and moves them with
+ * PTRACE_GETREGSET and PTRACE_SETREGSET of NT_X86_XSTATE. The host gives a part where only a part
+ * is asked for, but it refuses to set less than the whole: UML then panics in put_fp_registers
+ * before its first process runs. So a part is set here in two steps: the whole state is read from
+ * the host, UML's part replaces its beginning, and the whole is set. What UML does not know of (the
+ * AMX tiles) stays as it was, which is right as long as no program in the guest uses it.
  *
  * On a processor without AMX the same path works too, and costs one more system call each time.
  */
@@ -26,7 +27,8 @@ static Ptrace* of_the_system(void) {
 }
 
 /* UML calls this from one thread only. */
-static long move_registers(enum __ptrace_request request, pid_t process, void* set, struct iovec* part) {
+static long move_registers(enum __ptrace_request request, pid_t process, void* set,
+                           struct iovec* part) {
   static unsigned char whole[1 << 16];
   struct iovec host = {whole, sizeof whole};
   const long result = of_the_system()(PTRACE_GETREGSET, process, set, &host);
@@ -48,6 +50,7 @@ long ptrace(enum __ptrace_request request, ...) {
   void* const data = va_arg(arguments, void*);
   va_end(arguments);
   const int moves = request == PTRACE_GETREGSET || request == PTRACE_SETREGSET;
-  if (moves && (long)address == NT_X86_XSTATE) return move_registers(request, process, address, data);
+  if (moves && (long)address == NT_X86_XSTATE)
+    return move_registers(request, process, address, data);
   return of_the_system()(request, process, address, data);
 }

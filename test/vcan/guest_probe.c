@@ -2,7 +2,8 @@
  *
  *   guest_probe numbers          calculates in two processes that wait for each other
  *   guest_probe compute          uses the processor until 0.2 s have passed
- *   guest_probe gaps FOLDER      looks at its clock until FOLDER/stopped exists; 1: it missed more than a second
+ *   guest_probe gaps FOLDER      looks at its clock until FOLDER/stopped exists; 1: it missed more
+ * than a second
  */
 #include <fcntl.h>
 #include <stdio.h>
@@ -20,12 +21,16 @@ static double now(void) {
   return (double)time.tv_sec + (double)time.tv_nsec / 1e9;
 }
 
-/* A system call of one byte while `kept` is in a register of the processor, where a wrong register would change it. */
+/* A system call of one byte while `kept` is in a register of the processor, where a wrong register
+ * would change it. */
 static double transfer(long call, int end, double kept) {
   char byte = 'x';
   long result = call;
 #if defined __x86_64__
-  __asm__ volatile("syscall" : "+a"(result), "+x"(kept) : "D"((long)end), "S"(&byte), "d"(1L) : "rcx", "r11", "memory");
+  __asm__ volatile("syscall"
+                   : "+a"(result), "+x"(kept)
+                   : "D"((long)end), "S"(&byte), "d"(1L)
+                   : "rcx", "r11", "memory");
 #else
   result = syscall(call, end, &byte, 1L);
 #endif
