@@ -165,7 +165,7 @@ fs::path slow_network(const fs::path& folder, const std::function<void(std::stri
     }
   };
   replace("../eds/", (fs::path{TAKT_SOURCE_DIR} / "share/eds/").string());
-  replace("sync_period: 2000 ", "sync_period: 10000 ");
+  replace("sync_period: 2000 ", "sync_period: 20000 ");
   if (edit) edit(text);
   std::ofstream{folder / "network.yaml"} << text;
   return folder / "network.yaml";

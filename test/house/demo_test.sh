@@ -1,6 +1,5 @@
 #!/bin/sh
-# demo_test.sh BIN - the demo of the README, in a network of its own without a route where that is possible. It is real
-# time: where the machine itself stood still, which the demo tells, it has another try, three in all.
+# demo_test.sh BIN - the demo of the README, in a network of its own without a route where that is possible.
 set -eu
 cd "$(dirname "$0")/../.."
 export TAKT_DEMO_BIN="$1" DEMO_SECONDS=5
@@ -24,11 +23,5 @@ for program in takt takt-move; do printf '#!/bin/sh\n' >"$fake/bin/$program"; do
 chmod +x "$fake"/bin/*
 (cd "$fake" && DEMO_NETWORK=net.yaml TAKT_DEMO_BIN=bin sh "$OLDPWD/share/demo.sh") >"$log" || { cat "$log" && exit 1; }
 
-# A busy machine may stand still, or miss cycles, which stops the move.
-busy="This machine stood still|its set-points were not sent in several cycles|SYNC was missing in several periods"
-for _ in 1 2 3 4 5 6; do
-  if $alone sh share/demo.sh >"$log" 2>&1; then cat "$log" && exit 0; fi
-  cat "$log"
-  grep -qE "$busy" "$log" || exit 1
-done
-exit 1
+if ! $alone sh share/demo.sh >"$log" 2>&1; then cat "$log" && exit 1; fi
+cat "$log"

@@ -1,8 +1,8 @@
 #!/bin/sh
-# python_axes_test.sh BIN BUILD - the Python examples move axes of the demo, and end where things go wrong.
+# python_axes_test.sh BIN PYTHON - the Python examples move axes of the demo.
 set -eu
 here=$(cd "$(dirname "$0")/../.." && pwd)
-bin=$1 build=$2
+bin=$1 python=$2
 tmp=$(mktemp -d)
 daemon=
 end() {
@@ -10,37 +10,30 @@ end() {
   rm -rf "$tmp"
 }
 trap end EXIT
-python=$(sh "$here/test/vcan/python_environment.sh" "$build/judges")
 lcm-gen -p --ppath "$tmp" "$here"/share/lcm/*.lcm
 
 export LCM_DEFAULT_URL=tcpq://127.0.0.1:$((20000 + $$ % 12000))
 "$bin/taktd" "$here/share/demo/two_axes.yaml" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/log" &
 daemon=$!
 for _ in $(seq 600); do grep -q 'serving' "$tmp/log" && break || sleep 0.1; done
-# The program ends where no image comes for a second, as may be on a busy machine: one of three runs has to be good.
-moved=
-for _ in 1 2 3; do
-  PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/axes.py" demo 2 && moved=yes && break
-done
-[ "$moved" ] || { cat "$tmp/log" >&2; exit 1; }
-# one_of_three COMMAND...: a motion stops where its program gets no processor for 500 ms, so one of three runs has to be good.
-one_of_three() { "$@" || "$@" || "$@" || { cat "$tmp/log" "$tmp/said" >&2; return 1; }; }
+fails() { cat "$tmp/log" "$tmp/said" >&2; exit 1; }
+PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/axes.py" demo 2 >"$tmp/said" 2>&1 || fails
 motion() { PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/motion.py" demo "$@" >"$tmp/said" 2>&1; }
 moves() { motion shoulder 1.5 --velocity 3 --acceleration 20 && grep -q '^the motion is done: shoulder is at 1\.[45]' "$tmp/said"; }
 jogs() { motion elbow --jog -1 --for 1 --velocity 2 --acceleration 20; grep -q '^the motion has stopped: elbow is at -' "$tmp/said"; }
 refuses() { ! motion shoulder 150 --velocity 3 --acceleration 20 && grep -q 'would leave its range' "$tmp/said"; }
-one_of_three moves
-one_of_three jogs
-one_of_three refuses
+moves || fails
+jogs || fails
+refuses || fails
 first() { PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/first_motion.py" >"$tmp/said" 2>&1; }
-one_of_three first
+first || fails
 homes() {
   PYTHONPATH=$tmp:$here/apps/python timeout 240 "$python" -c 'from takt_axes import Axes
 with Axes("demo", "shoulder", "elbow") as axes:
     axes.home(together=True)
     print(axes.homed)' >"$tmp/said" 2>&1 && grep -q '^\[True, True\]' "$tmp/said"
 }
-one_of_three homes
+homes || fails
 # An inverter is an axis too. Its program stops it, and so does taktd when the program is gone.
 kill "$daemon" && wait "$daemon" || true
 "$bin/taktd" "$here/share/demo/astraada_drv28.yaml" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/log" &
@@ -50,7 +43,4 @@ runs() {
   PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/first_speed.py" >"$tmp/said" 2>&1
   grep -qF "['pump'] [20.0] ['Hz']" "$tmp/said"
 }
-one_of_three runs
-timeout 240 "$python" "$here/test/house/python_speed_test.py"
-timeout 240 "$python" "$here/test/house/python_motions_test.py" "$tmp"
-timeout 240 "$python" "$here/test/house/python_axes_faults.py" "$tmp"
+runs || fails

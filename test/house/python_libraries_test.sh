@@ -1,0 +1,9 @@
+#!/bin/sh
+# python_libraries_test.sh PYTHON - the Python libraries and axes.py on buses in the process of the test, where things go wrong.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+python=$1
+tmp=$(mktemp -d)
+trap 'rm -rf "$tmp"' EXIT
+lcm-gen -p --ppath "$tmp" "$here"/../../share/lcm/*.lcm
+for test in python_speed_test python_motions_test python_axes_faults; do "$python" "$here/$test.py" "$tmp"; done
