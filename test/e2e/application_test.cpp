@@ -171,9 +171,9 @@ TEST(KilledApplication, ItsCommandsThatWaitedInAStoppedDaemonMoveNothing) {
 
 /// Set-points computed while the daemon is stopped would become one large step that no drive could
 /// follow.
-TEST(MovingApplication, DoesNotRunAwayFromADaemonThatStandsStill) {
+TEST(StoppedDaemon, ItsApplicationDoesNotRunAway) {
   const Folder folder;
-  DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/two_axes.yaml", {"--bus", "sim"}};
+  DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/two_axes.yaml"};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
   Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "6s"},
                folder / "move"};
@@ -189,7 +189,7 @@ TEST(MovingApplication, DoesNotRunAwayFromADaemonThatStandsStill) {
   EXPECT_NE(move.output().find("The axes followed."), std::string::npos) << move.output();
 }
 
-TEST(MovingApplication, HoldsWhileNoImageComesAndGoesOn) {
+TEST(StoppedDaemon, ItsApplicationHoldsAndGoesOn) {
   const Folder folder;
   DaemonProcess daemon{slow_network(folder.path())};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
@@ -230,7 +230,7 @@ TEST(MovingApplication, EndsOnASecondSignalWhereNoAxisAnswers) {
 
 TEST(MovingApplication, DisablesItsAxesWhenItsTerminalIsGone) {
   const Folder folder;
-  DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/two_axes.yaml", {"--bus", "sim"}};
+  DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/two_axes.yaml"};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
   Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "60s"},
                folder / "move"};
@@ -246,7 +246,7 @@ TEST(MovingApplication, DisablesItsAxesWhenItsTerminalIsGone) {
 /// The commands of the second program are refused while the first one moves the axes.
 TEST(MovingApplication, NamesTheProgramThatHoldsItsAxesAndEnds) {
   const Folder folder;
-  DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/two_axes.yaml", {"--bus", "sim"}};
+  DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/two_axes.yaml"};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
   Process first{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "60s"},
                 folder / "first"};
@@ -269,7 +269,7 @@ TEST(MovingApplication, NamesTheProgramThatHoldsItsAxesAndEnds) {
 
 TEST(MovingApplication, LetsTaktdRunTheMoveWhereItRunsMotions) {
   const Folder folder;
-  DaemonProcess daemon{slow_network(folder.path()), {"--bus", "sim"}};
+  DaemonProcess daemon{slow_network(folder.path())};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
   int rounds = 0;
   const auto hear_once = [&] { daemon.hear([&] { return rounds++ % 2 == 1; }); };
@@ -290,7 +290,7 @@ TEST(MovingApplication, LetsTaktdRunTheMoveWhereItRunsMotions) {
 
 TEST(MovingApplication, NamesABusWithoutAxes) {
   const Folder folder;
-  DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/beckhoff.yaml", {"--bus", "sim"}};
+  DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/beckhoff.yaml"};
 
   const Ended move = run({TAKT_MOVE, "--lcm-url", daemon.lcm_url()}, folder.path());
 

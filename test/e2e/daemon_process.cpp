@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <thread>
@@ -26,6 +27,12 @@ std::uint16_t free_port() { return TcpqBroker::listen(0).value()->port(); }
 
 DaemonProcess::DaemonProcess(const fs::path& network, std::vector<std::string> arguments)
     : url_{"tcpq://127.0.0.1:" + std::to_string(free_port())} {
+  const char* const interface = std::getenv("TAKT_TEST_INTERFACE");
+  if (interface && arguments == on_simulated_bus) {
+    arguments = {"--bus", interface};
+    devices_.emplace(std::vector<std::string>{TAKT, "sim", network.string(), "--bus", interface},
+                     folder_ / "devices");
+  }
   arguments.insert(arguments.begin(),
                    {TAKTD, network.string(), "--lcm-url", url_, "--events", event_file()});
   process_.emplace(std::move(arguments), folder_ / "log");
@@ -165,7 +172,7 @@ fs::path slow_network(const fs::path& folder, const std::function<void(std::stri
     }
   };
   replace("../eds/", (fs::path{TAKT_SOURCE_DIR} / "share/eds/").string());
-  replace("sync_period: 2000 ", "sync_period: 20000 ");
+  replace("sync_period: 2000 ", "sync_period: " + std::to_string(slow_period) + " ");
   if (edit) edit(text);
   std::ofstream{folder / "network.yaml"} << text;
   return folder / "network.yaml";

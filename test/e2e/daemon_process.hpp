@@ -14,12 +14,16 @@
 
 namespace takt::test {
 
+/// The devices are simulated in the process of taktd.
+inline const std::vector<std::string> on_simulated_bus{"--bus", "sim"};
+
 /// A taktd on its own tcpq:// port, with a folder for its files and a receiver for its messages.
-/// The destructor kills it.
+/// If the variable TAKT_TEST_INTERFACE names a CAN interface, taktd and `takt sim` use it instead
+/// of the simulated bus. The destructor kills both.
 class DaemonProcess {
  public:
   explicit DaemonProcess(const std::filesystem::path& network,
-                         std::vector<std::string> arguments = {"--bus", "sim"});
+                         std::vector<std::string> arguments = on_simulated_bus);
   ~DaemonProcess();
   DaemonProcess(const DaemonProcess&) = delete;
   DaemonProcess& operator=(const DaemonProcess&) = delete;
@@ -73,11 +77,15 @@ class DaemonProcess {
 
   Folder folder_;
   std::string url_;
+  std::optional<Process> devices_;  ///< `takt sim`, if a CAN interface is used
   std::optional<Process> process_;
   std::optional<LcmClient> lcm_;
   BusViews views_;
   std::vector<ImageTime> images_;
 };
+
+/// SYNC period of slow_network(), us.
+inline constexpr int slow_period = 20000;
 
 /// Writes the demo network with a slower SYNC, for machines under load, and returns its path.
 /// `edit` may change the text.

@@ -31,7 +31,7 @@ class Follow : public ::testing::Test {
   }
 
   Folder folder_;
-  DaemonProcess daemon_{slow_network(folder_.path()), {"--bus", "sim"}};
+  DaemonProcess daemon_{slow_network(folder_.path())};
 };
 
 TEST_F(Follow, TheAxisLocksToAnInputAndIsDisabledAtTheEnd) {

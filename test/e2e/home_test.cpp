@@ -36,8 +36,7 @@ const std::string slow = "0.001";
 class Home : public ::testing::Test {
  protected:
   void start(const std::string& method_of_elbow, const std::string& speed_zero = "0.5") {
-    daemon_.emplace(homing_network(folder_.path(), method_of_elbow, speed_zero),
-                    std::vector<std::string>{"--bus", "sim"});
+    daemon_.emplace(homing_network(folder_.path(), method_of_elbow, speed_zero));
     ASSERT_TRUE(daemon_->hear([this] { return daemon_->all_ready(); }));
   }
   /// With a timeout of 10 s, a busy machine does not end the homing.

@@ -51,7 +51,7 @@ class Jog : public ::testing::Test {
   }
 
   Folder folder_;
-  DaemonProcess daemon_{slow_network(folder_.path()), {"--bus", "sim"}};
+  DaemonProcess daemon_{slow_network(folder_.path())};
 };
 
 TEST_F(Jog, MovesWhileTheKeyIsRepeatedAndStopsAfterwards) {

@@ -72,7 +72,7 @@ TEST(Service, ReportsSystemdThatItIsReadyAliveInTimeAndStopping) {
 /// A network with such a slow SYNC that an ordered stop of a few cycles takes half a second.
 std::filesystem::path sleepy_network(const Folder& folder) {
   return slow_network(folder.path(), [](std::string& text) {
-    const std::string period = "sync_period: 10000 ";
+    const std::string period = "sync_period: " + std::to_string(slow_period) + " ";
     text.replace(text.find(period), period.size(), "sync_period: 100000 ");
   });
 }

@@ -56,7 +56,7 @@ class Speed : public testing::TestWithParam<Inverter> {
   }
 
   Folder folder_;
-  DaemonProcess daemon_{slow_demo(folder_.path(), GetParam().demo), {"--bus", "sim"}};
+  DaemonProcess daemon_{slow_demo(folder_.path(), GetParam().demo)};
   std::string daemon_bus_ = std::string{GetParam().demo} == "lenze8400" ? "lenze" : "pump";
 };
 
