@@ -6,7 +6,7 @@ namespace takt {
 
 /// The first word of a checkpoint. It changes whenever the order of the other words changes,
 /// because a checkpoint can only be used by the version of takt that has written it.
-inline constexpr std::uint64_t checkpoint_layout = 0x7461'6B74'0000'0007;
+inline constexpr std::uint64_t checkpoint_layout = 0x7461'6B74'0000'0008;
 
 /// Returns true if no operation is in progress, so that the state in keep() alone decides what
 /// follows.

@@ -53,6 +53,7 @@ NOT_KEPT = {
     "PdoRequests": {PLAN: "plan_", IDLE: "slots_ used_ waiting_ late_answer_until_ late_answers_"},
     "PortWatch": {SHARED: "events_"},
     "PreviousTransfer": {ANEW: "last_answer"},
+    "RefusedOutputs": {PLAN: "outputs_"},
     "RequestTable": {IDLE: "slots_ waiting_ answered_"},
     "SdoClient": {PLAN: "channel_ block_use_ segments_", IDLE: "state_ closing_ result_ no_block_",
                   ANEW: "transfer_ timeout_ deadline_ asked_ settled_ heard_at_ trace_"},

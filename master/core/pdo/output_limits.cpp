@@ -29,7 +29,6 @@ OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const
       judged_(plan.layout.signals.size()),
       concerned_(plan.layout.signals.size()),
       slots_(limits_.size()),
-      held_(plan.nodes.size(), 0),
       longest_gap_{fewest_cycles},
       seconds_{std::chrono::duration<double>(plan.cycle.period).count()} {
   notations_.reserve(plan.layout.signals.size());
@@ -56,9 +55,7 @@ OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const
 
 void OutputLimits::open(std::size_t node_index) noexcept {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (signal_of(i).node_index != node_index) continue;
-    set_refused(i, false);
-    slots_[i] = fresh_slot(i);
+    if (signal_of(i).node_index == node_index) slots_[i] = fresh_slot(i);
   }
   find_concerned();
 }
@@ -330,41 +327,6 @@ void OutputLimits::remember() noexcept {
                                slot.positions.end());
     slot.positions[0] = *where;
     if (slot.remembered < cycles_remembered) ++slot.remembered;
-  }
-}
-
-void OutputLimits::set_refused(std::size_t place, bool refused) noexcept {
-  Slot& slot = slots_[place];
-  if (slot.refused == refused) return;
-  slot.refused = refused;
-  std::uint16_t& held = held_[signal_of(place).node_index];
-  if (refused) {
-    held_nodes_ += held++ == 0;
-  } else {
-    held_nodes_ -= --held == 0;
-  }
-}
-
-bool OutputLimits::refuse(std::size_t place, std::uint64_t cycle) noexcept {
-  const bool first = !slots_[place].refused;
-  set_refused(place, true);
-  slots_[place].refused_at = cycle;
-  return first;
-}
-
-void OutputLimits::end_refusal(std::size_t place, std::uint64_t cycle) noexcept {
-  if (slots_[place].refused && cycle > slots_[place].refused_at) set_refused(place, false);
-}
-
-void OutputLimits::end_old_refusals(std::uint64_t cycle) noexcept {
-  constexpr Time longest = std::chrono::seconds{1};
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (!slots_[i].refused) continue;
-    std::uint64_t longest_pause = signal_of(i).fallback_cycles;
-    if (longest_pause == 0 && plan_.cycle.period > Time{0}) {
-      longest_pause = static_cast<std::uint64_t>(longest / plan_.cycle.period);
-    }
-    if (cycle > slots_[i].refused_at + longest_pause) set_refused(i, false);
   }
 }
 

@@ -102,18 +102,6 @@ class OutputLimits {
   std::int64_t order(std::size_t place) const noexcept { return slots_[place].order; }
   /// Notes the actual positions of this cycle. To be called once in each cycle.
   void remember() noexcept;
-  /// Notes that a command was outside its limits. Returns true if the previous one was inside.
-  bool refuse(std::size_t place, std::uint64_t cycle) noexcept;
-  /// Notes that a command was inside its limits. This ends the refusal that refuse() has begun,
-  /// from the next cycle on.
-  void end_refusal(std::size_t place, std::uint64_t cycle) noexcept;
-  /// Ends refusals that were not repeated for the time to live of a command.
-  void expire(std::uint64_t cycle) noexcept {
-    if (holds_any()) end_old_refusals(cycle);
-  }
-  /// Returns true if a command to this node was outside its limits, and no later one was inside.
-  bool holds(std::size_t node_index) const noexcept { return held_[node_index] != 0; }
-  bool holds_any() const noexcept { return held_nodes_ != 0; }
   /// Notes that the command is accepted and will be sent.
   void admit(std::size_t place, const AxisCommand& command, std::uint64_t cycle) noexcept;
   /// Notes that the value of an output was sent.
@@ -121,7 +109,7 @@ class OutputLimits {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(slots_, held_, held_nodes_);
+    state(slots_);
     find_concerned();
   }
 
@@ -145,10 +133,8 @@ class OutputLimits {
     double allowed =
         0;  ///< of a set speed: what is left of the changes that its acceleration allows
     std::uint64_t cycle = 0;
-    std::uint64_t refused_at = 0;
     bool known = false;      ///< a value was sent since open()
     bool unsent = false;     ///< a command was accepted and is not sent yet
-    bool refused = false;    ///< the newest command was outside its limits
     bool idle = false;       ///< the value was sent in a mode that does not follow each set-point
     std::int64_t order = 0;  ///< the controlword that was sent last
     std::array<double, cycles_remembered> positions{};  ///< actual positions of the last cycles
@@ -157,7 +143,7 @@ class OutputLimits {
     template <class Archive>
     void keep(Archive& state) noexcept {
       state(low, high, rate, bend, bounded, value, offset, set_point, speed, gap, allowed, cycle,
-            refused_at, known, unsent, refused, idle, order, positions, remembered);
+            known, unsent, idle, order, positions, remembered);
       // A damaged checkpoint may contain any number.
       remembered = std::min(remembered, cycles_remembered);
     }
@@ -231,8 +217,6 @@ class OutputLimits {
   bool checked(std::size_t place) const noexcept;
   void find_concerned() noexcept;
   Slot fresh_slot(std::size_t place) const noexcept;
-  void end_old_refusals(std::uint64_t cycle) noexcept;
-  void set_refused(std::size_t place, bool refused) noexcept;
 
   const BusPlan& plan_;
   const WorkingImage& image_;
@@ -244,9 +228,7 @@ class OutputLimits {
   std::vector<std::uint8_t> judged_;                    ///< by signal, see judges()
   std::vector<std::uint8_t> concerned_;                 ///< by signal, see concerns()
   bool concerns_any_ = false;
-  std::vector<Slot> slots_;          ///< parallel to limits_
-  std::vector<std::uint16_t> held_;  ///< by node: number of outputs whose commands are refused
-  std::uint32_t held_nodes_ = 0;
+  std::vector<Slot> slots_;  ///< parallel to limits_
   double longest_gap_;  ///< longest time between two commands that counts for a step, in cycles
   double seconds_;      ///< duration of a cycle in seconds
 };

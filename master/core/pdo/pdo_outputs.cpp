@@ -10,6 +10,7 @@ PdoOutputs::PdoOutputs(const BusPlan& plan, WorkingImage& image, const PdoInputs
       events_{events},
       inputs_count_{plan.layout.inputs},
       limits_{plan, image, inputs},
+      refusals_{plan},
       outputs_(plan.layout.outputs()),
       rows_(plan.pdos.rpdos.size()),
       begun_(plan.nodes.size(), 0),
@@ -32,6 +33,7 @@ void PdoOutputs::open(std::size_t node_index, std::span<const SetPoint> set_poin
   }
   begun_[node_index] = led_[node_index] = 0;
   limits_.open(node_index);
+  refusals_.open(node_index);
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const Signal& signal = plan_.layout.signals[inputs_count_ + i];
     if (signal.node_index != node_index) continue;
@@ -276,7 +278,7 @@ void PdoOutputs::command(SignalIndex signal, std::int64_t value, std::uint32_t t
   if (signal < inputs_count_ || signal >= image_.values.size()) return;
   Output& output = outputs_[output_of(signal)];
   if (refuses(output)) return;
-  if (limits_.concerns(signal) || limits_.holds_any()) {
+  if (limits_.concerns(signal) || refusals_.holds_any()) {
     return command_limited(signal, value, time_to_live, moment);
   }
   accept(output, limit_of(output, time_to_live), 0, moment);

@@ -10,6 +10,7 @@
 #include "master/core/pdo/output_limits.hpp"
 #include "master/core/pdo/pdo_fields.hpp"
 #include "master/core/pdo/pdo_inputs.hpp"
+#include "master/core/pdo/refused_outputs.hpp"
 #include "master/core/pdo/working_image.hpp"
 #include "master/core/pdo_status.hpp"
 #include "master/core/set_point.hpp"
@@ -132,7 +133,7 @@ class PdoOutputs {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(outputs_, rows_, begun_, led_, limits_, turn_, stopping_);
+    state(outputs_, rows_, begun_, led_, limits_, refusals_, turn_, stopping_);
     state.position(next_event_, rows_.size());
   }
 
@@ -325,6 +326,7 @@ class PdoOutputs {
   std::size_t inputs_count_;
   std::vector<FieldProgram> fields_;
   OutputLimits limits_;
+  RefusedOutputs refusals_;
   std::vector<Output> outputs_;
   std::vector<Row> rows_;
   /// By node: an output was commanded, so seeds no longer follow the feedback.

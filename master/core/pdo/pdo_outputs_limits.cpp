@@ -64,7 +64,7 @@ bool PdoOutputs::judge(std::size_t place, const AxisCommand& command, Cause caus
   const auto found = limits_.judge(place, command, obeying(target), moment.cycle);
   if (!found) return true;
   const Signal& what = plan_.layout.signals[target];
-  if (limits_.refuse(place, moment.cycle)) {
+  if (refusals_.refuse(place, moment.cycle)) {
     const std::uint32_t held = command.age == SetPointAge::held ? held_set_point : 0U;
     Event event{.when = moment.now,
                 .cycle = moment.cycle,
@@ -86,13 +86,13 @@ bool PdoOutputs::judge(std::size_t place, const AxisCommand& command, Cause caus
 /// still follows its old set-points, although commands would already be judged as if it did not.
 void PdoOutputs::end_refusal(std::size_t place, OutputMoment moment) noexcept {
   const std::size_t node_index = plan_.layout.signals[limits_.limit(place).signal].node_index;
-  if (!limits_.holds(node_index)) return;
+  if (!refusals_.holds(node_index)) return;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Row& row = rows_[i];
     const bool waits = row.open && row.ready && row.pending;
     if (waits && plan_.pdos.rpdos[i].node_index == node_index) return;
   }
-  limits_.end_refusal(place, moment.cycle);
+  refusals_.end(place, moment.cycle);
 }
 
 /// Returns the newest value of an output in this pack: a new command, or else the value in the
@@ -163,7 +163,7 @@ void PdoOutputs::admit_commands(std::size_t place, std::span<const SetPoint> set
   const Newest target = newest(signal, set_points, moment);
   const Newest offset = newest(limits_.limit(place).offset, set_points, moment);
   if (!target.is_new && !offset.is_new) return;
-  if (limits_.holds(plan_.layout.signals[signal].node_index)) return;
+  if (refusals_.holds(plan_.layout.signals[signal].node_index)) return;
   const Newest mode = newest(limits_.limit(place).mode, set_points, moment);
   limits_.admit(place, {.value = target.value, .offset = offset.value, .mode = mode.value},
                 moment.cycle);
@@ -179,7 +179,7 @@ bool PdoOutputs::has_new_commands(std::span<const SetPoint> set_points) const no
 
 void PdoOutputs::check_limits(std::span<const SetPoint> set_points, OutputMoment moment) noexcept {
   if (!limits_.concerns_any()) return;
-  limits_.expire(moment.cycle);
+  refusals_.expire(moment.cycle);
   limits_.remember();
   const bool commanded = has_new_commands(set_points);
   for (std::size_t i = 0; i < limits_.size(); ++i) {
@@ -191,10 +191,10 @@ void PdoOutputs::check_limits(std::span<const SetPoint> set_points, OutputMoment
   }
   for (std::size_t i = 0; commanded && i < limits_.size(); ++i)
     admit_commands(i, set_points, moment);
-  if (!limits_.holds_any()) return;
+  if (!refusals_.holds_any()) return;
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const Signal& signal = plan_.layout.signals[inputs_count_ + i];
-    if (limits_.holds(signal.node_index)) outputs_[i].generation = set_points[i].generation;
+    if (refusals_.holds(signal.node_index)) outputs_[i].generation = set_points[i].generation;
   }
 }
 
@@ -232,7 +232,7 @@ bool PdoOutputs::suits_targets(SignalIndex signal, std::int64_t value,
   for (const std::uint16_t place : limits_.dependents(signal)) {
     const SignalIndex target = limits_.limit(place).signal;
     const bool repeats =
-        limits_.holds(plan_.layout.signals[signal].node_index) && limits_.begins(place, value);
+        refusals_.holds(plan_.layout.signals[signal].node_index) && limits_.begins(place, value);
     if (limits_.limit(place).controlword == signal && !repeats) continue;
     if (!limited_row_open(place) || !outputs_[output_of(target)].known) continue;
     const AxisCommand command = command_with(place, signal, value);
@@ -247,9 +247,9 @@ bool PdoOutputs::suits_targets(SignalIndex signal, std::int64_t value,
 
 bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
                                OutputMoment moment) noexcept {
-  if (!limits_.concerns(signal) && !limits_.holds_any()) return true;
-  limits_.expire(moment.cycle);
-  if (!limits_.judges(signal) && !limits_.holds_any()) return true;
+  if (!limits_.concerns(signal) && !refusals_.holds_any()) return true;
+  refusals_.expire(moment.cycle);
+  if (!limits_.judges(signal) && !refusals_.holds_any()) return true;
   const std::size_t node_index = plan_.layout.signals[signal].node_index;
   if (!suits_targets(signal, value, moment)) return false;
   const std::uint16_t place = limits_.place_of(signal);
@@ -261,7 +261,7 @@ bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
     if (!covers && !judge(place, command, {signal, value}, moment)) return false;
     end_refusal(place, moment);
   }
-  if (limits_.holds(node_index)) return false;
+  if (refusals_.holds(node_index)) return false;
   if (limited) limits_.admit(place, command, moment.cycle);
   for (const std::uint16_t target : limits_.dependents(signal)) {
     if (limits_.limit(target).offset != signal) continue;
