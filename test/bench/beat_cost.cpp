@@ -135,7 +135,7 @@ struct GearedAxes {
     ++cycle;
     const auto counts = static_cast<std::int64_t>(3 * cycle + cycle * 7919 % 5);
     for (AxisInput& input : inputs) {
-      input.leader = {.age = LeaderSample::Age::fresh, .counts = counts};
+      input.leaders[0] = {.signal = 0, .age = LeaderSample::Age::fresh, .counts = counts};
     }
     return motions.run(cycle, inputs);
   }

@@ -134,6 +134,27 @@ TEST(MotionGear, AStopEndsAGear) {
   EXPECT_EQ(bus.axis(1).ended_id, 2);
 }
 
+TEST(MotionGear, ARingOfGearsIsRefused) {
+  for (const char* signal : {"", "position_actual_value"}) {
+    MotionBus bus;
+    bus.enable();
+    bus.each_cycle = [&] { bus.keep_alive(); };
+    motion_gear_t gear = bus.gear(2, "shoulder", 1.0);
+    gear.signal = signal;
+    bus.send(gear);
+    bus.run(20);
+    ASSERT_EQ(bus.axis(1).state, moving);
+    motion_gear_t back = bus.gear(3, "elbow", 1.0);
+    back.signal = signal;
+    back.goals = {MotionBus::goal("shoulder", 0.0)};
+    bus.send(back);
+    bus.run(20);
+    EXPECT_TRUE(bus.said("motion_refused", "this one follows the axis")) << signal;
+    EXPECT_EQ(bus.axis(0).state, standing);
+    EXPECT_EQ(bus.axis(1).state, moving) << "the gear that ran goes on";
+  }
+}
+
 TEST(MotionGear, WhatIsWrongWithAGearIsSaid) {
   MotionBus bus;
   bus.enable();

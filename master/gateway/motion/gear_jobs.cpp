@@ -1,6 +1,7 @@
 #include "master/gateway/motion/gear_jobs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
@@ -55,6 +56,16 @@ bool is_of(const Signal& signal, const MotionAxis& axis) noexcept {
          (index - first) / 0x800 == axis.number;
 }
 
+/// Returns true if the signal is a position that follows the target position of this axis: the
+/// actual and the demanded one (CiA 402-2, 0x6062 to 0x6064 and 0x60FC).
+bool is_position_of(const Signal& signal, const MotionAxis& axis) noexcept {
+  constexpr std::array<std::uint16_t, 4> positions{0x6062, 0x6063, 0x6064, 0x60FC};
+  return signal.node_index == axis.node_index &&
+         std::ranges::any_of(positions, [&](std::uint16_t index) {
+           return signal.object == axis_object(axis.number, index);
+         });
+}
+
 Task measured_leader(const motion_gear_t& gear, std::size_t node, std::span<const std::size_t> axes,
                      const KnownAxes& known) {
   const ImageLayout& layout = known.plan.layout;
@@ -81,7 +92,8 @@ Task measured_leader(const motion_gear_t& gear, std::size_t node, std::span<cons
       .scale = found->scale,
       .zero = found->offset,
       .filter_time = gear.filter_time == 0.0 ? default_filter_time : gear.filter_time};
-  const auto axis = std::ranges::find(known.axes, signal, &MotionAxis::position);
+  const auto axis = std::ranges::find_if(
+      known.axes, [&](const MotionAxis& each) { return is_position_of(*found, each); });
   if (axis != known.axes.end()) {
     task.leader_axis = static_cast<std::uint8_t>(axis - known.axes.begin());
   }

@@ -52,6 +52,9 @@ std::string_view text(const motion::PlanRefusal& refusal) noexcept {
       return "the axis follows a gear, which ends first";
     case moving:
       return "the axis moves: a stream begins at rest";
+    case ring:
+      return "the axis can't follow its leader, because this one follows the axis, directly or "
+             "through other axes";
     case other_start:
       return "the first point of the stream is not where the axis stands, at rest";
     case too_long:
@@ -96,7 +99,7 @@ std::string_view text(motion::Outcome outcome) noexcept {
       return "the sender was silent for longer than the timeout";
     case no_stop:
       return "with the limits of the gear, the axis could not stop from its present motion inside "
-             "its range and its velocity";
+             "its range and in time";
     case too_late:
       return "taktd could not plan the motion in time";
     case group_incomplete:

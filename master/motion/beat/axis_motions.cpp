@@ -75,22 +75,23 @@ std::span<const AxisReport> AxisMotions::run(CycleNumber cycle,
 }
 
 /// A gear runs after its leader, whose state of this cycle it needs. The axes of a ring of gears
-/// have no such order: they run as if their leaders were lost.
+/// have no such order: they run as if their leaders were lost. A ring of measured positions is one,
+/// too: each axis would follow its own movement, which grows if the ratios do not reduce it.
 void AxisMotions::run_axes(CycleNumber cycle, std::span<const AxisInput> inputs) noexcept {
   std::bitset<max_axes> waiting;
   for (std::size_t i = 0; i < runners_.size(); ++i) {
-    const bool waits = runners_[i].has_gear() && runners_[i].gear().kind == LeaderKind::commanded;
+    const bool waits = runners_[i].has_leader() && runners_[i].gear().leader_axis < runners_.size();
     waiting[i] = waits;
     if (waits) continue;
-    if (runners_[i].has_gear()) follow(i, cycle, inputs);
+    if (runners_[i].has_gear()) follow(i, inputs);
     reports_[i] = runners_[i].run(cycle);
   }
   for (bool advances = true; advances && waiting.any();) {
     advances = false;
     for (std::size_t i = 0; i < runners_.size(); ++i) {
       const std::size_t leader = runners_[i].gear().leader_axis;
-      if (!waiting[i] || (leader < runners_.size() && waiting[leader])) continue;
-      follow(i, cycle, inputs);
+      if (!waiting[i] || waiting[leader]) continue;
+      follow(i, inputs);
       reports_[i] = runners_[i].run(cycle);
       waiting[i] = false;
       advances = true;
@@ -98,7 +99,7 @@ void AxisMotions::run_axes(CycleNumber cycle, std::span<const AxisInput> inputs)
   }
   for (std::size_t i = 0; waiting.any() && i < runners_.size(); ++i) {
     if (!waiting[i]) continue;
-    const StopCause cause = runners_[i].follow(cycle, {.state = {}, .is_lost = true}, {});
+    const StopCause cause = runners_[i].follow({.state = {}, .is_lost = true}, {});
     if (cause != StopCause::none) add_stop(i, cause);
     reports_[i] = runners_[i].run(cycle);
     waiting[i] = false;
@@ -106,8 +107,7 @@ void AxisMotions::run_axes(CycleNumber cycle, std::span<const AxisInput> inputs)
 }
 
 /// If the axis has to stop, the others of its group do so in the next cycle.
-void AxisMotions::follow(std::size_t axis, CycleNumber cycle,
-                         std::span<const AxisInput> inputs) noexcept {
+void AxisMotions::follow(std::size_t axis, std::span<const AxisInput> inputs) noexcept {
   AxisRunner& runner = runners_[axis];
   const GearTask& task = runner.gear();
   LeaderState leader;
@@ -123,7 +123,7 @@ void AxisMotions::follow(std::size_t axis, CycleNumber cycle,
   } else {
     leader.is_lost = task.kind == LeaderKind::commanded;
   }
-  const StopCause cause = runner.follow(cycle, leader, inputs[axis].leader);
+  const StopCause cause = runner.follow(leader, inputs[axis].sample_of(task.signal));
   if (cause != StopCause::none) add_stop(axis, cause);
 }
 

@@ -47,9 +47,9 @@ class AxisMotions {
   void release_gear(std::uint8_t axis) noexcept {
     if (axis < runners_.size()) runners_[axis].release_gear();
   }
-  /// The signal whose sample the gear of the axis needs in the run() of this cycle; empty if none.
-  std::optional<std::uint16_t> leader_signal(std::size_t axis, CycleNumber cycle) const noexcept {
-    return runners_[axis].leader_signal(cycle);
+  /// The signals of AxisInput::leaders in the run() of this cycle.
+  LeaderSignals leader_signals(std::size_t axis, CycleNumber cycle) const noexcept {
+    return runners_[axis].leader_signals(cycle);
   }
 
   /// Runs one cycle. `inputs` has one element for each axis. The result has one, too; it is valid
@@ -94,7 +94,7 @@ class AxisMotions {
   void begin_orders(CycleNumber cycle) noexcept;
   void stop_split_streams() noexcept;
   void run_axes(CycleNumber cycle, std::span<const AxisInput> inputs) noexcept;
-  void follow(std::size_t axis, CycleNumber cycle, std::span<const AxisInput> inputs) noexcept;
+  void follow(std::size_t axis, std::span<const AxisInput> inputs) noexcept;
   Outcome objection_of(std::size_t axis, CycleNumber cycle) noexcept;
   CycleNumber silence_of(std::uint8_t sender, CycleNumber cycle) const noexcept;
 

@@ -36,9 +36,18 @@ struct AxisInput {
   /// The position that the drive is commanded, if others have commanded it. Empty: it is the
   /// commanded position of the last report.
   std::optional<double> set_point;
-  LeaderSample leader{};  ///< of the gear of the axis, if its leader is measured
+  /// Samples of measured leaders: of the gear that the axis follows, and of one that is due.
+  std::array<LeaderSample, 2> leaders{};
   /// The set-point of the last beat was due on the bus, and was not sent.
   bool is_unsent = false;
+
+  /// The sample of this signal. It is lost if there is none.
+  LeaderSample sample_of(std::uint16_t signal) const noexcept {
+    for (const LeaderSample& sample : leaders) {
+      if (sample.signal == signal) return sample;
+    }
+    return {};
+  }
 };
 
 enum class AxisState : std::uint8_t { unpowered, standing, moving, stopping };
@@ -88,7 +97,7 @@ enum class Outcome : std::uint8_t {
   too_late,           ///< its first cycle had passed
   other_start,        ///< it does not begin where the axis is commanded to be
   no_rest,            ///< the end of its profile contradicts `ending`
-  no_stop,            ///< a gear whose limits do not allow a stop in time, range and velocity
+  no_stop,            ///< a gear whose limits do not allow a stop in time and range
   not_powered,        ///< the drive does not follow set-points
   is_stopping,        ///< the axis must come to rest first
   sender_was_silent,  ///< longer than the timeout, before its first cycle

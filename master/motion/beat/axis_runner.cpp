@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "master/motion/beat/stop_profile.hpp"
+#include "master/motion/enough_jerk.hpp"
 #include "master/motion/position_range.hpp"
 
 namespace takt::motion {
@@ -99,14 +100,15 @@ Outcome AxisRunner::objection(CycleNumber cycle) noexcept {
 void AxisRunner::begin(CycleNumber cycle) noexcept {
   if (report_.state == AxisState::moving) end(Outcome::replaced);
   const MotionOrder& order = *waiting_;
+  const Limits limits = order.ending == Ending::gear ? limits_of_gear(order) : order.stop;
   source_ = source_of(order.ending);
   if (source_ == Source::gear) {
-    gear_.begin(order.gear, order.stop);
+    gear_.begin(order.gear, limits);
     range_ = widened(order.gear.range, report_.commanded.position);
   }
   player_ = ProfilePlayer{order.profile, order.from, order.ending};
   report_.began = cycle;
-  stop_limits_ = order.stop;
+  stop_limits_ = limits;
   timeout_ = order.timeout;
   latest_stop_ = order.latest_stop;
   max_following_error_ = order.max_following_error;
@@ -129,7 +131,8 @@ void AxisRunner::refuse(Outcome why) noexcept {
 void AxisRunner::wait_for_drive(CycleNumber cycle, bool is_unsent) noexcept {
   const bool runs = report_.state == AxisState::moving || report_.state == AxisState::stopping;
   is_unsent_ = is_unsent;
-  if (runs) report_.began += cycle - last_run_ - (is_unsent ? 0U : 1U);
+  passed_ = cycle - last_run_;
+  if (runs) report_.began += passed_ - (is_unsent ? 0U : 1U);
   last_run_ = cycle - 1;
 }
 
@@ -217,35 +220,35 @@ bool AxisRunner::can_stop_from(const State& state) const noexcept {
   return stays_inside(range_, stop_profile(state, limits), state);
 }
 
+/// An axis that moves is in a state that only the bus thread knows, so a gear gets its jerk here.
+Limits AxisRunner::limits_of_gear(const MotionOrder& gear) const noexcept {
+  if (report_.state != AxisState::moving) return gear.stop;
+  return with_enough_jerk(gear.stop, report_.commanded, stop_limits_);
+}
+
 /// A gear replaces the limits of the motion before, so it may only begin where a stop along its own
-/// limits stays inside its range, its limits of velocity, and a bounded time.
+/// limits stays inside its range and a bounded time.
 bool AxisRunner::can_stop_with(const MotionOrder& gear) const noexcept {
   const State& state = report_.commanded;
-  const Profile profile = stop_profile(state, gear.stop);
-  const double gain = state.acceleration * std::abs(state.acceleration) / (2 * gear.stop.jerk);
-  const double fastest = std::max(gear.stop.max_velocity, state.velocity);
-  const double slowest = std::min(gear.stop.min_velocity, state.velocity);
-  const double tolerance = start_tolerance * (gear.stop.max_velocity - gear.stop.min_velocity);
-  const double peak = state.velocity + gain;
-  return peak <= fastest + tolerance && peak >= slowest - tolerance &&
-         profile.duration() <= longest_stop &&
+  const Profile profile = stop_profile(state, limits_of_gear(gear));
+  return profile.duration() <= longest_stop &&
          stays_inside(widened(gear.gear.range, state.position), profile, state);
 }
 
-/// A gear that begins in this cycle needs its sample in it.
-std::optional<std::uint16_t> AxisRunner::leader_signal(CycleNumber cycle) const noexcept {
+LeaderSignals AxisRunner::leader_signals(CycleNumber cycle) const noexcept {
+  const auto signal_of = [](const GearTask& task) {
+    return task.kind == LeaderKind::measured ? std::optional{task.signal} : std::nullopt;
+  };
+  LeaderSignals signals;
+  if (has_gear()) signals[0] = signal_of(gear());
   const MotionOrder* next = due(cycle);
-  const bool begins = next != nullptr && next->ending == Ending::gear;
-  if (!begins && !has_gear()) return std::nullopt;
-  const GearTask& task = begins ? next->gear : gear();
-  return task.kind == LeaderKind::measured ? std::optional{task.signal} : std::nullopt;
+  if (next != nullptr && next->ending == Ending::gear) signals[1] = signal_of(next->gear);
+  return signals;
 }
 
-StopCause AxisRunner::follow(CycleNumber cycle, const LeaderState& leader,
-                             const LeaderSample& sample) noexcept {
-  const CycleNumber cycles = std::max<CycleNumber>(cycle - std::min(last_run_, cycle), 1);
-  geared_ =
-      gear_.step(report_.commanded, leader, sample, static_cast<double>(cycles) * period_, period_);
+StopCause AxisRunner::follow(const LeaderState& leader, const LeaderSample& sample) noexcept {
+  geared_ = gear_.step(report_.commanded, leader, sample, static_cast<double>(passed_) * period_,
+                       period_);
   if (is_unsent_) geared_ = report_.commanded;
   StopCause cause = StopCause::none;
   if (gear_.has_lost_leader()) {

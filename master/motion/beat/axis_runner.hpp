@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -17,6 +18,9 @@ struct Silence {
   CycleNumber sender = 0;
   CycleNumber jog = 0;
 };
+
+/// Numbers of signals; empty where there is none.
+using LeaderSignals = std::array<std::optional<std::uint16_t>, 2>;
 
 /// Runs the motions of one axis, cycle by cycle. Its states:
 ///
@@ -85,14 +89,16 @@ class AxisRunner {
   bool has_gear() const noexcept {
     return report_.state == AxisState::moving && source_ == Source::gear;
   }
+  /// Returns true if the gear of the axis was not released.
+  bool has_leader() const noexcept { return has_gear() && gear_.phase() != GearPhase::released; }
   /// The gear that the axis follows.
   const GearTask& gear() const noexcept { return gear_.task(); }
-  /// The signal of which follow() needs a sample in this cycle; empty if none.
-  std::optional<std::uint16_t> leader_signal(CycleNumber cycle) const noexcept;
+  /// The signals of measured leaders: of the gear that the axis follows, and of the order that is
+  /// due. Only begin() or refuse() decides which of them follow() needs.
+  LeaderSignals leader_signals(CycleNumber cycle) const noexcept;
   /// Makes the next step of the gear, before run(). If the axis must stop, it begins its stop at
   /// once, and the cause is returned.
-  StopCause follow(CycleNumber cycle, const LeaderState& leader,
-                   const LeaderSample& sample) noexcept;
+  StopCause follow(const LeaderState& leader, const LeaderSample& sample) noexcept;
   /// Gives the commanded state of the cycle.
   const AxisReport& run(CycleNumber cycle) noexcept;
   /// Forgets which orders have ended. Called before the orders of the next cycle are taken.
@@ -126,7 +132,7 @@ class AxisRunner {
   void keep(Archive& state) noexcept {
     state(report_, source_, player_, stream_, gear_, geared_, range_.min, range_.max, named_,
           stop_limits_, timeout_, latest_stop_, max_following_error_, waiting_, newest_, last_run_,
-          has_taken_, follows_, is_unsent_);
+          has_taken_, follows_, is_unsent_, passed_);
     state.position(group_, max_axes);
     state.position(sender_, max_axes + 1);
   }
@@ -148,6 +154,7 @@ class AxisRunner {
   }
   bool points_end_at_rest() const noexcept;
   bool can_stop_from(const State& state) const noexcept;
+  Limits limits_of_gear(const MotionOrder& gear) const noexcept;
   bool can_stop_with(const MotionOrder& gear) const noexcept;
   StopCause cause_of_motion(CycleNumber cycle, const Silence& silence) const noexcept;
   void end_or_count_down(CycleNumber cycle) noexcept;
@@ -167,6 +174,7 @@ class AxisRunner {
   PositionRange range_;       ///< of the gear
   LifeSign named_;            ///< the newest message that has named the axis
   CycleNumber last_run_ = 0;  ///< the cycle of the commanded state
+  CycleNumber passed_ = 1;    ///< cycles by the clock since the last run()
   Limits stop_limits_;
   CycleNumber timeout_ = 0;
   CycleNumber latest_stop_ = 0;

@@ -16,20 +16,20 @@ void GearPlayer::begin(const GearTask& task, const Limits& limits) noexcept {
 }
 
 State GearPlayer::step(const State& from, const LeaderState& leader, const LeaderSample& sample,
-                       double time, double period) noexcept {
+                       double elapsed, double period) noexcept {
   if (phase_ == GearPhase::released) {
     released_ = static_cast<std::uint8_t>(std::min(released_ + 1, most_released + 1));
-    return released(from, time);
+    return released(from, period);
   }
   if (task_.kind == LeaderKind::commanded) {
     lost_ = leader.is_lost;
-    return lost_ ? from : follow(from, leader, time);
+    return lost_ ? from : follow(from, leader, period);
   }
-  estimate_.take(sample, task_, time, period);
+  estimate_.take(sample, task_, elapsed, period);
   lost_ = leader.is_lost || estimate_.is_lost();
   if (lost_) return from;
-  if (!estimate_.is_ready()) return servo_.step_to_cruise(from, time);
-  return follow(from, {.state = estimate_.state(task_)}, time);
+  if (!estimate_.is_ready()) return servo_.step_to_cruise(from, period);
+  return follow(from, {.state = estimate_.state(task_)}, period);
 }
 
 State GearPlayer::follow(const State& from, const LeaderState& leader, double time) noexcept {

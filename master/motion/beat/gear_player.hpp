@@ -27,10 +27,11 @@ class GearPlayer {
 
   void begin(const GearTask& task, const Limits& limits) noexcept;
   const GearTask& task() const noexcept { return task_; }
-  /// Returns the state of the axis one step after `from`. `time` is the length of the step in s, a
-  /// small multiple of `period`.
-  State step(const State& from, const LeaderState& leader, const LeaderSample& sample, double time,
-             double period) noexcept;
+  /// Returns the state of the axis `period` seconds after `from`. `elapsed` is the time since the
+  /// last step in s: more than `period` if a SYNC was missing. A measured leader has moved on in
+  /// all of this time, while the axis and a commanded leader have waited.
+  State step(const State& from, const LeaderState& leader, const LeaderSample& sample,
+             double elapsed, double period) noexcept;
   /// The axis follows its leader no longer.
   void release() noexcept { phase_ = GearPhase::released; }
   /// Returns the state one step after `from` of an axis that was released.

@@ -60,6 +60,9 @@ struct LeaderSample {
     missing,  ///< the signal was not received in this cycle
     lost,     ///< its node does not exchange PDOs
   };
+  static constexpr std::uint16_t no_signal = 0xFFFF;
+
+  std::uint16_t signal = no_signal;  ///< see GearTask::signal
   Age age = Age::lost;
   std::int64_t counts = 0;
 };

@@ -5,6 +5,7 @@
 
 #include "master/motion/beat/profile_player.hpp"
 #include "master/motion/beat/stop_profile.hpp"
+#include "master/motion/enough_jerk.hpp"
 
 namespace takt::motion {
 namespace {
@@ -30,20 +31,6 @@ bool is_start(const State& from, const AxisGoal& goal) noexcept {
 /// Returns true if a jog of this velocity leads an axis from outside its range still farther out.
 bool leads_out(const PositionRange& range, double position, double velocity) noexcept {
   return (position < range.min && velocity <= 0.0) || (position > range.max && velocity >= 0.0);
-}
-
-/// An axis that accelerates gains velocity until its acceleration is 0, and the more, the lower the
-/// jerk is. So the jerk of a new motion is raised until the axis stays within the velocities of
-/// both motions, but not above the jerk of the motion that runs.
-Limits with_enough_jerk(Limits limits, const State& from, const Limits& running) noexcept {
-  if (from.acceleration == 0.0) return limits;
-  const double room = from.acceleration > 0.0
-                          ? std::max(limits.max_velocity, running.max_velocity) - from.velocity
-                          : from.velocity - std::min(limits.min_velocity, running.min_velocity);
-  const double needed =
-      room > 0.0 ? from.acceleration * from.acceleration / (2 * room) : running.jerk;
-  limits.jerk = std::max(limits.jerk, std::min(needed, running.jerk));
-  return limits;
 }
 
 }  // namespace
@@ -239,6 +226,30 @@ std::expected<std::span<const MotionOrder>, PlanRefusal> MotionPlanner::begin_st
   return number_orders(group.tag);
 }
 
+/// The leader of the newest gear of the axis. Empty if it follows none, or no axis.
+std::optional<std::uint8_t> MotionPlanner::leader_of(std::uint8_t axis) const noexcept {
+  const Axis& follower = axes_[axis];
+  const MotionOrder* newest = follower.waiting(cycle_);
+  if (newest == nullptr && follower.report.gear != GearPhase::released) {
+    const TaggedOrder* running = follower.find(follower.report.running);
+    if (running != nullptr) newest = &running->order;
+  }
+  if (newest == nullptr || newest->ending != Ending::gear) return std::nullopt;
+  return newest->gear.leader_axis < axes_.size() ? std::optional{newest->gear.leader_axis}
+                                                 : std::nullopt;
+}
+
+/// Returns the axis of the goals that the leader follows, directly or through other axes.
+std::optional<std::uint8_t> MotionPlanner::axis_that_leads(
+    std::uint8_t leader, std::span<const AxisGoal> goals) const noexcept {
+  std::optional<std::uint8_t> next = leader;
+  for (std::size_t i = 0; next && *next < axes_.size() && i < axes_.size(); ++i) {
+    if (std::ranges::find(goals, *next, &AxisGoal::axis) != goals.end()) return next;
+    next = leader_of(*next);
+  }
+  return std::nullopt;
+}
+
 std::expected<std::span<const MotionOrder>, PlanRefusal> MotionPlanner::begin_gear(
     const GroupGoal& group, std::span<const AxisGoal> goals, std::span<const GearTask> tasks,
     CycleNumber begin) {
@@ -248,6 +259,9 @@ std::expected<std::span<const MotionOrder>, PlanRefusal> MotionPlanner::begin_ge
   if (cycle_ == 0) return refused(PlanFault::no_report, 0);
   const auto first = begin_of(goals, begin);
   if (!first) return std::unexpected{first.error()};
+  if (const auto axis = axis_that_leads(tasks.front().leader_axis, goals)) {
+    return refused(PlanFault::ring, *axis);
+  }
   orders_.clear();
   for (std::size_t i = 0; i < goals.size(); ++i) {
     const AxisGoal& goal = goals[i];

@@ -62,6 +62,7 @@ enum class PlanFault : std::uint8_t {
   streaming,    ///< the axis follows a stream, and must be stopped first
   geared,       ///< the axis follows a gear: release it, and plan again after the next report
   moving,       ///< the axis must be at rest before it follows a stream
+  ring,         ///< the leader of the gear follows this axis, perhaps through other axes
   other_start,  ///< the stream does not begin where the axis stands, or not at rest
   impossible,   ///< see `defect`
   too_long,     ///< the motion, or the start of a jog, takes too many cycles
@@ -131,6 +132,9 @@ class MotionPlanner {
                                                    CycleNumber begin) const;
   std::expected<void, PlanRefusal> set_tasks(const GroupGoal& group,
                                              std::span<const AxisGoal> goals, CycleNumber begin);
+  std::optional<std::uint8_t> leader_of(std::uint8_t axis) const noexcept;
+  std::optional<std::uint8_t> axis_that_leads(std::uint8_t leader,
+                                              std::span<const AxisGoal> goals) const noexcept;
   std::span<const MotionOrder> number_orders(const MotionTag& tag);
   std::expected<void, PlanRefusal> set_orders(const GroupGoal& group,
                                               std::span<const AxisGoal> goals, CycleNumber begin);

@@ -135,8 +135,10 @@ void MotionStage<L, S>::run_beat(OutputMoment moment, bool stopping) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const bool exchanging = bus_.exchanging[axes_[i].node_index()];
     inputs_[i] = axes_[i].read(bus_.pdos, exchanging, motions_.reports()[i]);
-    const auto leader = motions_.leader_signal(i, moment.cycle);
-    if (leader) inputs_[i].leader = sample_of(*leader);
+    const motion::LeaderSignals leaders = motions_.leader_signals(i, moment.cycle);
+    for (std::size_t k = 0; k < leaders.size(); ++k) {
+      if (leaders[k]) inputs_[i].leaders[k] = sample_of(*leaders[k]);
+    }
   }
   const auto reports = motions_.run(moment.cycle, inputs_);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -153,11 +155,12 @@ void MotionStage<L, S>::run_beat(OutputMoment moment, bool stopping) noexcept {
 template <FrontLink L, Services S>
 motion::LeaderSample MotionStage<L, S>::sample_of(std::uint16_t signal) const noexcept {
   using Age = motion::LeaderSample::Age;
-  if (signal >= bus_.plan.layout.inputs) return {.age = Age::lost};
+  if (signal >= bus_.plan.layout.inputs) return {.signal = signal, .age = Age::lost};
   const bool exchanging = bus_.exchanging[bus_.plan.layout.signals[signal].node_index];
-  if (!exchanging) return {.age = Age::lost};
+  if (!exchanging) return {.signal = signal, .age = Age::lost};
   const WorkingImage& image = bus_.pdos.image();
-  return {.age = image.is_stale(signal) ? Age::missing : Age::fresh,
+  return {.signal = signal,
+          .age = image.is_stale(signal) ? Age::missing : Age::fresh,
           .counts = image.values[signal]};
 }
 

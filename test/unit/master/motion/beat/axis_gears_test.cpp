@@ -1,67 +1,17 @@
 #include <cmath>
 #include <gtest/gtest.h>
-#include <random>
 
-#include "master/core/kept_state.hpp"
-#include "test/unit/master/motion/beat/plant.hpp"
+#include "test/unit/master/motion/beat/gears.hpp"
 
 namespace takt::motion {
 namespace {
 
+using test::behind_axis;
+using test::gear_order;
+using test::jog;
 using test::Plant;
 
 constexpr double period = Plant::period;
-
-MotionOrder gear_order(const Plant& plant, std::uint8_t axis, const GearTask& task) {
-  return {.id = plant.ids,
-          .axis = axis,
-          .group = axis,
-          .ending = Ending::gear,
-          .begin = plant.cycle + 1,
-          .from = {},
-          .profile = {},
-          .gear = task,
-          .stop = Plant::limits,
-          .timeout = 1'000'000};
-}
-
-/// Axis 1 follows axis 0.
-GearTask behind_axis(double ratio) {
-  return {.kind = LeaderKind::commanded, .leader_axis = 0, .ratio = ratio};
-}
-
-MotionOrder jog(const Plant& plant, double velocity) {
-  MotionOrder order = plant.order(0, plant.last[0].commanded, 1);
-  order.profile = Plant::plan(order.from, {.velocity = velocity}, Goal::velocity);
-  order.ending = Ending::cruise;
-  order.timeout = 1'000'000;
-  return order;
-}
-
-/// An encoder with this counter, as the leader of axis 0.
-class Encoder {
- public:
-  Encoder(Plant& plant, unsigned bits) : plant_{plant}, bits_{bits} {}
-
-  GearTask task(double scale) const {
-    return {.kind = LeaderKind::measured,
-            .signal = 7,
-            .bits = static_cast<std::uint8_t>(bits_),
-            .scale = scale,
-            .filter_time = 0.02,
-            .ratio = 1.0};
-  }
-  void show(double counts) {
-    const auto raw = static_cast<std::int64_t>(std::floor(counts));
-    const std::int64_t mask = (std::int64_t{1} << bits_) - 1;
-    plant_.inputs[0].leader = {.age = LeaderSample::Age::fresh, .counts = raw & mask};
-  }
-  void miss() { plant_.inputs[0].leader.age = LeaderSample::Age::missing; }
-
- private:
-  Plant& plant_;
-  unsigned bits_;
-};
 
 TEST(AxisGears, AnAxisLocksToAMovingAxisAndFollowsItExactly) {
   Plant plant{2};
@@ -172,31 +122,11 @@ TEST(AxisGears, AFaultOfTheLeaderStopsTheAxisAlongItsLimits) {
   EXPECT_EQ(plant.last[1].stop.cause, StopCause::leader_lost);
 }
 
-/// The coordinates of the leader jump at the end of its homing run, although it stands then.
-TEST(AxisGears, AHomingRunOfAMeasuredLeaderStopsTheAxis) {
-  Plant plant{2};
-  plant.step();
-  Encoder encoder{plant, 32};
-  GearTask task = encoder.task(0.001);
-  task.leader_axis = 1;
-  ASSERT_TRUE(plant.take(gear_order(plant, 0, task)));
-  for (int beat = 0; beat < 100; ++beat) {
-    encoder.show(beat);
-    plant.step();
-  }
-  ASSERT_EQ(plant.last[0].state, AxisState::moving);
-  plant.inputs[1].homing = HomingState::runs;
-  encoder.show(100);
-  plant.step();
-  EXPECT_EQ(plant.last[0].stop.cause, StopCause::leader_lost);
-}
-
 TEST(AxisGears, BeginsOnlyWhereAStopAlongItsOwnLimitsIsPossible) {
   Plant plant{2};
   plant.step();
   ASSERT_TRUE(plant.take(jog(plant, 0.9)));
   plant.steps(100);
-  ASSERT_GT(plant.last[0].commanded.acceleration, 1.0);
   const auto outcome = [&](const GearTask& task, double acceleration, double jerk) {
     ++plant.ids;
     MotionOrder gear = gear_order(plant, 0, task);
@@ -208,13 +138,28 @@ TEST(AxisGears, BeginsOnlyWhereAStopAlongItsOwnLimitsIsPossible) {
     return plant.ended[0].outcome;
   };
   GearTask task{.kind = LeaderKind::commanded, .leader_axis = 1};
-  EXPECT_EQ(outcome(task, 5.0, 1.0), Outcome::no_stop) << "it would become faster than its limit";
   plant.steps(1000);
   EXPECT_EQ(outcome(task, 1e-6, 50.0), Outcome::no_stop) << "it would stop too late";
   task.range = {.min = -10.0, .max = plant.last[0].commanded.position + 1.0};
   EXPECT_EQ(outcome(task, 0.1, 50.0), Outcome::no_stop) << "it would leave its range";
   EXPECT_EQ(plant.last[0].running, 1U) << "the jog goes on";
   EXPECT_EQ(outcome(task, 5.0, 50.0), Outcome::replaced) << "the jog is replaced";
+}
+
+TEST(AxisGears, UsesAsMuchOfTheJerkOfTheMotionBeforeAsItNeeds) {
+  Plant plant{2};
+  plant.step();
+  ASSERT_TRUE(plant.take(jog(plant, 1.0)));
+  while (plant.last[0].commanded.velocity < 0.8) plant.step();
+  ASSERT_GT(plant.last[0].commanded.acceleration, 1.0);
+  plant.ids = 2;
+  MotionOrder gear = gear_order(plant, 0, {.kind = LeaderKind::commanded, .leader_axis = 1});
+  gear.stop.jerk = 1.0;
+  ASSERT_TRUE(plant.take(gear));
+  plant.step();
+  EXPECT_EQ(plant.last[0].running, 2U);
+  plant.steps(2000);  // the plant judges whether the axis becomes too fast
+  EXPECT_NEAR(plant.last[0].commanded.velocity, 0.0, 1e-3);
 }
 
 /// From one frame to the next, an axis moves by the way of one period at most.
@@ -252,6 +197,21 @@ TEST(AxisGears, ARingOfGearsStopsAtOnce) {
   EXPECT_EQ(plant.last[1].stop.cause, StopCause::leader_lost);
 }
 
+TEST(AxisGears, AReleasedGearIsNoPartOfARing) {
+  Plant plant{2};
+  plant.step();
+  plant.ids = 2;
+  ASSERT_TRUE(plant.take(gear_order(plant, 1, behind_axis(1.0))));
+  plant.steps(5);
+  plant.motions.release_gear(1);
+  plant.steps(1);
+  plant.ids = 3;
+  ASSERT_TRUE(plant.take(gear_order(plant, 0, {.kind = LeaderKind::commanded, .leader_axis = 1})));
+  plant.steps(3);
+  EXPECT_EQ(plant.last[0].state, AxisState::moving);
+  EXPECT_EQ(plant.last[1].gear, GearPhase::released);
+}
+
 TEST(AxisGears, AGearFollowsAGearInTheSameCycle) {
   Plant plant{3};
   plant.step();
@@ -267,73 +227,6 @@ TEST(AxisGears, AGearFollowsAGearInTheSameCycle) {
   plant.steps(2000);
 
   EXPECT_NEAR(plant.last[1].commanded.position, plant.last[0].commanded.position, 1e-7);
-}
-
-TEST(AxisGears, AnAxisFollowsACoarseNoisyCounterThatWraps) {
-  std::mt19937 random{1};
-  std::uniform_real_distribution<double> noise{-0.5, 0.5};
-  for (const unsigned bits : {12U, 16U, 32U}) {
-    Plant plant{1};
-    Encoder encoder{plant, bits};
-    constexpr double counts = 10'000.0;  // per unit
-    const double start = std::exp2(bits) - 1234.5;
-    encoder.show(start);
-    plant.step();
-    plant.ids = 2;
-    ASSERT_TRUE(plant.take(gear_order(plant, 0, encoder.task(1 / counts))));
-    double error = 0.0;
-    for (int beat = 0; beat < 6000; ++beat) {
-      encoder.show(start + counts * 0.45 * period * beat + noise(random));
-      const double before = plant.last[0].commanded.velocity;
-      plant.step();
-      if (beat < 3000) continue;
-      error = std::max(error, std::abs(plant.last[0].commanded.velocity - 0.45));
-      EXPECT_EQ(plant.last[0].gear, GearPhase::locked) << bits << " " << beat;
-      EXPECT_LT(std::abs(plant.last[0].commanded.velocity - before), 5.0 * period);
-    }
-    EXPECT_LT(error, 0.01) << bits;
-  }
-}
-
-TEST(AxisGears, AModuloOfTheLeaderIsNoJump) {
-  Plant plant{1};
-  Encoder encoder{plant, 32};
-  GearTask task = encoder.task(0.001);
-  task.modulo = 3600.0;
-  task.lock_window = 0.001;
-  task.ratio = -1.0;
-  plant.step();
-  plant.ids = 2;
-  ASSERT_TRUE(plant.take(gear_order(plant, 0, task)));
-  for (int beat = 0; beat < 20'000; ++beat) {
-    encoder.show(std::fmod(3000.0 + 0.3 * beat, 3600.0));
-    plant.step();
-    if (beat > 3000) {
-      EXPECT_NEAR(plant.last[0].commanded.velocity, -0.3, 0.02);
-    }
-  }
-  EXPECT_EQ(plant.last[0].gear, GearPhase::locked);
-}
-
-TEST(AxisGears, AMissingSampleIsBridgedAndThreeStopTheAxis) {
-  Plant plant{1};
-  Encoder encoder{plant, 32};
-  plant.step();
-  plant.ids = 2;
-  ASSERT_TRUE(plant.take(gear_order(plant, 0, encoder.task(0.0001))));
-  for (int beat = 0; beat < 3000; ++beat) {
-    encoder.show(3.0 * beat);
-    if (beat % 50 < 2) encoder.miss();
-    plant.step();
-  }
-  EXPECT_EQ(plant.last[0].gear, GearPhase::locked);
-  EXPECT_NEAR(plant.last[0].commanded.velocity, 0.3, 0.01);
-
-  encoder.miss();
-  plant.steps(500);
-
-  EXPECT_EQ(plant.last[0].state, AxisState::standing);
-  EXPECT_EQ(plant.last[0].stop.cause, StopCause::leader_lost);
 }
 
 TEST(AxisGears, AReleasedAxisKeepsItsVelocityForTheNextMotion) {
@@ -355,6 +248,45 @@ TEST(AxisGears, AReleasedAxisKeepsItsVelocityForTheNextMotion) {
 
   EXPECT_EQ(plant.last[1].running, 3U);
   EXPECT_EQ(plant.ended[1].outcome, Outcome::replaced);
+}
+
+/// A released axis waits for its frame, too, and the next motion begins where it is then.
+TEST(AxisGears, AReleasedAxisWaitsForASetPointThatWasNotSent) {
+  Plant plant{2};
+  plant.step();
+  ASSERT_TRUE(plant.take(jog(plant, 0.6)));
+  plant.ids = 2;
+  ASSERT_TRUE(plant.take(gear_order(plant, 1, behind_axis(1.0))));
+  plant.steps(1500);
+  plant.motions.release_gear(1);
+  plant.step();
+  const State before = plant.last[1].commanded;
+  ASSERT_NEAR(before.velocity, 0.6, 1e-6);
+  plant.ids = 3;
+  MotionOrder move = plant.order(1, before, 1);
+  move.from = before;
+  move.profile = Plant::plan(before, {.position = before.position + 1.0});
+  ASSERT_TRUE(plant.take(move));
+  plant.inputs[1].is_unsent = true;
+  plant.step();
+  EXPECT_EQ(plant.ended[1].outcome, Outcome::replaced);
+  EXPECT_EQ(plant.last[1].running, 3U);
+  EXPECT_EQ(plant.last[1].commanded.position, before.position);
+  plant.inputs[1].is_unsent = false;
+  plant.step();
+  EXPECT_NEAR(plant.last[1].commanded.position, before.position + 0.6 * period, 1e-7);
+
+  plant.motions.stop_axis(1, StopCause::application);
+  plant.steps(1000);
+  plant.ids = 4;
+  ASSERT_TRUE(plant.take(gear_order(plant, 1, behind_axis(1.0))));
+  plant.steps(1500);
+  plant.motions.release_gear(1);
+  plant.step();
+  const double released = plant.last[1].commanded.position;
+  plant.inputs[1].is_unsent = true;
+  plant.step();
+  EXPECT_EQ(plant.last[1].commanded.position, released);
 }
 
 TEST(AxisGears, AReleasedAxisWithoutANextMotionStops) {
