@@ -72,6 +72,13 @@ constexpr ObjectKey axis_object(unsigned axis, unsigned index, std::uint8_t sub 
   return {static_cast<std::uint16_t>(index + axis * 0x800), sub};
 }
 
+/// Returns the axis of an object of a device profile; empty for another object. CiA 402-1.
+constexpr std::optional<unsigned> axis_of(ObjectKey object) noexcept {
+  constexpr unsigned first = 0x6000;
+  if (object.index < first || object.index >= first + most_axes * 0x800) return std::nullopt;
+  return (object.index - first) / 0x800;
+}
+
 /// Formats a value as `0x6041`, with at least `digits` digits.
 std::string hex(std::uint32_t value, int digits = 4);
 /// Formats a value of up to 64 bits in the same way.

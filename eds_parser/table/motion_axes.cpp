@@ -5,7 +5,6 @@
 namespace takt {
 namespace {
 
-constexpr std::uint8_t axes_of_device = 8;
 constexpr std::size_t most_motion_axes = 127;
 
 /// A motion reads its position from one signal and writes it to the other.
@@ -58,7 +57,7 @@ std::vector<MotionAxis> motion_axes(const BusPlan& plan) {
   std::vector<MotionAxis> axes;
   for (std::size_t node = 0; node < plan.nodes.size(); ++node) {
     if (!plan.nodes[node].cia402) continue;
-    for (std::uint8_t number = 0; number < axes_of_device; ++number) {
+    for (std::uint8_t number = 0; number < most_axes; ++number) {
       const auto axis = motion_axis(plan, static_cast<std::uint8_t>(node), number);
       if (axis && axes.size() < most_motion_axes) axes.push_back(*axis);
     }

@@ -62,7 +62,6 @@ Bridge::Bridge(MasterRun& master, Transport& transport, const Clocks& clocks, Br
                 {.session = options_.session, .observe = options_.observe},
                 [this](SignalIndex signal, std::int64_t value, std::uint32_t time_to_live) {
                   outputs_staged_ |= master_.set(signal, value, time_to_live);
-                  releases_ |= time_to_live == output_released;
                 },
                 [this](const Notice& notice) { this->announce(notice); }},
       motions_{master.plan(), commands_,
@@ -194,9 +193,7 @@ void Bridge::publish_image(const ImageView& image, bool typed) {
   ++images_;
 }
 
-/// The bus thread has to know that an axis moves for nobody before its outputs are released.
 void Bridge::publish_outputs() {
-  if (std::exchange(releases_, false)) tell_released();
   // Uses the time at which the age was judged, because this thread may have stood still since then.
   if (std::exchange(outputs_staged_, false)) master_.publish_outputs(judged_);
 }
@@ -238,7 +235,10 @@ bool Bridge::waited(std::int64_t cycle, Time now) const noexcept {
 
 bool Bridge::take_at(const command_t& command, Time now, std::optional<std::size_t> only_node) {
   if (!outputs_staged_) judged_ = now;
-  return commands_.take(command, context_at(now, only_node));
+  const CommandContext context = context_at(now, only_node);
+  const bool taken = commands_.take(command, context);
+  if (command.release != 0) tell_released(context);
+  return taken;
 }
 
 CommandContext Bridge::context_at(Time now, std::optional<std::size_t> only_node) const noexcept {

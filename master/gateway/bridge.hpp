@@ -133,7 +133,7 @@ class Bridge {
   template <class T>
   void on_motion(std::string_view channel, Bytes data);
   void serve_motions();
-  void tell_released();
+  void tell_released(const CommandContext& context);
   CommandContext context_at(Time now, std::optional<std::size_t> only_node = {}) const noexcept;
   void on_request(Bytes data);
   void send(Notice notice);
@@ -218,7 +218,6 @@ class Bridge {
   std::uint64_t images_ = 0;
   std::uint64_t events_lost_reported_ = 0;
   bool outputs_staged_ = false;
-  bool releases_ = false;        // a staged output is released
   bool replies_left_ = false;    // the budget of this round ended before the replies
   bool transfers_left_ = false;  // steps of transfers are left over
   bool events_left_ = false;

@@ -36,8 +36,10 @@ void Bridge::serve_motions() {
   for (motion_t& part : motions_.messages()) publish(channels_.motion, part, now);
 }
 
-void Bridge::tell_released() {
-  if (motions_.watches()) motions_.serve(context_at(clocks_.now()));
+/// The bus thread has to know that an axis moves for nobody before its outputs are released, and
+/// before a later message of the same sender takes the node again.
+void Bridge::tell_released(const CommandContext& context) {
+  if (motions_.watches()) motions_.serve(context);
 }
 
 }  // namespace takt

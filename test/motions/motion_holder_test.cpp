@@ -123,6 +123,42 @@ TEST(MotionHolder, AReleaseStopsTheAxisBeforeItsDriveIsDisabled) {
   }
 }
 
+/// A sign of life from a later image takes the node again, but not the motion.
+TEST(MotionHolder, AReleaseStopsTheAxisAlsoIfASignOfLifeFollowsInTheSameRound) {
+  for (const bool overtakes : {false, true}) {
+    MotionBus bus;
+    bus.enable();
+    bus.move_one(1, 50.0);
+    bus.each_cycle = [&] { bus.keep_alive(); };
+    bus.run(200);
+    ASSERT_EQ(bus.axis(0).state, moving);
+    motion_command_t alive = bus.command("alive", 0);
+    ++alive.cycle;
+    alive.goals = {MotionBus::goal("shoulder", 0.0)};
+    if (overtakes) bus.send(alive);
+    bus.release();
+    if (!overtakes) bus.send(alive);
+    ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == stopping; }, 5)) << overtakes;
+    EXPECT_TRUE(bus.said("motion_stopped", "does not hold the node any longer"));
+  }
+}
+
+/// It is on its way, or waits to be planned.
+TEST(MotionHolder, AReleaseEndsAMotionThatHasNotBegunAlthoughASignOfLifeFollows) {
+  MotionBus bus;
+  bus.enable();
+  bus.move_one(1, 50.0);
+  motion_command_t alive = bus.command("alive", 0);
+  ++alive.cycle;
+  alive.goals = {MotionBus::goal("shoulder", 0.0)};
+  bus.release();
+  bus.send(alive);
+  bus.each_cycle = [&] { bus.keep_alive(); };
+  bus.run(50);
+  EXPECT_NE(bus.axis(0).state, moving);
+  EXPECT_TRUE(bus.said("motion_refused", "does not hold the nodes any longer"));
+}
+
 TEST(MotionHolder, AMotionThatIsRefusedTakesNoNode) {
   MotionBus bus;
   ASSERT_TRUE(bus.run_until([&] { return bus.bridge.status().bus.cycle > 500; }));

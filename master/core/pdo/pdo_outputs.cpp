@@ -14,7 +14,7 @@ PdoOutputs::PdoOutputs(const BusPlan& plan, WorkingImage& image, const PdoInputs
       outputs_(plan.layout.outputs()),
       rows_(plan.pdos.rpdos.size()),
       begun_(plan.nodes.size(), 0),
-      led_(plan.nodes.size(), 0),
+      led_(plan.nodes.size()),
       frames_(plan.pdos.rpdos.size()),
       packed_(plan.pdos.rpdos.size()) {
   fields_.reserve(plan.pdos.fields.size());
@@ -31,7 +31,8 @@ void PdoOutputs::open(std::size_t node_index, std::span<const SetPoint> set_poin
     if (pdo.node_index != node_index || pdo.on_request) continue;
     rows_[i] = Row{.sent = rows_[i].sent, .open = true};
   }
-  begun_[node_index] = led_[node_index] = 0;
+  begun_[node_index] = 0;
+  led_[node_index] = {};
   limits_.open(node_index);
   refusals_.open(node_index);
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
@@ -304,6 +305,16 @@ bool PdoOutputs::lead(SignalIndex signal, std::int64_t value, OutputMoment momen
        {.value = value, .generation = output.generation, .time_to_live = 0, .when = moment.now},
        moment);
   return true;
+}
+
+/// Returns true if a release of this output waits until the motions of its axis have ended, or
+/// those of all axes of its node if it belongs to none.
+bool PdoOutputs::release_waits(const Output& output, SignalIndex signal) const noexcept {
+  if (stopping_ || output.forced) return false;
+  const Signal& what = plan_.layout.signals[signal];
+  const auto& led = led_[what.node_index];
+  const auto axis = axis_of(what.object);
+  return axis ? led[*axis] != 0 : std::ranges::any_of(led, [](unsigned count) { return count; });
 }
 
 bool PdoOutputs::trail(SignalIndex signal, std::int64_t value) noexcept {

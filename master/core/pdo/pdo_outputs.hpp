@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -94,7 +95,8 @@ class PdoOutputs {
 
   /// Commands an output from a motion of the bus thread. Until release_lead(), commands of others
   /// to this output are refused, and none of them takes effect later. A release of any output of
-  /// its node takes effect after release_lead(). Returns false if the value was not taken: it is
+  /// its axis takes effect after release_lead(), and so does one of an output of its node that
+  /// belongs to no axis. Returns false if the value was not taken: it is
   /// outside the limits, or the output is_overruled().
   bool lead(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
   /// Returns true if lead() takes no value, whatever it is, because an ordered stop, an NMT command
@@ -254,13 +256,11 @@ class PdoOutputs {
     Output& output = outputs_[output_of(signal)];
     if (output.led == led) return;
     output.led = led;
-    std::uint8_t& count = led_[plan_.layout.signals[signal].node_index];
+    const Signal& what = plan_.layout.signals[signal];
+    std::uint8_t& count = led_[what.node_index][axis_of(what.object).value_or(0)];
     count = static_cast<std::uint8_t>(led ? count + 1 : count - 1);
   }
-  /// Returns true if a release of this output waits until the motions of its node have ended.
-  bool release_waits(const Output& output, SignalIndex signal) const noexcept {
-    return led_[plan_.layout.signals[signal].node_index] != 0 && !stopping_ && !output.forced;
-  }
+  bool release_waits(const Output& output, SignalIndex signal) const noexcept;
 
   [[gnu::noinline]] void command_limited(SignalIndex signal, std::int64_t value,
                                          std::uint32_t time_to_live, OutputMoment moment) noexcept;
@@ -331,7 +331,8 @@ class PdoOutputs {
   std::vector<Row> rows_;
   /// By node: an output was commanded, so seeds no longer follow the feedback.
   std::vector<std::uint8_t> begun_;
-  std::vector<std::uint8_t> led_;  ///< by node: number of its outputs that motions command
+  /// By node and axis: number of outputs that motions command.
+  std::vector<std::array<std::uint8_t, most_axes>> led_;
   std::vector<Frame> frames_;
   std::vector<std::uint16_t> packed_;
   std::size_t packed_count_ = 0;

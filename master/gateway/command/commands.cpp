@@ -40,9 +40,10 @@ Sender sender_of(const command_t& command) {
   return {.instance = command.instance, .name = command.sender};
 }
 
-LeaseTerm term_of(const command_t& command, const CommandContext& context) {
+LeaseTerm term_of(const command_t& command, const CommandContext& context,
+                  std::uint32_t cycles = 0) {
   return {.now = context.cycle,
-          .cycles = 0,
+          .cycles = cycles,
           .computed_from = static_cast<std::uint64_t>(command.cycle)};
 }
 
@@ -214,10 +215,7 @@ bool Commands::refuse_node(std::size_t node_index, const Objection& objection,
   return refuse(from, {objection.reason, plan_.nodes[node_index].id.value()}, objection.why);
 }
 
-/// Gives the node to the sender for `cycles`; 0 means no limit.
-void Commands::take_node(std::size_t node_index, std::uint32_t cycles, const Received& from) {
-  LeaseTerm term = term_of(from.command, from.context);
-  term.cycles = cycles;
+void Commands::take_node(std::size_t node_index, const LeaseTerm& term, const Received& from) {
   leases_.take(node_index, sender_of(from.command), term);
 }
 
@@ -225,7 +223,7 @@ bool Commands::check_node(std::size_t node_index, std::uint32_t cycles, const Re
   if (const auto found = objection_to(node_index, from)) {
     return refuse_node(node_index, *found, from);
   }
-  take_node(node_index, cycles, from);
+  take_node(node_index, term_of(from.command, from.context, cycles), from);
   return true;
 }
 
@@ -309,16 +307,19 @@ bool Commands::lease(const command_t& header, std::span<const std::size_t> nodes
                      std::uint32_t cycles, const CommandContext& context) {
   if (!admits_lease(header, nodes, context)) return false;
   const Received from{header, context};
-  for (const std::size_t node : nodes) take_node(node, cycles, from);
+  const LeaseTerm term = term_of(header, context, cycles);
+  for (const std::size_t node : nodes) take_node(node, term, from);
   return true;
 }
 
 void Commands::renew(const command_t& header, std::span<const std::size_t> nodes,
                      std::uint32_t cycles, const CommandContext& context) {
   const Received from{header, context};
+  LeaseTerm term = term_of(header, context, cycles);
+  term.is_sign_of_life = true;
   for (const std::size_t node : nodes) {
     const bool refused = objection_of_age(node, from) || objection_to(node, from);
-    if (!refused) take_node(node, cycles, from);
+    if (!refused) take_node(node, term, from);
   }
 }
 

@@ -77,7 +77,8 @@ class Commands {
   /// Gives these nodes to the sender of such a message for `cycles`, if admits_lease().
   bool lease(const command_t& header, std::span<const std::size_t> nodes, std::uint32_t cycles,
              const CommandContext& context);
-  /// Does the same for each of these nodes that it can give, and reports nothing.
+  /// Does the same for each of these nodes that it can give, and reports nothing. The message is a
+  /// sign of life, which keeps no release of its sender from taking effect.
   void renew(const command_t& header, std::span<const std::size_t> nodes, std::uint32_t cycles,
              const CommandContext& context);
   /// Returns true if such a message may stop the axes of the node: it is not too old, and no other
@@ -130,8 +131,8 @@ class Commands {
   };
   std::optional<Objection> objection_to(std::size_t node_index, const Received& from) const;
   std::optional<Objection> objection_of_age(std::size_t node_index, const Received& from) const;
-  void take_node(std::size_t node_index, std::uint32_t cycles, const Received& from);
   bool refuse_node(std::size_t node_index, const Objection& objection, const Received& from);
+  void take_node(std::size_t node_index, const LeaseTerm& term, const Received& from);
   bool check_node(std::size_t node_index, std::uint32_t cycles, const Received& from);
   bool check_cycle(const Received& from);
   std::string owned_text(std::size_t node_index, const Received& from) const;

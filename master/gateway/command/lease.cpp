@@ -27,7 +27,7 @@ LeaseVerdict LeaseTable::judge(const Lease& lease, std::int64_t instance,
   if (lease.newest > term.now + 1) return LeaseVerdict::taken;
   if (term.computed_from < lease.newest) return LeaseVerdict::overtaken;
   const bool released =
-      lease.released && lease.instance == instance && term.computed_from == lease.newest;
+      lease.released && lease.instance == instance && term.computed_from == lease.ordered;
   return released ? LeaseVerdict::released : LeaseVerdict::taken;
 }
 
@@ -49,6 +49,8 @@ LeaseVerdict LeaseTable::take(std::size_t node, const Sender& sender, const Leas
   lease.instance = sender.instance;
   if (lease.sender != sender.name) lease.sender = sender.name;
   lease.newest = term.computed_from;
+  if (term.is_sign_of_life && goes_on) return LeaseVerdict::taken;
+  lease.ordered = term.computed_from;
   lease.released = false;
   return LeaseVerdict::taken;
 }
@@ -61,10 +63,12 @@ bool LeaseTable::release(std::size_t node, std::uint64_t now,
                          std::uint64_t computed_from) noexcept {
   if (node >= leases_.size()) return false;
   Lease& lease = leases_[node];
-  const LeaseTerm term{.now = now, .computed_from = computed_from};
-  if (judge(lease, lease.instance, term) != LeaseVerdict::taken) return false;
+  const bool judges = lease.newest <= now + 1;
+  const bool is_copy = lease.released && computed_from == lease.ordered;
+  if (judges && (computed_from < lease.ordered || is_copy)) return false;
   lease.end = 0;
-  lease.newest = computed_from;
+  lease.newest = judges ? std::max(lease.newest, computed_from) : computed_from;
+  lease.ordered = computed_from;
   lease.released = true;
   return true;
 }

@@ -50,6 +50,7 @@ struct LeaseTerm {
   std::uint64_t now = 0;
   std::uint32_t cycles = 0;
   std::uint64_t computed_from = 0;
+  bool is_sign_of_life = false;  ///< it orders nothing, so a release may overtake it
 };
 
 /// Tells who may command the outputs of each node. The first sender holds the node until the time
@@ -68,8 +69,9 @@ class LeaseTable {
   LeaseVerdict take(std::size_t node, const Sender& sender, const LeaseTerm& term);
   /// Returns true if the sender with this instance holds the node.
   bool holds(std::size_t node, std::int64_t instance, std::uint64_t now) const noexcept;
-  /// Frees a node that its holder gives up. Returns false if a later command has overtaken the
-  /// release.
+  /// Frees a node that its holder gives up. A sign of life that has overtaken the release changes
+  /// nothing. Returns false if a later command has overtaken it, or if it is a copy of the last
+  /// one.
   bool release(std::size_t node, std::uint64_t now, std::uint64_t computed_from) noexcept;
   /// Name of the sender that holds the node; empty if nobody does.
   std::string_view holder(std::size_t node, std::uint64_t now) const noexcept;
@@ -80,9 +82,10 @@ class LeaseTable {
   struct Lease {
     std::int64_t instance = 0;
     std::string sender;
-    std::uint64_t end = 0;     // first cycle in which the node is free again
-    std::uint64_t newest = 0;  // cycle from which the newest command was computed
-    bool released = false;     // the newest command is a release
+    std::uint64_t end = 0;      // first cycle in which the node is free again
+    std::uint64_t newest = 0;   // cycle from which the newest command was computed
+    std::uint64_t ordered = 0;  // the same for the newest one that is no sign of life
+    bool released = false;      // that one is a release
   };
   static LeaseVerdict judge(const Lease& lease, std::int64_t instance,
                             const LeaseTerm& term) noexcept;

@@ -48,12 +48,9 @@ Task commanded_leader(const motion_gear_t& gear, std::size_t node,
                           .leader_axis = static_cast<std::uint8_t>(place)};
 }
 
-/// Returns true if the signal is one of the objects of this axis. Its axes have 0x800 indices each.
+/// Returns true if the signal is one of the objects of this axis.
 bool is_of(const Signal& signal, const MotionAxis& axis) noexcept {
-  constexpr unsigned first = 0x6000;
-  const unsigned index = signal.object.index;
-  return signal.node_index == axis.node_index && index >= first &&
-         (index - first) / 0x800 == axis.number;
+  return signal.node_index == axis.node_index && axis_of(signal.object) == axis.number;
 }
 
 /// Returns true if the signal is a position that follows the target position of this axis: the

@@ -262,7 +262,12 @@ std::optional<MotionCommands::Claim> MotionCommands::claim_of(const motion_comma
 /// refused takes no node, and is no sign of life.
 void MotionCommands::hold(const motion_command_t& command, std::span<const std::size_t> axes,
                           const Claim& claim, const CommandContext& context) {
-  commands_.lease(header_of(command), claim.nodes, claim.cycles, context);
+  const command_t header = header_of(command);
+  if (command.kind == "alive") {
+    commands_.renew(header, claim.nodes, claim.cycles, context);
+  } else {
+    commands_.lease(header, claim.nodes, claim.cycles, context);
+  }
   tell_heard(command, axes, claim.sender);
 }
 
@@ -336,7 +341,7 @@ void MotionCommands::observe(const MotionSnapshot& snapshot, const CommandContex
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const motion::TaggedOrder* running = jobs_.order(i, snapshot.axes[i].running);
     answers_.runs(i, running == nullptr ? 0 : running->tag.id);
-    if (running != nullptr) stops_.began(i, running->order.sender, running->tag.instance);
+    if (running != nullptr) stops_.began(*running);
   }
 }
 
@@ -345,6 +350,7 @@ void MotionCommands::serve(const CommandContext& context) {
   streams_.serve();
   while (const auto lost = jobs_.take_lost(context)) {
     answers_.refuse(*lost, {.why = "its sender does not hold the nodes any longer"}, context);
+    if (lost->order == 0) continue;
     for (const motion::AxisGoal& goal : lost->goals) stop(goal.axis);
   }
   jobs_.expire(context);
@@ -356,7 +362,7 @@ void MotionCommands::take(const motion::MotionEnd& end, const CommandContext& co
   const motion::TaggedOrder* order = jobs_.order(end.axis, end.order.id);
   const std::int32_t id = order == nullptr ? 0 : order->tag.id;
   if (order != nullptr && motion::has_begun(end.order.outcome)) {
-    stops_.began(end.axis, order->order.sender, order->tag.instance);
+    stops_.began(*order);
   }
   switch (end.order.outcome) {
     case motion::Outcome::done:

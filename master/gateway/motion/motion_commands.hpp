@@ -42,7 +42,8 @@ class MotionCommands {
   /// Takes the newest reports, and plans what waits for them.
   void observe(const MotionSnapshot& snapshot, const CommandContext& context);
   /// Does what waits for time and not for reports: stops that the bus thread could not take, jobs
-  /// that did not begin in time, and senders that have lost a node.
+  /// that did not begin in time, and senders that have lost a node. Call it also right after a
+  /// release, because a later sign of life of the sender would take the node again.
   void serve(const CommandContext& context);
   /// See AxisMotionLimits::learn().
   void learn(std::size_t line, std::int64_t value) { limits_.learn(plan_, line, value); }

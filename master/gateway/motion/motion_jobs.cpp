@@ -123,10 +123,6 @@ void MotionJobs::send(MotionJob& job) {
 
 /// Plans a job that waits. Returns false if it is refused.
 bool MotionJobs::plan_again(MotionJob& job, const CommandContext& context) {
-  if (!holds(job, context)) {
-    answers_.refuse(job, {.why = "its sender does not hold the nodes any longer"}, context);
-    return false;
-  }
   if (!plan(job, context)) return false;
   send(job);
   return true;
@@ -154,8 +150,8 @@ bool MotionJobs::has_begin_ahead(const MotionJob& job, const CommandContext& con
 }
 
 std::optional<MotionJob> MotionJobs::take_lost(const CommandContext& context) {
-  const auto lost = std::ranges::find_if(
-      jobs_, [&](const MotionJob& job) { return job.order != 0 && !holds(job, context); });
+  const auto lost =
+      std::ranges::find_if(jobs_, [&](const MotionJob& job) { return !holds(job, context); });
   if (lost == jobs_.end()) return std::nullopt;
   MotionJob job = std::move(*lost);
   jobs_.erase(lost);

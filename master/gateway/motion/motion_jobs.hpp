@@ -30,7 +30,7 @@ class MotionJobs {
   void start(MotionJob job);
   /// Forgets the job of the axis, because a stop replaces it.
   void drop(std::size_t axis);
-  /// Takes the newest reports, and plans what waits for them.
+  /// Takes the newest reports, and plans what waits for them. Before this, take_lost().
   void observe(const MotionSnapshot& snapshot, const CommandContext& context);
   /// The bus thread has refused an order. All orders of its group are refused then.
   void on_refused(const motion::MotionEnd& end, const CommandContext& context);
@@ -38,8 +38,8 @@ class MotionJobs {
   void on_ended(std::uint32_t order) {
     std::erase_if(jobs_, [&](const MotionJob& job) { return job.order == order; });
   }
-  /// Takes out a job with orders on their way whose sender has lost a node meanwhile: they must not
-  /// begin. Empty if there is none.
+  /// Takes out a job whose sender has lost a node meanwhile: it must not begin, and its orders may
+  /// be on their way. Empty if there is none.
   std::optional<MotionJob> take_lost(const CommandContext& context);
   /// Refuses the jobs that did not begin in time.
   void expire(const CommandContext& context);

@@ -24,9 +24,12 @@ class MotionStops {
     waiting_[axis] =
         !submit_({.kind = motion::MessageKind::stop, .axis = static_cast<std::uint8_t>(axis)});
   }
-  /// A motion of the axis has begun: the number of its sender for the bus thread, and its instance.
-  void began(std::size_t axis, std::uint8_t number, std::int64_t instance) {
-    owners_[axis] = {.instance = instance, .number = number};
+  /// This motion has begun.
+  void began(const motion::TaggedOrder& motion) {
+    Owner& owner = owners_[motion.order.axis];
+    if (owner.order == motion.order.id) return;
+    owner = {
+        .order = motion.order.id, .instance = motion.tag.instance, .number = motion.order.sender};
   }
   void serve(const CommandContext& context) {
     for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -36,20 +39,24 @@ class MotionStops {
   }
 
  private:
-  /// A sender as the nodes and as the bus thread know it.
+  /// The sender of a motion, as the nodes and as the bus thread know it.
   struct Owner {
-    std::int64_t instance = 0;  ///< 0 for none
+    std::uint32_t order = 0;
+    std::int64_t instance = 0;  ///< 0: nobody, or the bus thread knows that it has left
     std::uint8_t number = 0;
+    bool has_left = false;  ///< the bus thread has to be told, whoever holds the node now
   };
 
   void tell_lost(std::size_t axis, const CommandContext& context) {
     Owner& owner = owners_[axis];
     if (owner.instance == 0) return;
-    if (commands_.holds(axes_[axis].node_index, owner.instance, context.cycle)) return;
+    const bool holds = commands_.holds(axes_[axis].node_index, owner.instance, context.cycle);
+    owner.has_left = owner.has_left || !holds;
+    if (!owner.has_left) return;
     const bool told = submit_({.kind = motion::MessageKind::left,
                                .sender = owner.number,
                                .axis = static_cast<std::uint8_t>(axis)});
-    if (told) owner = {};
+    if (told) owner = {.order = owner.order};
   }
 
   const std::vector<MotionAxis>& axes_;

@@ -44,14 +44,15 @@ const TaggedOrder* MotionPlanner::Axis::find(std::uint32_t id) const noexcept {
   return found == sent.end() ? nullptr : &*found;
 }
 
-/// Orders that were sent before the one that runs can't be needed any more.
+/// An order that did not begin in its cycle never does, and its end is known before the report.
 void MotionPlanner::observe(CycleNumber cycle, std::span<const AxisReport> reports) {
   cycle_ = cycle;
   for (std::size_t i = 0; i < axes_.size() && i < reports.size(); ++i) {
     Axis& axis = axes_[i];
     axis.report = reports[i];
-    const auto running = std::ranges::find(axis.sent, axis.report.running, id_of);
-    if (running != axis.sent.end()) axis.sent.erase(axis.sent.begin(), running);
+    std::erase_if(axis.sent, [&](const TaggedOrder& sent) {
+      return sent.order.begin <= cycle && sent.order.id != axis.report.running;
+    });
   }
 }
 
@@ -102,7 +103,8 @@ std::expected<CycleNumber, PlanRefusal> MotionPlanner::begin_of(std::span<const 
     }
     const MotionOrder* waiting = axes_[axis].waiting(cycle_);
     if (waiting == nullptr) continue;
-    if (waiting->begin <= cycle_ + 1) {
+    // The bus thread decides which of the orders begins, so none of them may be forgotten.
+    if (waiting->begin <= cycle_ + 1 || axes_[axis].sent.size() >= Axis::most_sent) {
       return std::unexpected{PlanRefusal{.fault = PlanFault::busy, .axis = axis}};
     }
     first = std::max(first.value_or(0), waiting->begin);
@@ -290,7 +292,6 @@ std::span<const MotionOrder> MotionPlanner::number_orders(const MotionTag& tag) 
   ++id_;
   for (const MotionOrder& order : orders_) {
     std::vector<TaggedOrder>& sent = axes_[order.axis].sent;
-    if (sent.size() == Axis::most_sent) sent.erase(sent.begin() + 1);  // the first one may run
     sent.push_back({.order = order, .tag = tag});
   }
   return orders_;

@@ -123,7 +123,7 @@ class MotionPlanner {
     const TaggedOrder* find(std::uint32_t id) const noexcept;
 
     AxisReport report;
-    std::vector<TaggedOrder> sent;  ///< the newest orders, at most `most_sent`
+    std::vector<TaggedOrder> sent;  ///< the order that runs, and those that may begin
   };
 
   State released_at(const AxisReport& report, const Limits& limits, CycleNumber cycle) const;

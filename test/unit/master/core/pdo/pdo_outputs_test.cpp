@@ -198,6 +198,28 @@ TEST(PdoOutputs, AReleaseWaitsUntilTheMotionOfItsNodeHasEnded) {
   EXPECT_EQ(out.pack().at(0), make_frame(CobId::base(0x201), {0x02, 0, 8, 0, 0, 0}));
 }
 
+/// Two axes of one device: the release of one does not wait for the other.
+TEST(PdoOutputs, AReleaseDoesNotWaitForAnotherAxisOfItsNode) {
+  BusPlan plan = test::axes({.nodes = 2, .fallback_cycles = 10});
+  for (Signal& signal : plan.layout.signals) {
+    if (signal.node_index == 1) signal.object.index += 0x800;
+    signal.node_index = 0;
+  }
+  plan.pdos.rpdos[1].node_index = 0;
+  constexpr SignalIndex second_target = 7;
+  OutputsRig out{plan};
+  for (const std::size_t word : {0, 1}) out.command(word, 0x000F);
+  for (const std::size_t position : {2, 3}) out.command(position, 5);
+  out.pack();
+  for (std::size_t output = 0; output < 4; ++output) out.command(output, 0, output_released);
+  ASSERT_TRUE(out.pdos.outputs().lead(second_target, 6, {.cycle = 1}));
+  const std::vector<Frame> moving = out.pack();
+  EXPECT_EQ(moving.at(0).data[0], 0x02) << "the first axis stands";
+  EXPECT_EQ(moving.at(1).data[0], 0x0F);
+  out.pdos.outputs().release_lead(second_target);
+  EXPECT_EQ(out.pack().at(0).data[0], 0x02);
+}
+
 TEST(PdoOutputs, CommandWithoutTimeToLiveNeverGrowsOld) {
   BusPlan plan = one_axis();
   for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;

@@ -181,6 +181,25 @@ TEST(Lease, AnEarlierCommandDoesNotTakeANodeThatWasReleased) {
   EXPECT_EQ(take_from(leases, 106), LeaseVerdict::taken);
 }
 
+/// A release is an order. A sign of life that is read before it is none.
+TEST(Lease, ASignOfLifeThatHasOvertakenAReleaseChangesNothing) {
+  LeaseTable leases{1, 500};
+  const auto sign_from = [&](std::uint64_t cycle) {
+    const LeaseTerm term{.now = 110, .cycles = 50, .computed_from = cycle, .is_sign_of_life = true};
+    return leases.take(0, a_sender, term);
+  };
+  EXPECT_EQ(take_from(leases, 105), LeaseVerdict::taken);
+  EXPECT_EQ(sign_from(107), LeaseVerdict::taken);
+  EXPECT_TRUE(leases.release(0, 110, 106));
+  EXPECT_FALSE(leases.holds(0, a_sender.instance, 110));
+
+  EXPECT_EQ(sign_from(106), LeaseVerdict::overtaken);
+  EXPECT_EQ(sign_from(108), LeaseVerdict::taken);
+  EXPECT_FALSE(leases.release(0, 110, 106)) << "a copy";
+  EXPECT_EQ(take_from(leases, 109), LeaseVerdict::taken);
+  EXPECT_FALSE(leases.release(0, 110, 108)) << "a later command has overtaken it";
+}
+
 TEST(Lease, ACycleThatHasNotComeYetKeepsNobodyOut) {
   LeaseTable leases{1, 500};
   EXPECT_TRUE(take(leases, 0, a_sender, 900, 50)) << "the clock ran on while SYNC stood still";

@@ -169,6 +169,31 @@ TEST(MotionPlanner, AWaitingOrderIsReplacedOrAwaited) {
   EXPECT_NEAR(line.axis(0).commanded.position, -0.3, 1e-12);
 }
 
+/// The bus thread takes one order of an axis in a cycle, and the planner does not know which.
+TEST(MotionPlanner, ForgetsNoOrderThatMayBegin) {
+  Line line{1};
+  std::vector<MotionOrder> orders;
+  PlanFault fault{};
+  for (int i = 0; i < 20; ++i) {
+    const auto planned = line.plan({to(0, 0.1 * i + 1.0)});
+    if (planned) {
+      orders.push_back(planned->front());
+    } else {
+      fault = planned.error().fault;
+    }
+  }
+  EXPECT_EQ(fault, PlanFault::busy);
+  ASSERT_GE(orders.size(), 2U);
+  ASSERT_EQ(line.motions.take(orders.front()), Outcome::none);
+  EXPECT_EQ(line.motions.take(orders.back()), Outcome::second_in_cycle);
+  line.steps(4);
+  ASSERT_EQ(line.axis(0).running, orders.front().id);
+  EXPECT_NE(line.planner.order(0, orders.front().id), nullptr);
+  EXPECT_TRUE(line.send({to(0, 0.5)})) << "the others are over";
+  line.steps(5000);
+  EXPECT_NEAR(line.axis(0).commanded.position, 0.5, 1e-12);
+}
+
 TEST(MotionPlanner, AStoppingAxisIsRefused) {
   Line line{1};
   ASSERT_TRUE(line.send({to(0, 1.0)}));
