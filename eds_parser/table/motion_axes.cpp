@@ -1,5 +1,7 @@
 #include "eds_parser/table/motion_axes.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace takt {
@@ -11,6 +13,15 @@ constexpr std::size_t most_motion_axes = 127;
 bool have_same_unit(const Signal& position, const Signal& target) {
   return position.scale == target.scale && position.offset == target.offset &&
          position.unit == target.unit;
+}
+
+/// A range of positions that is shorter than a turn keeps the axis from turning.
+Turn turn_of(const BusPlan& plan, SignalIndex target) {
+  const auto row = std::ranges::find(plan.limits.outputs, target, &OutputLimit::signal);
+  if (row == plan.limits.outputs.end() || !(row->modulus > 0.0 && row->modulus <= 0x1p32))
+    return {};
+  if (row->high - row->low < row->modulus - 1.0) return {};
+  return {.length = std::round(row->modulus), .lowest = row->lowest};
 }
 
 HomingPlan homing_of(const NodePlan& node, std::uint8_t number) {
@@ -47,6 +58,7 @@ std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, st
                     .velocity = find(0x606C, false),
                     .mode = shown_mode ? shown_mode : find(0x6060, true),
                     .velocity_offset = same_unit ? offset : std::nullopt,
+                    .turn = turn_of(plan, *target),
                     .needs_homing = homing.required,
                     .homing_timeout = homing.timeout};
 }

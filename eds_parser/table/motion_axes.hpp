@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -6,6 +7,28 @@
 #include "eds_parser/table/bus_plan.hpp"
 
 namespace takt {
+
+/// The positions of a rotary axis, which begin again after a turn. Counts of the target position.
+struct Turn {
+  double length = 0.0;  ///< 0: the axis is not rotary, or its range keeps it from turning
+  double lowest = 0.0;  ///< where a turn begins
+
+  /// Returns the position inside the turn that is the same place as this one.
+  double inside(double counts) const noexcept {
+    return length > 0.0 ? counts - length * std::floor((counts - lowest) / length) : counts;
+  }
+  /// Returns the place of this position that is nearest to `reference`. Of two that are half a turn
+  /// away it is the upper one.
+  double nearest(double counts, double reference) const noexcept {
+    return length > 0.0 ? counts + length * std::floor((reference - counts) / length + 0.5)
+                        : counts;
+  }
+  /// The same turn for numbers that are counts x scale + offset.
+  Turn in_unit(double scale, double offset) const noexcept {
+    const double begin = scale < 0.0 ? lowest + length : lowest;
+    return {.length = length * std::abs(scale), .lowest = begin * scale + offset};
+  }
+};
 
 /// An axis whose motions the master can run: the signals that a motion reads and writes.
 struct MotionAxis {
@@ -19,6 +42,7 @@ struct MotionAxis {
   std::optional<SignalIndex> mode{};         ///< 6061, else 6060 if it is an output
   /// 60B1, if its unit is that of the target per second.
   std::optional<SignalIndex> velocity_offset{};
+  Turn turn{};                ///< of the target and of the position
   bool needs_homing = false;  ///< `homing:` of the network file requires it
   Time homing_timeout{};      ///< longest time of a homing run
 };

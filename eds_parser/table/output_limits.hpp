@@ -68,6 +68,7 @@ struct OutputLimit {
   LimitKind rate_of = LimitKind::velocity;
   double bend = none;    ///< greatest change of the difference (acceleration), per cycle squared
   double modulus = 0.0;  ///< differences count modulo this; 0 = no modulo
+  double lowest = 0.0;   ///< the position at which a range of `modulus` counts begins
   bool wraps = false;    ///< differences count modulo the width of the object
   AxisQuantity quantity = AxisQuantity::none;
   std::optional<SignalIndex> offset{};       ///< of a target: the output that the drive adds to it

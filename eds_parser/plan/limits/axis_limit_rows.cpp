@@ -37,6 +37,16 @@ double AxisLimits::modulus(const Sourced<double>& modulo, SignalIndex signal) co
   return std::abs(of_drive - length) <= 1.0 + length * rounded_digits ? of_drive : length;
 }
 
+/// Returns the lowest position of a turn: that of the drive, else of the range of commands, else 0.
+/// INTEGER32 holds the whole turn.
+double AxisLimits::lowest(const OutputLimit& row) const {
+  if (row.modulus <= 0.0) return 0.0;
+  const auto of_drive = configured_object(node_, object(0x607B, 1));
+  double lowest = std::isfinite(row.low) ? std::ceil(row.low) : 0.0;
+  if (of_drive && turn(configured_object) == row.modulus) lowest = static_cast<double>(*of_drive);
+  return std::clamp(lowest, -0x1p31, std::max(-0x1p31, 0x1p31 - row.modulus));
+}
+
 /// Warns if the position of the drive wraps at another value than `modulo`. The drive would then
 /// move back by a whole turn at once.
 void AxisLimits::ask_for_turn(const Sourced<double>& modulo) {
@@ -114,6 +124,7 @@ void AxisLimits::describe_position_rows(const AxisLimitsSpec& limits) {
     if (row == nullptr) continue;
     row->wraps = !is_real(table_.signal(signal).type);
     row->modulus = modulus(limits.modulo, signal);
+    row->lowest = lowest(*row);
     row->controlword = output(0x6040);
     row->feedback = input(0x6064);
     row->statusword = input(0x6041);

@@ -60,6 +60,7 @@ class AxisLimits {
   using ObjectReader = std::optional<std::int64_t> (*)(const NodeSource& node, ObjectKey object);
   double turn(ObjectReader read) const;
   double modulus(const Sourced<double>& modulo, SignalIndex signal) const;
+  double lowest(const OutputLimit& row) const;
   void ask_for_turn(const Sourced<double>& modulo);
   void warn_of_late_start(const AxisLimitsSpec& limits);
 

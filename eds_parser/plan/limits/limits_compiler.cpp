@@ -14,9 +14,10 @@ namespace takt {
 namespace {
 
 /// The limits of an axis that are single numbers.
-constexpr std::array<Sourced<double> AxisLimitsSpec::*, 6> numbers{
-    &AxisLimitsSpec::velocity, &AxisLimitsSpec::acceleration, &AxisLimitsSpec::jerk,
-    &AxisLimitsSpec::step,     &AxisLimitsSpec::torque,       &AxisLimitsSpec::modulo};
+constexpr std::array<Sourced<double> AxisLimitsSpec::*, 7> numbers{
+    &AxisLimitsSpec::velocity,        &AxisLimitsSpec::acceleration, &AxisLimitsSpec::jerk,
+    &AxisLimitsSpec::following_error, &AxisLimitsSpec::step,         &AxisLimitsSpec::torque,
+    &AxisLimitsSpec::modulo};
 
 /// Replaces each limit that `own` also states by the value in `own`.
 void override_limits(AxisLimitsSpec& limits, const AxisLimitsSpec& own) {

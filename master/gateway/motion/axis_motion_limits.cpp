@@ -72,7 +72,10 @@ constexpr double default_rise = 0.05;
 
 AxisMotionLimits::AxisMotionLimits(const BusPlan& plan) : signals_{motion_axes(plan)} {
   for (const MotionAxis& axis : signals_) {
-    axes_.push_back({.range = range_of_integer32(plan.layout.signals[axis.target])});
+    const Signal& target = plan.layout.signals[axis.target];
+    const double turn = axis.turn.in_unit(target.scale, target.offset).length;
+    axes_.push_back(
+        {.range = turn > 0.0 ? motion::PositionRange{} : range_of_integer32(target), .turn = turn});
   }
   for (const LimitLine& line : plan.limits.lines) add(plan, line);
 }
@@ -85,8 +88,13 @@ void AxisMotionLimits::add(const BusPlan& plan, const LimitLine& line) {
     Axis& found = axes_[i];
     if (line.kind == LimitKind::position && line.unit == target.unit) {
       const motion::PositionRange widest = range_of_integer32(target);
-      found.range = {.min = std::max(widest.min, line.low.value_or(widest.min)),
-                     .max = std::min(widest.max, *line.high)};
+      const motion::PositionRange range{.min = std::max(widest.min, line.low.value_or(widest.min)),
+                                        .max = std::min(widest.max, *line.high)};
+      const double length = range.max - range.min + std::abs(target.scale);
+      if (found.turn == 0.0 || length < found.turn) {
+        found.range = range;
+        found.turn = 0.0;
+      }
     }
     if (line.kind == LimitKind::following_error && line.unit == target.unit) {
       found.following_error = line.high;

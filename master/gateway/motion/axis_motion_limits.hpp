@@ -33,7 +33,10 @@ class AxisMotionLimits {
   /// command nor the file has one.
   std::expected<double, std::string> following_error(std::size_t axis,
                                                      const motion_goal_t& goal) const;
+  /// A rotary axis whose range is not shorter than its turn has none.
   const motion::PositionRange& range(std::size_t axis) const noexcept { return axes_[axis].range; }
+  /// The length of a turn of such an axis, in its unit; 0 for another one.
+  double turn(std::size_t axis) const noexcept { return axes_[axis].turn; }
 
  private:
   struct Axis {
@@ -43,6 +46,7 @@ class AxisMotionLimits {
     std::optional<double> jerk{};
     std::optional<double> following_error{};
     motion::PositionRange range{};
+    double turn = 0.0;
   };
   void add(const BusPlan& plan, const LimitLine& line);
 

@@ -44,8 +44,12 @@ Task commanded_leader(const motion_gear_t& gear, std::size_t node,
   }
   const auto place = static_cast<std::size_t>(found - known.axes.begin());
   if (std::ranges::find(axes, place) != axes.end()) return refused("an axis can't lead itself");
+  const Signal& target = known.plan.layout.signals[found->target];
+  const Turn turn = found->turn.in_unit(target.scale, target.offset);
   return motion::GearTask{.kind = motion::LeaderKind::commanded,
-                          .leader_axis = static_cast<std::uint8_t>(place)};
+                          .leader_axis = static_cast<std::uint8_t>(place),
+                          .modulo = turn.length,
+                          .zero = turn.lowest};
 }
 
 /// Returns true if the signal is one of the objects of this axis.
@@ -93,6 +97,7 @@ Task measured_leader(const motion_gear_t& gear, std::size_t node, std::span<cons
       known.axes, [&](const MotionAxis& each) { return is_position_of(*found, each); });
   if (axis != known.axes.end()) {
     task.leader_axis = static_cast<std::uint8_t>(axis - known.axes.begin());
+    if (axis->position == signal && task.modulo == 0.0) task.modulo = axis->turn.length;
   }
   task.lead = cycles_of_lead * std::chrono::duration<double>{known.plan.cycle.period}.count();
   return task;
@@ -145,6 +150,7 @@ std::expected<std::vector<motion::GearTask>, MotionRefusal> gear_tasks(
     }
     task.max_phase_error = most == 0.0 ? std::numeric_limits<double>::infinity() : most;
     task.range = known.limits.range(axes[i]);
+    task.turn = known.limits.turn(axes[i]);
     tasks.push_back(task);
   }
   return tasks;

@@ -41,6 +41,7 @@ std::expected<motion::AxisGoal, MotionRefusal> axis_goal(const motion_goal_t& go
       .to = {.position = is_jog ? 0.0 : goal.position, .velocity = is_jog ? goal.velocity : 0.0},
       .limits = *within,
       .range = limits.range(axis),
+      .turn = limits.turn(axis),
       .max_following_error = *following_error};
 }
 

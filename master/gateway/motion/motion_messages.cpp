@@ -13,7 +13,8 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t axes_a_message = 13;  // 92 bytes each
 
-axis_motion_t to_message(const MotionAxis& axis, const motion::AxisReport& report,
+/// `turn` is that of the positions in their unit. A rotary axis shows them inside its turn.
+axis_motion_t to_message(const MotionAxis& axis, const Turn& turn, const motion::AxisReport& report,
                          const ShownMotion& shown, double period) {
   axis_motion_t message{};
   message.axis = static_cast<std::int8_t>(axis.number + 1);
@@ -24,10 +25,10 @@ axis_motion_t to_message(const MotionAxis& axis, const motion::AxisReport& repor
   message.homing = static_cast<std::int8_t>(report.homing);
   message.needs_homing = axis.needs_homing ? 1 : 0;
   message.homing_timeout_ms = static_cast<std::int32_t>(axis.homing_timeout / 1ms);
-  message.position = report.commanded.position;
+  message.position = turn.inside(report.commanded.position);
   message.velocity = report.commanded.velocity;
   message.acceleration = report.commanded.acceleration;
-  message.actual_position = report.actual.position;
+  message.actual_position = turn.inside(report.actual.position);
   message.actual_velocity = report.actual.velocity;
   message.following_error = report.following_error;
   message.time_left = static_cast<double>(report.cycles_left) * period;
@@ -49,7 +50,9 @@ std::vector<motion_t> motion_messages(const BusPlan& plan, const std::vector<Mot
     message.cycle = static_cast<std::int64_t>(snapshot.cycle);
     const std::size_t end = std::min(first + axes_a_message, axes.size());
     for (std::size_t i = first; i < end; ++i) {
-      message.axes.push_back(to_message(axes[i], snapshot.axes[i], shown[i], period));
+      const Signal& target = plan.layout.signals[axes[i].target];
+      const Turn turn = axes[i].turn.in_unit(target.scale, target.offset);
+      message.axes.push_back(to_message(axes[i], turn, snapshot.axes[i], shown[i], period));
       message.axes.back().node_id = plan.nodes[axes[i].node_index].id.value();
     }
     message.num_axes = static_cast<std::int32_t>(message.axes.size());

@@ -37,7 +37,9 @@ void MotionStreams::begin(const MotionJob& job, double first_time) {
                 .begin = job.begin,
                 .first_time = first_time,
                 .goals = job.goals};
-  for (const motion::MotionOrder& order : job.orders) {
+  for (std::size_t i = 0; i < job.orders.size(); ++i) {
+    const motion::MotionOrder& order = job.orders[i];
+    stream.turns.push_back(turns_to(job.goals[i], order.from.position));
     stream.last.push_back({.time = 0.0, .state = order.from});
     motion::MotionMessage message{.kind = motion::MessageKind::points, .axis = order.axis};
     message.points.order = order.id;
@@ -123,7 +125,10 @@ std::optional<MotionRefusal> MotionStreams::add_point(Stream& stream, const moti
                                             std::floor(most), longest_step)};
   }
   std::vector<motion::StreamPoint> next;
-  for (std::size_t i = 0; i < axes; ++i) next.push_back(stream_point(point, i, time));
+  for (std::size_t i = 0; i < axes; ++i) {
+    next.push_back(stream_point(point, i, time));
+    next.back().state.position += stream.turns[i];
+  }
   if (const auto defect = defect_of(stream, next)) return defect;
   if (stream.filling.front().points.size == motion::StreamPoints::capacity) close(stream);
   for (std::size_t i = 0; i < axes; ++i) {

@@ -57,12 +57,13 @@ class MotionStreams {
     std::int32_t id = 0;
     std::int64_t instance = 0;
     std::uint32_t order = 0;
-    std::uint64_t begin = 0;                  ///< cycle, see AxisReport::began
-    double first_time = 0.0;                  ///< time of its first point in its messages, in s
-    std::vector<motion::AxisGoal> goals{};    ///< its axes and their limits
-    std::vector<motion::StreamPoint> last{};  ///< newest point of each of them
-    std::int64_t next = 1;                    ///< number of the next point
-    std::deque<double> times{};               ///< of the points that the bus thread may hold
+    std::uint64_t begin = 0;                ///< cycle, see AxisReport::began
+    double first_time = 0.0;                ///< time of its first point in its messages, in s
+    std::vector<motion::AxisGoal> goals{};  ///< its axes and their limits
+    std::vector<double> turns{};  ///< of each axis: whole turns between its points and its motion
+    std::vector<motion::StreamPoint> last{};       ///< newest point of each of them
+    std::int64_t next = 1;                         ///< number of the next point
+    std::deque<double> times{};                    ///< of the points that the bus thread may hold
     std::vector<motion::MotionMessage> filling{};  ///< of each axis, for the next points
     std::deque<motion::MotionMessage> waiting{};   ///< for the bus thread
   };

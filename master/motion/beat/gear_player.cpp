@@ -32,7 +32,21 @@ State GearPlayer::step(const State& from, const LeaderState& leader, const Leade
   return follow(from, {.state = estimate_.state(task_)}, period);
 }
 
+/// A rotary leader counts from the begin of its turn. A rotary axis goes to the nearest place of
+/// its phase.
+void GearPlayer::choose_turns(const State& from, const State& leader) noexcept {
+  if (task_.kind == LeaderKind::commanded && task_.modulo > 0.0) {
+    offset_ -=
+        task_.ratio * task_.modulo * std::floor((leader.position - task_.zero) / task_.modulo);
+  }
+  if (task_.turn > 0.0) {
+    const double target = task_.ratio * leader.position + offset_;
+    offset_ += task_.turn * std::floor((from.position - target) / task_.turn + 0.5);
+  }
+}
+
 State GearPlayer::follow(const State& from, const LeaderState& leader, double time) noexcept {
+  if (!started_ && matched_) choose_turns(from, leader.state);
   const double turned = task_.ratio * leader.state.position;
   const State target{.position = turned + offset_,
                      .velocity = task_.ratio * leader.state.velocity,

@@ -57,6 +57,7 @@ class GearPlayer {
 
  private:
   State follow(const State& from, const LeaderState& leader, double time) noexcept;
+  void choose_turns(const State& from, const State& leader) noexcept;
   void judge(const State& axis, const State& target, double time) noexcept;
 
   GearTask task_;

@@ -26,21 +26,24 @@ struct GearTask {
   std::uint8_t leader_axis = 0xFF;  ///< of `commanded`; of `measured` one whose fault matters
   std::uint16_t signal = 0;         ///< of `measured`: its number in the image
   std::uint8_t bits = 32;           ///< width of this signal
-  double modulo = 0.0;              ///< counts after which the signal wraps; 0: only at its width
-  double scale = 1.0;               ///< unit of the leader per count
-  double zero = 0.0;                ///< position of the leader at the count 0
-  double filter_time = 0.0;         ///< of `measured`, s, see LeaderEstimate
-  double lead = 0.0;                ///< s by which a measured position is older than the set-point
-  double ratio = 1.0;               ///< of the velocities
-  double offset = 0.0;              ///< of PhaseMatch::at
-  double lock_window = 0.0;         ///< phase error up to which the axis counts as locked
+  /// Of `measured`: counts after which the signal wraps; 0: only at its width. Of `commanded`: the
+  /// length of a turn, which begins at `zero`, of a rotary leader; 0: it is not rotary.
+  double modulo = 0.0;
+  double scale = 1.0;        ///< unit of the leader per count
+  double zero = 0.0;         ///< of `measured`: position of the leader at the count 0
+  double filter_time = 0.0;  ///< of `measured`, s, see LeaderEstimate
+  double lead = 0.0;         ///< s by which a measured position is older than the set-point
+  double ratio = 1.0;        ///< of the velocities
+  double offset = 0.0;       ///< of PhaseMatch::at
+  double turn = 0.0;         ///< of PhaseMatch::at: length of a turn of a rotary axis; 0: none
+  double lock_window = 0.0;  ///< phase error up to which the axis counts as locked
   double max_phase_error = std::numeric_limits<double>::infinity();  ///< once it was locked
   PositionRange range{};  ///< in which a stop must be possible at any time
 
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(kind, match, leader_axis, signal, bits, modulo, scale, zero, filter_time, lead, ratio,
-          offset, lock_window, max_phase_error, range.min, range.max);
+          offset, turn, lock_window, max_phase_error, range.min, range.max);
   }
 };
 
@@ -48,7 +51,7 @@ struct GearTask {
 inline bool is_sound(const GearTask& task) noexcept {
   const auto finite = [](auto... numbers) { return (std::isfinite(numbers) && ...); };
   return finite(task.modulo, task.scale, task.zero, task.filter_time, task.lead, task.ratio,
-                task.offset, task.lock_window) &&
+                task.offset, task.turn, task.lock_window) &&
          task.modulo >= 0.0 && task.filter_time >= 0.0 && task.lead >= 0.0 &&
          task.lock_window >= 0.0 && task.max_phase_error > 0.0 && task.bits >= 1 && task.bits <= 64;
 }

@@ -22,8 +22,8 @@ State state_of(const MotionOrder& order, double time) {
 bool is_start(const State& from, const AxisGoal& goal) noexcept {
   constexpr double tolerance = MotionPlanner::start_tolerance;
   const Limits& limits = goal.limits;
-  return std::abs(goal.to.position - from.position) <=
-             tolerance * std::max(1.0, std::abs(from.position)) &&
+  const double start = goal.to.position + turns_to(goal, from.position);
+  return std::abs(start - from.position) <= tolerance * std::max(1.0, std::abs(from.position)) &&
          std::abs(goal.to.velocity) <= tolerance * limits.max_velocity &&
          std::abs(goal.to.acceleration) <= tolerance * limits.max_acceleration;
 }
@@ -122,7 +122,11 @@ std::expected<void, PlanRefusal> MotionPlanner::set_tasks(const GroupGoal& group
     // A jog has no range here: it stops in time, see MotionOrder::latest_stop.
     const PositionRange range = group.goal == Goal::position ? goal.range : PositionRange{};
     State to = goal.to;
-    if (group.reference == Reference::commanded) to.position += from->position;
+    if (group.reference == Reference::commanded) {
+      to.position += from->position;
+    } else {
+      to.position += turns_to(goal, from->position);
+    }
     const TaggedOrder* running = axes_[goal.axis].find(axes_[goal.axis].report.running);
     const Limits limits = running == nullptr
                               ? goal.limits

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <expected>
 #include <limits>
@@ -19,9 +20,17 @@ struct AxisGoal {
   State to;
   Limits limits;
   PositionRange range{};
+  double turn = 0.0;  ///< of a rotary axis: it moves to the nearest place of its position; 0: none
   /// Distance between commanded and actual position above which the group stops.
   double max_following_error = std::numeric_limits<double>::infinity();
 };
+
+/// Returns the length of the whole turns between the target of a rotary axis and the place of it
+/// that is nearest to `position`. Of two places that are half a turn away it is the upper one.
+inline double turns_to(const AxisGoal& goal, double position) noexcept {
+  if (goal.turn <= 0.0) return 0.0;
+  return goal.turn * std::floor((position - goal.to.position) / goal.turn + 0.5);
+}
 
 /// Whose motion it is, in the numbers of the caller, who finds it again by the order.
 struct MotionTag {

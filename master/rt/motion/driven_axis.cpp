@@ -48,6 +48,7 @@ DrivenAxis::DrivenAxis(const MotionAxis& axis, const BusPlan& plan)
       longest_wait_{longest_wait_of(plan, axis.target)},
       homing_{
           static_cast<std::uint32_t>(homing_patience / std::max(plan.cycle.period, Time{1000}))} {
+  position_.turn = target_.turn = axis.turn;
   if (axis.velocity) velocity_ = scale_of(plan, *axis.velocity);
   if (axis.velocity_offset) velocity_offset_ = scale_of(plan, *axis.velocity_offset);
   for (std::size_t i = plan.layout.inputs; i < plan.layout.signals.size(); ++i) {
@@ -62,9 +63,10 @@ DrivenAxis::Scale DrivenAxis::scale_of(const BusPlan& plan, SignalIndex signal) 
 
 /// Returns std::nullopt for a number that INTEGER32 can't hold.
 std::optional<std::int64_t> DrivenAxis::Scale::raw(double number) const noexcept {
-  const double counts = std::round((number - offset) / scale);
+  const double counts = turn.inside(std::round((number - offset) / scale));
   constexpr double largest = std::numeric_limits<std::int32_t>::max();
-  if (!(std::abs(counts) <= largest)) return std::nullopt;
+  const double smallest = turn.length > 0.0 ? turn.lowest : -largest;
+  if (!(counts >= smallest && counts <= largest)) return std::nullopt;
   return static_cast<std::int64_t>(counts);
 }
 
@@ -129,7 +131,9 @@ motion::HomingState DrivenAxis::homing(const PdoExchange& pdos, bool exchanging)
        .statusword = static_cast<std::uint16_t>(image.values[axis_.statusword])});
 }
 
-/// While the actual position is missing, the following error counts as unchanged.
+/// While the actual position is missing, the following error counts as unchanged. A rotary axis is
+/// inside its turn while nothing moves it; later, its positions are those next to the commanded
+/// one.
 motion::AxisInput DrivenAxis::read(PdoExchange& pdos, bool exchanging,
                                    const motion::AxisReport& last) noexcept {
   const WorkingImage& image = pdos.image();
@@ -139,16 +143,19 @@ motion::AxisInput DrivenAxis::read(PdoExchange& pdos, bool exchanging,
                           .actual = last.actual,
                           .set_point = {},
                           .is_unsent = unsent_beats_ >= longest_wait_};
+  const bool starts = last.state == AxisState::unpowered;
+  const auto position_of = [&](const Scale& scale, std::int64_t raw) {
+    return starts ? scale.number(raw) : scale.number_near(raw, last.commanded.position);
+  };
   input.actual.position = image.is_stale(axis_.position)
                               ? last.commanded.position - last.following_error
-                              : position_.number(image.values[axis_.position]);
+                              : position_of(position_, image.values[axis_.position]);
   if (axis_.velocity) input.actual.velocity = velocity_.number(image.values[*axis_.velocity]);
   const std::int64_t target = image.values[axis_.target];
   if (target != written_) writer_ = Writer::others;
-  const bool starts = last.state == AxisState::unpowered;
   const bool by_motion = writer_ == Writer::motion || writer_ == Writer::in_motion;
   if ((starts || !by_motion) && pdos.outputs().known(axis_.target)) {
-    input.set_point = target_.number(target);
+    input.set_point = position_of(target_, target);
   }
   follows_actual_ = obeys_halt_ && by_motion && last.state == AxisState::standing;
   if (follows_actual_) input.set_point = input.actual.position;

@@ -59,9 +59,14 @@ class DrivenAxis {
   struct Scale {
     double scale = 1.0;
     double offset = 0.0;
+    Turn turn{};  ///< of a rotary axis, whose motions count on over the turns
 
     double number(std::int64_t raw) const noexcept {
       return static_cast<double>(static_cast<std::int32_t>(raw)) * scale + offset;
+    }
+    /// Returns the number that is nearest to `reference`.
+    double number_near(std::int64_t raw, double reference) const noexcept {
+      return turn.in_unit(scale, offset).nearest(number(raw), reference);
     }
     std::optional<std::int64_t> raw(double number) const noexcept;
   };

@@ -249,6 +249,31 @@ TEST(Limits, OfARotaryAxisThatMayNotTurnOverThereAreAWarning) {
   EXPECT_THAT(rotary("", ""), AllOf(HasSubstr("note: "), HasSubstr("does not have this object")));
 }
 
+/// The motions need it, also without any other limit.
+TEST(Limits, ATurnBeginsWhereThatOfTheDriveBegins) {
+  const std::string range_limit =
+      record("607B", "Position range limit", 3) + entry("607Bsub0", "highest", 5, "const", "2") +
+      entry("607Bsub1", "min", 4, "rw", "0") + entry("607Bsub2", "max", 4, "rw", "0");
+  const auto row = [&](const std::string& keys) {
+    return only(drive(keys, "{index: 0x607A}", units, tiny_eds() + range_limit));
+  };
+  const std::string of_drive =
+      "    sdo: [{index: 0x607B, sub_index: 1, value: -1800}, {index: 0x607B, sub_index: 2, "
+      "value: 1799}]\n";
+  EXPECT_EQ(row(of_drive).modulus, 3600.0);
+  EXPECT_EQ(row(of_drive).lowest, -1800.0);
+  EXPECT_EQ(row("    limits: {modulo: 3.6}\n" + of_drive).lowest, -1800.0);
+  EXPECT_EQ(row("    limits: {modulo: 3.6}\n").lowest, 0.0);
+  EXPECT_EQ(row("    limits: {modulo: 3.6, position: [-1.2, 2.4]}\n").lowest, -1200.0);
+  EXPECT_EQ(row("    limits: {modulo: 4294967.296}\n").lowest, -0x1p31);
+}
+
+TEST(Limits, OfTheFollowingErrorCanDifferForAnAxis) {
+  const Compiled net =
+      drive("    limits: {step: 1, following_error: 0.1, axes: {1: {following_error: 0.2}}}\n");
+  EXPECT_THAT(text_of(net), HasSubstr("0.2 rad"));
+}
+
 /// Compiles a limited axis whose actual position comes in TPDO2 with these keys.
 std::string start_of(const std::string& tpdo, const std::string& limits) {
   const Compiled net = compile(

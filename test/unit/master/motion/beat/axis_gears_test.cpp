@@ -53,6 +53,30 @@ TEST(AxisGears, AGearWithAPhaseCatchesUpItsPosition) {
   EXPECT_NEAR(plant.last[1].commanded.position, plant.last[0].commanded.position + 0.7, 1e-9);
 }
 
+/// Turns of 1: the leader has made three of them, and the axis stands in its own second one.
+TEST(AxisGears, APhaseOfRotaryAxesIsTheNearestOne) {
+  Plant plant{2};
+  plant.inputs[1].set_point = 1.2;
+  plant.step();
+  plant.step();
+  plant.inputs[1].set_point = {};
+  MotionOrder move = plant.order(0, {.position = 3.1}, 1);
+  move.timeout = 100'000;
+  ASSERT_TRUE(plant.take(move));
+  plant.steps(6000);
+  ASSERT_NEAR(plant.last[0].commanded.position, 3.1, 1e-9);
+  plant.ids = 2;
+  GearTask task = behind_axis(0.5);
+  task.match = PhaseMatch::at;
+  task.offset = 0.85;
+  task.modulo = task.turn = 1.0;
+  ASSERT_TRUE(plant.take(gear_order(plant, 1, task)));
+  plant.steps(3000);
+
+  EXPECT_EQ(plant.last[1].gear, GearPhase::locked);
+  EXPECT_NEAR(plant.last[1].commanded.position, 0.5 * 0.1 + 0.85, 1e-9);
+}
+
 TEST(AxisGears, AnAxisThatIsTooSlowFallsBehindAndCatchesUpLater) {
   Plant plant{2};
   plant.step();

@@ -1,0 +1,75 @@
+// Whether the set-points of an axis reach the bus.
+#include "test/unit/master/rt/motion/driven_axis_bench.hpp"
+
+namespace takt {
+namespace {
+
+using motion::AxisCondition;
+using motion::AxisState;
+using test::Bench;
+
+/// The set-points of a motion would be held back, and then be sent as one step.
+TEST(DrivenAxis, AnAxisWhoseRpdoIsNotReadyIsNotEnabled) {
+  Bench bench{{.commands_controlword = false, .mode = false}};
+  bench.hear(0x0027, 100);
+  EXPECT_EQ(bench.condition(), AxisCondition::disabled);
+  bench.command(0, 0x000F);
+  bench.pack();
+  bench.hear(0x0027, 100);
+  EXPECT_EQ(bench.condition(), AxisCondition::enabled);
+}
+
+/// An event-driven RPDO whose set-points do not change sends nothing.
+TEST(DrivenAxis, ATargetThatDoesNotChangeNeedsNoFrame) {
+  Bench bench;
+  bench.hear(0x0027, 0);
+  bench.condition();
+  ASSERT_TRUE(bench.write(AxisState::moving, {.position = 1.0}));
+  bench.pack();
+  bench.hear(0x0027, 0);
+  bench.condition();
+  ASSERT_TRUE(bench.write(AxisState::unpowered, {.position = 1.0}));
+  bench.command(1, 120);
+  bench.pack();
+  for (int beat = 0; beat < 5; ++beat) {
+    bench.hear(0x0027, 0);
+    EXPECT_EQ(bench.condition(), AxisCondition::enabled) << beat;
+    ASSERT_TRUE(bench.write(AxisState::moving, {.position = 1.2}));
+  }
+}
+
+TEST(DrivenAxis, ASetPointThatWasDueAndNotSentIsTold) {
+  Bench bench;
+  const auto is_unsent = [&](double position, bool sends) {
+    bench.hear(0x0027, 0);
+    const bool found = bench.axis.read(bench.pdos, true, bench.last).is_unsent;
+    EXPECT_TRUE(bench.write(AxisState::moving, {.position = position}));
+    bench.pack(sends);
+    return found;
+  };
+  EXPECT_FALSE(is_unsent(0.1, true));
+  EXPECT_FALSE(is_unsent(0.2, false));
+  EXPECT_TRUE(is_unsent(0.2, true));
+  EXPECT_FALSE(is_unsent(0.3, true));
+}
+
+TEST(DrivenAxis, OneSetPointMayWaitForItsFrameButNotTwo) {
+  Bench bench;
+  const auto beat = [&](double position, bool sends) {
+    bench.hear(0x0027, 0);
+    const AxisCondition found = bench.condition();
+    EXPECT_TRUE(bench.write(AxisState::moving, {.position = position}));
+    bench.pack(sends);
+    return found;
+  };
+  EXPECT_EQ(beat(0.1, true), AxisCondition::enabled);
+  EXPECT_EQ(beat(0.2, false), AxisCondition::enabled);
+  EXPECT_EQ(beat(0.3, true), AxisCondition::enabled) << "one frame was not sent";
+  EXPECT_EQ(beat(0.4, false), AxisCondition::enabled);
+  EXPECT_EQ(beat(0.5, false), AxisCondition::enabled);
+  EXPECT_EQ(beat(0.6, true), AxisCondition::unsent) << "two frames were not sent";
+  EXPECT_EQ(beat(0.7, true), AxisCondition::enabled);
+}
+
+}  // namespace
+}  // namespace takt
