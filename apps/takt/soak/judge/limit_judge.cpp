@@ -94,7 +94,7 @@ void LimitJudge::begin_cycle(Time now) {
 
 void LimitJudge::heard(const Frame& frame) {
   for (const PdoRow& row : plan_.pdos.tpdos) {
-    if (row.cob_id != frame.id || row.multiplexed()) continue;
+    if (row.cob_id != frame.id || row.multiplexed() || frame.length < row.length) continue;
     for (const PdoField& field : plan_.pdos.fields_of(row)) {
       note_input(field.signal, bits_of(frame, field.bit_offset, field.bits));
     }

@@ -159,13 +159,13 @@ void MotionJudge::heard(const Frame& frame) {
   }
 }
 
-/// The value of an input in a frame; empty if the frame does not have it.
+/// The value of an input in a frame; empty if the frame does not have it. The master ignores a frame
+/// that is shorter than its mapping.
 std::optional<std::uint64_t> MotionJudge::value_in(const Frame& frame, SignalIndex input) const {
   const PdoRow& row = plan_.pdos.tpdos[plan_.layout.signals[input].row];
-  if (row.cob_id != frame.id) return std::nullopt;
+  if (row.cob_id != frame.id || frame.length < row.length) return std::nullopt;
   for (const PdoField& field : plan_.pdos.fields_of(row)) {
-    if (field.signal != input || field.bit_offset + field.bits > frame.length * 8U) continue;
-    return bits_of(frame, field.bit_offset, field.bits);
+    if (field.signal == input) return bits_of(frame, field.bit_offset, field.bits);
   }
   return std::nullopt;
 }
