@@ -343,6 +343,12 @@ void OutputLimits::admit(std::size_t place, const AxisCommand& command,
   slot.gap = 1;
 }
 
+void OutputLimits::pass_over(std::size_t place, std::uint64_t cycles,
+                             std::uint64_t cycle) noexcept {
+  Slot& slot = slots_[place];
+  if (slot.cycle + cycles < cycle) slot.cycle += cycles;
+}
+
 void OutputLimits::sent(SignalIndex signal, std::uint64_t cycle) noexcept {
   for (const std::uint16_t place : dependents_[signal]) {
     if (limits_[place].controlword == signal) slots_[place].order = image_.values[signal];

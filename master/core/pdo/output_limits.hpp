@@ -104,6 +104,9 @@ class OutputLimits {
   void remember() noexcept;
   /// Notes that the command is accepted and will be sent.
   void admit(std::size_t place, const AxisCommand& command, std::uint64_t cycle) noexcept;
+  /// Notes that the motion of the axis stood still for so many cycles before this one. The next
+  /// step is divided by the other cycles only.
+  void pass_over(std::size_t place, std::uint64_t cycles, std::uint64_t cycle) noexcept;
   /// Notes that the value of an output was sent.
   void sent(SignalIndex signal, std::uint64_t cycle) noexcept;
 

@@ -107,6 +107,9 @@ class PdoOutputs {
   /// Commands the value that the last lead() has commanded once more. It is not judged: the axis
   /// stands, although the limits would have it brake. Does nothing if another value is in force.
   void hold(SignalIndex signal, OutputMoment moment) noexcept;
+  /// Notes that the motion of this output stood still for so many cycles before this one. They do
+  /// not count for the limits of its next step.
+  void pass_over(SignalIndex signal, std::uint64_t cycles, OutputMoment moment) noexcept;
   /// Does what trail() does for the target position of an axis that is enabled but has a Halt. The
   /// next step is measured from this value.
   bool settle(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;

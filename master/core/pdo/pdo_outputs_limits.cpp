@@ -280,6 +280,11 @@ bool PdoOutputs::settle(SignalIndex signal, std::int64_t value, OutputMoment mom
 }
 
 /// The next step is measured from a standing axis.
+void PdoOutputs::pass_over(SignalIndex signal, std::uint64_t cycles, OutputMoment moment) noexcept {
+  const std::uint16_t place = limits_.place_of(signal);
+  if (place != OutputLimits::no_place) limits_.pass_over(place, cycles, moment.cycle);
+}
+
 void PdoOutputs::hold(SignalIndex signal, OutputMoment moment) noexcept {
   Output& output = outputs_[output_of(signal)];
   if (!output.commanded || output.fallen || stopping_ || output.forced) return;

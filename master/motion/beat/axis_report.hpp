@@ -143,6 +143,7 @@ struct AxisReport {
   std::uint32_t running = 0;     ///< id of the motion of this cycle, 0 for none
   CycleNumber cycles_left = 0;   ///< until the end of the profile that runs
   CycleNumber began = 0;         ///< first cycle of the motion, as if no beat had been missed since
+  CycleNumber delay = 0;         ///< periods by which this beat has delayed the motion
   /// The sender of the newest motion is alive, or the axis moves: the drive has to stay enabled.
   bool kept_alive = false;
   GearPhase gear = GearPhase::none;  ///< of the gear that the axis follows
@@ -153,7 +154,7 @@ struct AxisReport {
   /// Not the orders that have ended: they are told in the cycle in which they end.
   template <class Archive>
   void keep(Archive& archive) noexcept {
-    archive(state, homing, commanded, actual, following_error, running, cycles_left, began,
+    archive(state, homing, commanded, actual, following_error, running, cycles_left, began, delay,
             kept_alive, gear, phase_error, stop);
   }
 };

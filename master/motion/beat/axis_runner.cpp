@@ -132,7 +132,8 @@ void AxisRunner::wait_for_drive(CycleNumber cycle, bool is_unsent) noexcept {
   const bool runs = report_.state == AxisState::moving || report_.state == AxisState::stopping;
   is_unsent_ = is_unsent;
   passed_ = cycle - last_run_;
-  if (runs) report_.began += passed_ - (is_unsent ? 0U : 1U);
+  report_.delay = runs ? passed_ - (is_unsent ? 0U : 1U) : 0U;
+  report_.began += report_.delay;
   last_run_ = cycle - 1;
 }
 

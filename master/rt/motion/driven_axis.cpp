@@ -166,6 +166,7 @@ motion::AxisInput DrivenAxis::read(PdoExchange& pdos, bool exchanging,
 /// during the motion must not take effect after it.
 bool DrivenAxis::write(PdoOutputs& outputs, const motion::AxisReport& report,
                        OutputMoment moment) noexcept {
+  if (report.delay != 0) outputs.pass_over(axis_.target, report.delay, moment);
   if (moves(report)) return lead(outputs, report.commanded, moment);
   const bool ends = report.state == AxisState::standing && writer_ == Writer::in_motion;
   if (ends) return end_motion(outputs, report.commanded, moment);

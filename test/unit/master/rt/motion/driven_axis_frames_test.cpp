@@ -53,6 +53,35 @@ TEST(DrivenAxis, ASetPointThatWasDueAndNotSentIsTold) {
   EXPECT_FALSE(is_unsent(0.3, true));
 }
 
+/// The velocity of the axis rises by two counts a cycle in each cycle, as its limit allows.
+BusPlan limited_axis() {
+  BusPlan plan = test::one_axis();
+  plan.limits.outputs.push_back({.signal = 3,
+                                 .bend = 2,
+                                 .quantity = AxisQuantity::position,
+                                 .controlword = SignalIndex{2},
+                                 .feedback = SignalIndex{1},
+                                 .statusword = SignalIndex{0}});
+  return plan;
+}
+
+TEST(DrivenAxis, TheDelayOfAMotionIsNoAccelerationForTheLimits) {
+  Bench bench{limited_axis()};
+  const auto beat = [&](double counts, bool sends, motion::CycleNumber delay = 0) {
+    bench.hear(0x0027, static_cast<std::int32_t>(bench.target()));
+    bench.condition();
+    bench.last.delay = delay;
+    const bool taken = bench.write(AxisState::moving, {.position = counts * 0.01});
+    bench.pack(sends);
+    return taken;
+  };
+  for (const int counts : {0, 2, 6, 12, 20, 30}) ASSERT_TRUE(beat(counts, true)) << counts;
+  EXPECT_TRUE(beat(42, false));
+  EXPECT_TRUE(beat(42, true, 1)) << "the same set-point again";
+  EXPECT_TRUE(beat(56, true));
+  EXPECT_FALSE(beat(76, true)) << "six counts more than in the cycle before";
+}
+
 TEST(DrivenAxis, OneSetPointMayWaitForItsFrameButNotTwo) {
   Bench bench;
   const auto beat = [&](double position, bool sends) {
