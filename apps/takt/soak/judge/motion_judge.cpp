@@ -159,8 +159,8 @@ void MotionJudge::heard(const Frame& frame) {
   }
 }
 
-/// The value of an input in a frame; empty if the frame does not have it. The master ignores a frame
-/// that is shorter than its mapping.
+/// The value of an input in a frame; empty if the frame does not have it. The master ignores a
+/// frame that is shorter than its mapping.
 std::optional<std::uint64_t> MotionJudge::value_in(const Frame& frame, SignalIndex input) const {
   const PdoRow& row = plan_.pdos.tpdos[plan_.layout.signals[input].row];
   if (row.cob_id != frame.id || frame.length < row.length) return std::nullopt;
