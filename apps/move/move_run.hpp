@@ -29,6 +29,15 @@ class MoveRun {
 
  private:
   using Trajectory = std::function<Eigen::VectorXd(double seconds)>;
+  /// How often a move has begun again after pauses, and what that has brought.
+  struct NewBegins {
+    double whole;                  ///< first distance from the target
+    double distance_then = whole;  ///< distance at the newest begin
+    int count = 0;                 ///< of all new begins
+    int vain = 0;                  ///< of those in sequence that came no nearer to the target
+
+    void next(double distance);
+  };
 
   bool hear_bus();
   bool fits();
@@ -44,7 +53,8 @@ class MoveRun {
   bool watch_beat(const Eigen::VectorXd& to);
   void wait_before_begin();
   std::string watch_course();
-  std::string objection(BeatMove::Course course, int begins, const Eigen::VectorXd& to);
+  std::string objection(BeatMove::Course course, const NewBegins& begins,
+                        const Eigen::VectorXd& to);
   std::string silence(double seconds) const;
   double beat_end() const;
   double bus_seconds(Input newest = Input::nothing) const;

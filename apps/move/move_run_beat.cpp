@@ -15,7 +15,11 @@ constexpr double longest_silence = 2.0;
 constexpr int silent_periods = 20;
 /// Longest wait for the event with the reason of a stop.
 constexpr int reason_images = 20;
-constexpr int most_new_begins = 3;
+/// Most new begins of a move that comes nearer to its target each time, and of one that does not.
+constexpr int most_new_begins = 10;
+constexpr int most_vain_begins = 3;
+/// A move has come nearer if at least this part of its first distance is behind it since it began.
+constexpr double nearer = 0.01;
 /// Time before a move begins again, seconds. taktd discards the commands that come in the first
 /// 20 ms after a pause of its own, and does not answer them.
 constexpr double pause_before_begin = 0.1;
@@ -48,15 +52,18 @@ bool MoveRun::knows_beat() {
   return beat_.offered() || progress_.has_said("motion_refused");
 }
 
-/// Lets taktd run the move to this point, and watches it. A move that taktd has stopped because
-/// SYNC or this program paused begins again, a few times. Returns false if it does not come to its
-/// end.
+/// Lets taktd run the move to this point, and watches it. A move that taktd has stopped because the
+/// bus or this program paused begins again as long as it comes nearer to its target. Returns false
+/// if it does not come to its end.
 bool MoveRun::watch_beat(const Eigen::VectorXd& to) {
   beat_begin_.reset();
-  for (int begins = 0; stop_ == 0; ++begins) {
-    if (begins > 0) {
+  NewBegins begins{(to - beat_.positions()).norm()};
+  for (; stop_ == 0; begins.next((to - beat_.positions()).norm())) {
+    if (begins.count > 0) {
       ++holds_;
-      progress_.say(progress_.stop_reasons().of(beat_.id()) + ": the move begins again");
+      progress_.say(fmt::format("{}: the move begins again ({} of {})",
+                                progress_.stop_reasons().of(beat_.id()), begins.count,
+                                most_new_begins));
       wait_before_begin();
       if (restarted_) return false;
       if (stop_ != 0) return true;
@@ -143,9 +150,16 @@ std::string MoveRun::silence(double seconds) const {
       group_.bus(), seconds);
 }
 
-/// Returns why a move that taktd has ended does not begin again; empty if it may. `begins` is how
-/// often it has begun again.
-std::string MoveRun::objection(BeatMove::Course course, int begins, const Eigen::VectorXd& to) {
+/// Records that the move begins again at this distance from its target.
+void MoveRun::NewBegins::next(double distance) {
+  ++count;
+  vain = distance_then - distance < nearer * whole ? vain + 1 : 0;
+  distance_then = distance;
+}
+
+/// Returns why a move that taktd has ended does not begin again; empty if it may.
+std::string MoveRun::objection(BeatMove::Course course, const NewBegins& begins,
+                               const Eigen::VectorXd& to) {
   if (course == BeatMove::Course::refused) return "taktd has refused the move";
   const StopReasons& reasons = progress_.stop_reasons();
   for (int i = 0; i < reason_images && reasons.of(beat_.id()).empty(); ++i) {
@@ -159,8 +173,13 @@ std::string MoveRun::objection(BeatMove::Course course, int begins, const Eigen:
   if (reason.empty()) return "taktd has stopped the move and has not said why";
   if (!reasons.only_paused(beat_.id())) return reason;
   if (!beat_.offered()) return reason + "; an axis is not enabled any more";
-  if (begins >= most_new_begins) {
-    return fmt::format("{}; the move has already begun again {} times", reason, begins);
+  if (begins.vain >= most_vain_begins) {
+    return fmt::format(
+        "{}; the move has begun again {} times and has not come nearer to its target", reason,
+        begins.vain);
+  }
+  if (begins.count >= most_new_begins) {
+    return fmt::format("{}; the move has already begun again {} times", reason, begins.count);
   }
   if (!options_.seconds || !beat_begin_) return {};
   const auto rest = SynchronisedMove::plan(beat_.positions(), to, limits());

@@ -10,8 +10,10 @@ namespace takt {
 namespace {
 
 constexpr std::size_t most_reasons = 64;
-/// How the texts of taktd begin for a sender that was silent and for missing SYNCs.
-constexpr std::array<std::string_view, 2> pauses{"its sender was silent", "SYNC was missing"};
+/// How the texts of taktd begin for a sender that was silent, for missing SYNCs, and for cycles in
+/// which the set-points were not sent.
+constexpr std::array<std::string_view, 3> pauses{"its sender was silent", "SYNC was missing",
+                                                 "its set-points were not sent"};
 
 /// Returns the part of the text before the axis that has caused the stop.
 std::string begin_of_reason(std::int32_t id) {

@@ -15,7 +15,8 @@ class StopReasons {
   /// the first one counts that is not a pause. Empty if no event has come.
   std::string of(std::int32_t id) const;
   /// Returns true if taktd has given a reason, and if each reason is that the sender of the motion
-  /// was silent or that SYNC was missing. Only then may the motion begin again by itself.
+  /// was silent, that SYNC was missing, or that set-points were not sent. Only then may the motion
+  /// begin again by itself.
   bool only_paused(std::int32_t id) const;
 
  private:

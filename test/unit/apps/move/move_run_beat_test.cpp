@@ -45,6 +45,16 @@ class MoveByTaktd : public ::testing::Test {
       bus_.stop_axes(cause);
     };
   }
+  /// Taktd stops the axes each time that they have moved by one step.
+  void stop_each_step(const std::string& cause, int times = 1000) {
+    bus_.daemon.each_cycle = [this, cause, times, last = 0.0](MotionDaemon& daemon) mutable {
+      const MotionDaemon::Drive& shoulder = daemon.drives[0];
+      if (shoulder.motion.id == 0 || shoulder.position == last || times == 0) return;
+      last = shoulder.position;
+      --times;
+      bus_.stop_axes(cause);
+    };
+  }
   /// The target moves away from the axes, so that the move does not end.
   void never_arrive() {
     bus_.daemon.each_cycle = [](MotionDaemon& daemon) {
@@ -100,11 +110,32 @@ TEST_F(MoveByTaktd, WaitsBeforeItBeginsAgain) {
   EXPECT_GE(static_cast<double>(between) * 0.002, 0.1);
 }
 
-TEST_F(MoveByTaktd, BeginsAgainThreeTimesAtMost) {
-  stop_at(2.0, words(StopCause::sender_silent));
+TEST_F(MoveByTaktd, BeginsAgainAsLongAsItComesNearer) {
+  stop_each_step(words(StopCause::not_sent), 7);
+  EXPECT_EQ(run(), 0) << output_;
+  EXPECT_EQ(sent("move"), 8);
+  EXPECT_THAT(output_,
+              AllOf(HasSubstr("the move begins again (7 of 10)"), HasSubstr("held 7 times")));
+}
+
+TEST_F(MoveByTaktd, BeginsAgainTenTimesAtMost) {
+  options_.to = {20.0};
+  stop_each_step(words(StopCause::sender_silent));
   EXPECT_EQ(run(), 1) << output_;
-  EXPECT_EQ(sent("move"), 4);
-  EXPECT_THAT(output_, HasSubstr("the move has already begun again 3 times: stopping"));
+  EXPECT_EQ(sent("move"), 11);
+  EXPECT_THAT(output_, HasSubstr("the move has already begun again 10 times: stopping"));
+}
+
+TEST_F(MoveByTaktd, EndsIfItComesNoNearer) {
+  bus_.daemon.each_cycle = [this](MotionDaemon& daemon) {
+    if (daemon.drives[0].motion.id == 0 || daemon.drives[0].position < 2.0) return;
+    for (MotionDaemon::Drive& drive : daemon.drives) drive.position = drive.motion.position = 2.0;
+    bus_.stop_axes(words(StopCause::no_sync));
+  };
+  EXPECT_EQ(run(), 1) << output_;
+  EXPECT_EQ(sent("move"), 5) << "the first try has come nearer";
+  EXPECT_THAT(output_, HasSubstr("the move has begun again 3 times and has not come nearer to its "
+                                 "target: stopping"));
 }
 
 TEST_F(MoveByTaktd, DoesNotBeginAgainWithoutAReason) {
@@ -218,11 +249,12 @@ TEST(StopReasons, KnowOnlyThePausesOfTaktd) {
     EXPECT_EQ(reasons.of(7), event.text);
     EXPECT_EQ(reasons.of(77), "");
     EXPECT_FALSE(reasons.only_paused(77));
-    const bool pause = cause == StopCause::sender_silent || cause == StopCause::no_sync;
+    const bool pause = cause == StopCause::sender_silent || cause == StopCause::no_sync ||
+                       cause == StopCause::not_sent;
     EXPECT_EQ(reasons.only_paused(7), pause) << words(cause);
     pauses += reasons.only_paused(7) ? 1 : 0;
   }
-  EXPECT_EQ(pauses, 2);
+  EXPECT_EQ(pauses, 3);
 }
 
 TEST(StopReasons, CountTheOneThatIsNoPause) {
