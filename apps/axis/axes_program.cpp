@@ -30,7 +30,7 @@ std::expected<Axes, Obstacle> open_axes(const AxesProgram& program) {
     if (!keys) return wrong_use(keys.error());
     key = keys->front();
   }
-  return Axes::open(std::move(*lcm),
+  return Axes::open(program.through ? program.through(std::move(*lcm)) : std::move(*lcm),
                     {.bus = program.bus,
                      .names = program.axes,
                      .sender = fmt::format("{} {}", program.name, ::getpid()),

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <expected>
 #include <functional>
+#include <memory>
 #include <string>
 #include <takt/motion.hpp>
 #include <vector>
@@ -18,6 +19,9 @@ struct AxesProgram {
   LcmAccess lcm = {};
   std::chrono::nanoseconds wait = std::chrono::seconds{10};  ///< for the daemon and the drives
   std::chrono::nanoseconds timeout = std::chrono::milliseconds{500};  ///< as in AxesOptions
+  std::string plot = {};  ///< file for a picture of the motions; empty: none
+  /// Returns what the axes use in the place of their connection to LCM. Empty: the connection.
+  std::function<std::unique_ptr<Transport>(std::unique_ptr<Transport>)> through = {};
 };
 
 /// Opens the axes of a program. A signal interrupts their calls while run_program() runs.

@@ -88,6 +88,9 @@ ParsedFollow parse_follow(int argc, char** argv) {
                "follow for this time once the axis is locked, then stop");
   add_duration(app, "--wait", options.program.wait,
                "longest wait for the daemon and the drive (10s)");
+  app.add_option("--plot", options.program.plot,
+                 "write a picture of the motions, commanded and actual, as an SVG file")
+      ->type_name("FILE.svg");
   app.add_option("--lcm-url", options.program.lcm.url,
                  "LCM URL of the daemon; default: LCM_DEFAULT_URL");
   add_key_options(app, options.program.lcm.keys, options.program.lcm.check_images);

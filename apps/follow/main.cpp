@@ -3,13 +3,14 @@
 #include "apps/axis/axes_program.hpp"
 #include "apps/follow/follow_options.hpp"
 #include "apps/follow/follow_run.hpp"
+#include "apps/plot/motion/motion_plot.hpp"
 
 namespace {
 
 takt::Done run(const takt::FollowOptions& options) {
-  auto axis = takt::open_axis(options.program);
-  if (!axis) return std::unexpected{axis.error()};
-  return takt::FollowRun{*axis, options}.run();
+  return takt::run_with_plot(options.program, takt::open_axis, [&](takt::Axes& axis) {
+    return takt::FollowRun{axis, options}.run();
+  });
 }
 
 }  // namespace

@@ -33,6 +33,9 @@ ParsedHome parse_home(int argc, char** argv) {
       "the drives take their fallback if this program is silent for so long, up to 10s (500ms)");
   add_duration(app, "--wait", options.program.wait,
                "longest wait for the daemon and the drives (10s)");
+  app.add_option("--plot", options.program.plot,
+                 "write a picture of the motions, commanded and actual, as an SVG file")
+      ->type_name("FILE.svg");
   app.add_option("--lcm-url", options.program.lcm.url,
                  "LCM URL of the daemon; default: LCM_DEFAULT_URL");
   add_key_options(app, options.program.lcm.keys, options.program.lcm.check_images);

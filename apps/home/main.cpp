@@ -4,6 +4,7 @@
 
 #include "apps/axis/axes_program.hpp"
 #include "apps/home/home_options.hpp"
+#include "apps/plot/motion/motion_plot.hpp"
 
 namespace {
 
@@ -17,14 +18,17 @@ void show(const takt::Axes& axes) {
 }
 
 /// Homes the axes, and disables them in any case.
-takt::Done run(const takt::HomeOptions& options) {
-  auto axes = takt::open_axes(options.program);
-  if (!axes) return std::unexpected{axes.error()};
-  takt::Done homed = options.reset ? axes->reset() : takt::Done{};
-  if (homed) homed = axes->home(options.homing);
-  show(*axes);
-  const takt::Done disabled = axes->disable();
+takt::Done home(takt::Axes& axes, const takt::HomeOptions& options) {
+  takt::Done homed = options.reset ? axes.reset() : takt::Done{};
+  if (homed) homed = axes.home(options.homing);
+  show(axes);
+  const takt::Done disabled = axes.disable();
   return homed ? disabled : homed;
+}
+
+takt::Done run(const takt::HomeOptions& options) {
+  return takt::run_with_plot(options.program, takt::open_axes,
+                             [&](takt::Axes& axes) { return home(axes, options); });
 }
 
 }  // namespace

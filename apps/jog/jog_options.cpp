@@ -57,6 +57,9 @@ ParsedJog parse_jog(int argc, char** argv) {
   add_duration(app, "--for", options.seconds, "jog for this time without a keyboard, then stop");
   add_duration(app, "--wait", options.program.wait,
                "longest wait for the daemon and the drive (10s)");
+  app.add_option("--plot", options.program.plot,
+                 "write a picture of the motions, commanded and actual, as an SVG file")
+      ->type_name("FILE.svg");
   app.add_option("--lcm-url", options.program.lcm.url,
                  "LCM URL of the daemon; default: LCM_DEFAULT_URL");
   add_key_options(app, options.program.lcm.keys, options.program.lcm.check_images);

@@ -4,6 +4,7 @@
 #include "apps/jog/jog_options.hpp"
 #include "apps/jog/jog_run.hpp"
 #include "apps/jog/keyboard.hpp"
+#include "apps/plot/motion/motion_plot.hpp"
 
 namespace {
 
@@ -13,9 +14,8 @@ takt::Done run(const takt::JogOptions& options) {
     return std::unexpected{Obstacle{.kind = Obstacle::Kind::wrong_use,
                                     .text = "stdin is no terminal: give --for TIME"}};
   }
-  auto axis = takt::open_axis(options.program);
-  if (!axis) return std::unexpected{axis.error()};
-  return takt::JogRun{*axis, options}.run();
+  return takt::run_with_plot(options.program, takt::open_axis,
+                             [&](takt::Axes& axis) { return takt::JogRun{axis, options}.run(); });
 }
 
 }  // namespace

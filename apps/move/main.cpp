@@ -1,15 +1,19 @@
 #include <csignal>
 #include <fmt/format.h>
 #include <sched.h>
+#include <string>
 #include <takt/axis.hpp>
 #include <takt/lcm.hpp>
 #include <unistd.h>
 #include <utility>
+#include <vector>
 
 #include "apps/axis/lcm_access.hpp"
 #include "apps/command_line/failure.hpp"
+#include "apps/move/held_axes.hpp"
 #include "apps/move/move_options.hpp"
 #include "apps/move/move_run.hpp"
+#include "apps/plot/motion/motion_plot.hpp"
 
 namespace {
 
@@ -37,14 +41,21 @@ int run(const takt::MoveOptions& options) {
     const bool wrong = lcm.error().kind == takt::Obstacle::Kind::wrong_use;
     throw takt::Failure{lcm.error().text, wrong ? 2 : 3};
   }
-  takt::AxisGroup group{std::move(*lcm),
+  takt::MotionPlot plot{options.plot, "takt-move"};
+  if (const auto created = plot.create(); !created) throw takt::Failure{created.error(), 2};
+  takt::AxisGroup group{plot.listen(std::move(*lcm)),
                         {.bus = options.bus,
                          .sender = fmt::format("takt-move {}", ::getpid()),
                          .stale_cycles = options.stale_cycles}};
   if (!options.keys.empty()) {
     group.sign_with(takt::value_or_fail(takt::load_keys(options.keys), 2).front());
   }
-  return takt::MoveRun{group, options, stop}.run();
+  const int code = takt::MoveRun{group, options, stop}.run();
+  std::vector<std::string> names;
+  for (const auto axis : takt::numbers_of(group.axes())) names.push_back(group.axes().name(axis));
+  const auto written = plot.write(group, names);
+  if (!written && code == 0) throw takt::Failure{written.error(), 1};
+  return code;
 }
 
 }  // namespace

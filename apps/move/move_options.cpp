@@ -63,6 +63,9 @@ ParsedMove parse_move(int argc, char** argv) {
   app.add_option("--wait", options.wait_seconds, "longest wait for the daemon and its devices, s")
       ->check(positive());
   add_motion_options(app, options);
+  app.add_option("--plot", options.plot,
+                 "write a picture of the motions, commanded and actual, as an SVG file")
+      ->type_name("FILE.svg");
   if (const auto exit_code = parse_arguments(app, argc, argv)) return {options, exit_code};
   if (to->count() != 0 || only_sine) {
     options.point = to->count() != 0;

@@ -16,7 +16,7 @@ install(DIRECTORY share/devices share/eds share/demo DESTINATION ${CMAKE_INSTALL
 # The pages link only to each other and to CHANGELOG.md, which is installed beside them: the installed index has another link
 # to it. COMPONENT: they can be installed without a build.
 install(DIRECTORY share/doc/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc
-        FILES_MATCHING PATTERN *.md PATTERN index.md EXCLUDE)
+        FILES_MATCHING PATTERN *.md PATTERN *.svg PATTERN index.md EXCLUDE)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS share/doc/index.md)
 file(READ share/doc/index.md index_page)
 string(REPLACE "(../../CHANGELOG.md)" "(CHANGELOG.md)" index_page "${index_page}")

@@ -38,14 +38,18 @@ TEST_F(Follow, TheAxisLocksToAnInputAndIsDisabledAtTheEnd) {
   std::optional<int> code;
   std::string output;
   do {
-    Process program{follow(daemon_, {"--leader", "shoulder", "--signal", "position_actual_value",
-                                     "--ratio", "-1/2", "--for", "500ms"}),
-                    folder_ / "follow"};
+    Process program{
+        follow(daemon_, {"--leader", "shoulder", "--signal", "position_actual_value", "--ratio",
+                         "-1/2", "--for", "500ms", "--plot", folder_ / "follow.svg"}),
+        folder_ / "follow"};
     code = program.wait([this] { hear_once(); });
     output = program.output();
   } while (code != 0 && missed_cycles(output));
   EXPECT_EQ(code, 0) << output;
   EXPECT_NE(output.find("elbow follows at"), std::string::npos) << output;
+  const std::string picture = read_file(folder_ / "follow.svg");
+  EXPECT_NE(picture.find(">elbow commanded</text>"), std::string::npos) << picture;
+  EXPECT_NE(picture.find("(rad/s²)"), std::string::npos) << picture;
   EXPECT_TRUE(daemon_.hear([&] { return (daemon_.value("elbow", "statusword") & 0x6F) != 0x27; }));
 }
 

@@ -140,10 +140,12 @@ ROOMS = {
     "apps/master": ("the library for programs that contain a master; its bus and its thread are also those of taktd",
                     "eds_parser/report eds_parser/network_file master master/units master/wire master/core master/explain "
                     "master/rt master/rt/exchange master/rt/journal " + LINUX + " " + SIM),
-    "apps/move": ("takt-move", "apps/axis apps/command_line master/motion master/lcm"),
-    "apps/follow": ("takt-follow", "apps/axis apps/command_line master/lcm"),
-    "apps/jog": ("takt-jog", "apps/axis apps/command_line master/lcm"),
-    "apps/home": ("takt-home", "apps/axis apps/command_line master/lcm"),
+    "apps/plot": ("pictures of curves over the time, as SVG files", ""),
+    "apps/plot/motion": ("pictures of motions, from what taktd reports", "apps/plot apps/axis master/lcm"),
+    "apps/move": ("takt-move", "apps/axis apps/command_line apps/plot/motion master/motion master/lcm"),
+    "apps/follow": ("takt-follow", "apps/axis apps/command_line apps/plot/motion master/lcm"),
+    "apps/jog": ("takt-jog", "apps/axis apps/command_line apps/plot/motion master/lcm"),
+    "apps/home": ("takt-home", "apps/axis apps/command_line apps/plot/motion master/lcm"),
     "apps/takt/live": ("commands for a running daemon: status, top, timing, EMCY, record",
                        "apps/command_line master/core master/explain master/gateway/message master/gateway/notice "
                        "master/rt/exchange master/linux " + LCM),
@@ -174,7 +176,7 @@ ROOMS = {
     "apps/takt/soak": ("runs random sequences of faults",
                        "apps/command_line apps/takt/simulate apps/takt/simulate/program apps/takt/soak/judge "
                        "eds_parser/network_file master/explain master/gateway master/rt master/rt/exchange " + SIM),
-    "apps/takt/trajectory": ("plans trajectories without a bus", "apps/command_line master/motion"),
+    "apps/takt/trajectory": ("plans trajectories without a bus", "apps/command_line apps/plot master/motion"),
     "apps/takt": ("the tool: commands on files",
                   "apps/command_line eds_parser/check eds_parser/write eds_parser/export eds_parser/budget "
                   "eds_parser/network_file eds_parser/print eds_parser/print/plan master/lcm master/lcm/envelope "

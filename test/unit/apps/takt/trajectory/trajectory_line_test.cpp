@@ -141,12 +141,11 @@ TEST(TrajectoryPlot, HasACurveOfEachAxisInEachPanel) {
   const std::string svg = trajectory_svg(*answer);
 
   std::size_t curves = 0;
-  for (auto at = svg.find("<polyline"); at != std::string::npos;
-       at = svg.find("<polyline", at + 1)) {
+  for (auto at = svg.find("\"curve"); at != std::string::npos; at = svg.find("\"curve", at + 1)) {
     ++curves;
   }
-  EXPECT_EQ(curves, 8u);
-  EXPECT_THAT(svg, HasSubstr(">acceleration</text>"));
+  EXPECT_EQ(curves, 8u + 2u) << "and two entries of the legend";
+  EXPECT_THAT(svg, HasSubstr(">acceleration<tspan x=\"0\" dy=\"13\">(unit/s²)</tspan>"));
 }
 
 }  // namespace

@@ -1,0 +1,18 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace takt {
+
+/// A point of a picture, in pixels.
+struct PlotPoint {
+  double x = 0.0;
+  double y = 0.0;
+};
+
+/// Returns the `d` of a path along these points, whose x ascends. Of the points in one column of
+/// two pixels, only the lowest and the highest remain, and points on a straight line are left out,
+/// so that the text stays short. A y of NaN leaves a gap.
+std::string path_along(const std::vector<PlotPoint>& points);
+
+}  // namespace takt
