@@ -306,6 +306,8 @@ constexpr Key<NodeSpec> node_keys[] = {
     key<read_homing>("homing",
                      {.type = KeyType::integer, .range = {-128, 127}, .parts = homing_rows}, "none",
                      "The homing of the axes of a drive; a number is the method."),
+    key<read_feed_forward>("feed_forward", {.type = KeyType::map, .parts = feed_forward_rows},
+                           "none", "The torque offset (0x60B2) of the motions that `taktd` runs."),
     key<with<read_speed_axis, &NodeSpec::speed_axis>>(
         "speed_axis", {.type = KeyType::map, .parts = speed_axis_rows}, "from the device data",
         "The words of an inverter, see [speed.md](speed.md). What is not stated is that of the "

@@ -61,6 +61,8 @@ KeyRows limits_rows();
 /// Reads `homing`, which is a map or only the method.
 void read_homing(const KeyInput& in, NodeSpec& node);
 KeyRows homing_rows();
+void read_feed_forward(const KeyInput& in, NodeSpec& node);
+KeyRows feed_forward_rows();
 /// Reads `mechanics` of `sim`, and checks that the parameters fit together.
 void read_mechanics(const KeyInput& in, SimSpec& sim);
 KeyRows mechanics_rows();

@@ -193,6 +193,13 @@ std::optional<HomingPlan> homing_of(const HomingSpec& spec, std::uint8_t number)
   return plan;
 }
 
+std::optional<FeedForwardPlan> feed_forward_of(const FeedForwardSpec& spec, std::uint8_t number) {
+  const AxisFeedForwardSpec found = spec.of(static_cast<std::uint8_t>(number + 1));
+  if (!found.torque_per_acceleration.given && !found.torque_per_velocity.given) return std::nullopt;
+  return FeedForwardPlan{.torque_per_acceleration = *found.torque_per_acceleration,
+                         .torque_per_velocity = *found.torque_per_velocity};
+}
+
 /// Returns the unit that `units:` gives to an object of an axis.
 RawUnit unit_of(const NodeSource& source, std::uint8_t number, unsigned index) {
   Signal signal{.node = source.id, .object = axis_object(number, index)};
@@ -235,6 +242,7 @@ std::vector<AxisPlan> compile_axes(const NodePlan& node, const DeviceTable& devi
     axes.back().velocity_unit = unit_of(source, number, 0x606C);
     axes.back().position_unit = unit_of(source, number, 0x6064);
     axes.back().homing = homing_of(spec.homing, number);
+    axes.back().feed_forward = feed_forward_of(spec.feed_forward, number);
     if (axis.windows_are_guessed()) report_guess(node, axes.back(), spec, report);
   }
   return axes;

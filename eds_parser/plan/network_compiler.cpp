@@ -78,6 +78,7 @@ class NetworkCompiler {
     for (std::size_t i = 0; i < nodes_.size(); ++i) add_boot(i);
     for (const NodePdos& node : nodes_) out_.devices.push_back(compile_device(node.node));
     stop();
+    judge_feed_forward(plan(), spec_, report_);
     for (NodePdos& node : strays_) judge_stray(node);
     return std::move(out_);
   }

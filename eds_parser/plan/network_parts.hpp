@@ -66,4 +66,8 @@ Time longest_stopping_time(const BusPlan& plan) noexcept;
 /// a drive can not be confirmed because the drive coasts.
 void judge_stop(const BusPlan& plan, const NetworkSpec& spec, NetworkReport& report);
 
+/// Warns if `feed_forward` of an axis has no effect, and notes a torque offset (60B2) in an RPDO
+/// that the motions of the axis do not command.
+void judge_feed_forward(const BusPlan& plan, const NetworkSpec& spec, NetworkReport& report);
+
 }  // namespace takt

@@ -151,6 +151,40 @@ struct LimitsSpec {
   std::vector<ObjectLimitSpec> objects;
 };
 
+/// The torque that the motions of an axis need, in the units of `units:`.
+struct AxisFeedForwardSpec {
+  Sourced<double> torque_per_acceleration;
+  Sourced<double> torque_per_velocity;
+};
+
+struct AxisFeedForwardOverrideSpec {
+  std::uint8_t axis = 1;
+  SourcePos pos;
+  AxisFeedForwardSpec feed_forward;
+};
+
+/// `feed_forward:` of a node.
+struct FeedForwardSpec {
+  bool given = false;
+  SourcePos pos;
+  AxisFeedForwardSpec all;  ///< of every axis of the device
+  /// `axes: {2: {...}}`; each given value overrides the same value of `all`.
+  std::vector<AxisFeedForwardOverrideSpec> axes;
+
+  /// Returns what applies to an axis, which counts from 1.
+  AxisFeedForwardSpec of(std::uint8_t axis) const {
+    AxisFeedForwardSpec found = all;
+    for (const auto& [number, at, own] : axes) {
+      if (number != axis) continue;
+      if (own.torque_per_acceleration.given) {
+        found.torque_per_acceleration = own.torque_per_acceleration;
+      }
+      if (own.torque_per_velocity.given) found.torque_per_velocity = own.torque_per_velocity;
+    }
+    return found;
+  }
+};
+
 /// The homing of an axis, in the units of `units:`. What is not given is not written to the device.
 struct AxisHomingSpec {
   Sourced<bool> required{.value = true};  ///< Without homing, no absolute motion.
@@ -283,6 +317,7 @@ struct NodeSpec {
   UnitsSpec units;
   LimitsSpec limits;
   HomingSpec homing;
+  FeedForwardSpec feed_forward;
   SpeedAxisSpec speed_axis;
   TimeoutSpec on_timeout;
   std::vector<SdoSpec> safe_values;

@@ -93,6 +93,12 @@ struct HomingPlan {
   std::optional<std::int8_t> method{};     ///< 0x6098; empty: that of the device
 };
 
+/// `feed_forward:` of an axis in the network file, in the units of its signals.
+struct FeedForwardPlan {
+  double torque_per_acceleration = 0.0;
+  double torque_per_velocity = 0.0;
+};
+
 /// One CiA 402 axis of a device, as the ordered stop sees it. Values are raw units of the device.
 struct AxisPlan {
   std::uint8_t number = 0;  ///< counts from 0; the axis's objects are 0x800 x number higher
@@ -104,6 +110,7 @@ struct AxisPlan {
   RawUnit velocity_unit{};             ///< of 0x606C
   RawUnit position_unit{};             ///< of differences of 0x6064
   std::optional<HomingPlan> homing{};  ///< empty: the network file says nothing about homing
+  std::optional<FeedForwardPlan> feed_forward{};  ///< empty: motions do not command 0x60B2
 };
 
 /// One device as the master sees it.

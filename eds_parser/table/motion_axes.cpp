@@ -24,11 +24,10 @@ Turn turn_of(const BusPlan& plan, SignalIndex target) {
   return {.length = std::round(row->modulus), .lowest = row->lowest};
 }
 
-HomingPlan homing_of(const NodePlan& node, std::uint8_t number) {
-  for (const AxisPlan& axis : node.axes) {
-    if (axis.number == number && axis.homing) return *axis.homing;
-  }
-  return {.required = false};
+/// Returns the axis of the node. Without one, the network file says nothing about it.
+AxisPlan axis_plan_of(const NodePlan& node, std::uint8_t number) {
+  const auto found = std::ranges::find(node.axes, number, &AxisPlan::number);
+  return found == node.axes.end() ? AxisPlan{} : *found;
 }
 
 std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, std::uint8_t number) {
@@ -48,7 +47,8 @@ std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, st
   const bool same_unit = offset && !signal(*offset).unit.empty() &&
                          signal(*offset).unit == signal(*target).unit + "/s";
   const auto shown_mode = find(0x6061, false);
-  const HomingPlan homing = homing_of(plan.nodes[node], number);
+  const AxisPlan known = axis_plan_of(plan.nodes[node], number);
+  const HomingPlan homing = known.homing.value_or(HomingPlan{.required = false});
   return MotionAxis{.node_index = node,
                     .number = number,
                     .statusword = *statusword,
@@ -58,6 +58,8 @@ std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, st
                     .velocity = find(0x606C, false),
                     .mode = shown_mode ? shown_mode : find(0x6060, true),
                     .velocity_offset = same_unit ? offset : std::nullopt,
+                    .torque_offset = known.feed_forward ? find(0x60B2, true) : std::nullopt,
+                    .feed_forward = known.feed_forward.value_or(FeedForwardPlan{}),
                     .turn = turn_of(plan, *target),
                     .needs_homing = homing.required,
                     .homing_timeout = homing.timeout};

@@ -42,6 +42,9 @@ struct MotionAxis {
   std::optional<SignalIndex> mode{};         ///< 6061, else 6060 if it is an output
   /// 60B1, if its unit is that of the target per second.
   std::optional<SignalIndex> velocity_offset{};
+  /// 60B2, if the network file has a feed-forward of torque.
+  std::optional<SignalIndex> torque_offset{};
+  FeedForwardPlan feed_forward{};
   Turn turn{};                ///< of the target and of the position
   bool needs_homing = false;  ///< `homing:` of the network file requires it
   Time homing_timeout{};      ///< longest time of a homing run

@@ -22,8 +22,8 @@ NOT_KEPT = {
     "BusLoop": {PLAN: "state_words_", SHARED: "port_ front_", SHOWN: "report_", IDLE: "requests_",
                 ANEW: "nodes_ images_ outputs_ published_"},
     "BusMachines": {PLAN: "plan observe wire", IDLE: "events service_frames"},
-    "DrivenAxis": {PLAN: "axis_ position_ velocity_ target_ velocity_offset_ node_outputs_ row_ "
-                   "longest_wait_"},
+    "DrivenAxis": {PLAN: "axis_ position_ velocity_ target_ velocity_offset_ torque_offset_ lowest_torque_ "
+                   "highest_torque_ node_outputs_ row_ longest_wait_"},
     "FrameSender": {SHARED: "port_ beat_ status_"},
     "HomingWatch": {PLAN: "patience_"},
     "Intake": {SHARED: "port_ beat_ bus_ timing_", IDLE: "left_from_ left_end_", ANEW: "received_"},

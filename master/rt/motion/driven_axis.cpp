@@ -38,6 +38,23 @@ bool moves(const motion::AxisReport& report) noexcept {
   return report.state == AxisState::moving || report.state == AxisState::stopping;
 }
 
+struct RawRange {
+  std::int64_t low = std::numeric_limits<std::int16_t>::min();
+  std::int64_t high = std::numeric_limits<std::int16_t>::max();
+};
+
+/// Returns the values that `limits:` permits, of those that INTEGER16 holds.
+RawRange torque_range_of(const BusPlan& plan, SignalIndex signal) noexcept {
+  RawRange range;
+  for (const OutputLimit& limit : plan.limits.outputs) {
+    if (limit.signal != signal) continue;
+    const double low = std::ceil(std::max(limit.low, static_cast<double>(range.low)));
+    const double high = std::floor(std::min(limit.high, static_cast<double>(range.high)));
+    range = {.low = static_cast<std::int64_t>(low), .high = static_cast<std::int64_t>(high)};
+  }
+  return range;
+}
+
 }  // namespace
 
 DrivenAxis::DrivenAxis(const MotionAxis& axis, const BusPlan& plan)
@@ -51,6 +68,12 @@ DrivenAxis::DrivenAxis(const MotionAxis& axis, const BusPlan& plan)
   position_.turn = target_.turn = axis.turn;
   if (axis.velocity) velocity_ = scale_of(plan, *axis.velocity);
   if (axis.velocity_offset) velocity_offset_ = scale_of(plan, *axis.velocity_offset);
+  if (axis.torque_offset) {
+    torque_offset_ = scale_of(plan, *axis.torque_offset);
+    const RawRange range = torque_range_of(plan, *axis.torque_offset);
+    lowest_torque_ = range.low;
+    highest_torque_ = range.high;
+  }
   for (std::size_t i = plan.layout.inputs; i < plan.layout.signals.size(); ++i) {
     if (plan.layout.signals[i].node_index != axis.node_index) continue;
     node_outputs_.push_back(static_cast<SignalIndex>(i));
@@ -180,8 +203,26 @@ bool DrivenAxis::write(PdoOutputs& outputs, const motion::AxisReport& report,
       writer_ == Writer::others && !outputs.is_seeded(axis_.target) && !in_homing_mode_;
   if (by_others || !ignores_target_ || !raw || !outputs.trail(axis_.target, *raw)) return true;
   written_ = *raw;
-  if (writer_ != Writer::others) clear_velocity(outputs);
+  if (writer_ != Writer::others) clear_offsets(outputs);
   return true;
+}
+
+/// The torque of an acceleration at the limits of the motion may be above the limit of torque: the
+/// drive gets as much of it as is permitted.
+std::int64_t DrivenAxis::torque(const motion::State& state) const noexcept {
+  const FeedForwardPlan& plan = axis_.feed_forward;
+  const double wanted =
+      plan.torque_per_acceleration * state.acceleration + plan.torque_per_velocity * state.velocity;
+  const double counts =
+      std::clamp(wanted / torque_offset_.scale, static_cast<double>(lowest_torque_),
+                 static_cast<double>(highest_torque_));
+  return std::llround(counts);
+}
+
+bool DrivenAxis::lead_offsets(PdoOutputs& outputs, std::int64_t speed, std::int64_t torque,
+                              OutputMoment moment) noexcept {
+  if (axis_.velocity_offset && !outputs.lead(*axis_.velocity_offset, speed, moment)) return false;
+  return !axis_.torque_offset || outputs.lead(*axis_.torque_offset, torque, moment);
 }
 
 /// If a set-point is refused, the target position stands still, and so the velocity is 0.
@@ -191,13 +232,12 @@ bool DrivenAxis::lead(PdoOutputs& outputs, const motion::State& state,
   const auto speed = velocity_offset_.raw(state.velocity);
   const bool target_taken = raw && speed && outputs.lead(axis_.target, *raw, moment);
   if (target_taken) written_ = *raw;
-  const bool taken = target_taken && (!axis_.velocity_offset ||
-                                      outputs.lead(*axis_.velocity_offset, *speed, moment));
+  const bool taken = target_taken && lead_offsets(outputs, *speed, torque(state), moment);
   if (taken) {
     writer_ = Writer::in_motion;
   } else if (target_taken || writer_ != Writer::others) {
     writer_ = Writer::refused;
-    clear_velocity(outputs);
+    clear_offsets(outputs);
   }
   return taken;
 }
@@ -208,7 +248,7 @@ bool DrivenAxis::end_motion(PdoOutputs& outputs, const motion::State& state,
                             OutputMoment moment) noexcept {
   if (target_.raw(state.position) == written_) {
     outputs.hold(axis_.target, moment);
-    clear_velocity(outputs);
+    clear_offsets(outputs);
   } else if (!lead(outputs, state, moment)) {
     return false;
   }
@@ -223,13 +263,15 @@ void DrivenAxis::follow_actual(PdoOutputs& outputs, const motion::AxisReport& re
   if (raw && outputs.settle(axis_.target, *raw, moment)) written_ = *raw;
 }
 
-void DrivenAxis::clear_velocity(PdoOutputs& outputs) const noexcept {
+void DrivenAxis::clear_offsets(PdoOutputs& outputs) const noexcept {
   if (axis_.velocity_offset) outputs.trail(*axis_.velocity_offset, 0);
+  if (axis_.torque_offset) outputs.trail(*axis_.torque_offset, 0);
 }
 
 void DrivenAxis::stop_leading(PdoOutputs& outputs) noexcept {
   outputs.release_lead(axis_.target);
   if (axis_.velocity_offset) outputs.release_lead(*axis_.velocity_offset);
+  if (axis_.torque_offset) outputs.release_lead(*axis_.torque_offset);
   if (writer_ == Writer::in_motion) writer_ = Writer::motion;
 }
 

@@ -21,7 +21,8 @@ class DrivenAxis {
   /// PDOs, `last` is the report of the beat before.
   motion::AxisInput read(PdoExchange& pdos, bool exchanging,
                          const motion::AxisReport& last) noexcept;
-  /// Commands the target position, and the velocity as its offset, while the axis moves. While the
+  /// Commands the target position, and the velocity and the torque as its offsets, while the axis
+  /// moves. While the
   /// drive says that it does not follow its target position, this one follows the actual position
   /// if a motion has commanded it last, or if nobody has, so that the drive does not jump when it
   /// is enabled. In homing mode it does so whoever has commanded it: the coordinates of the drive
@@ -84,13 +85,19 @@ class DrivenAxis {
   void stop_leading(PdoOutputs& outputs) noexcept;
   void follow_actual(PdoOutputs& outputs, const motion::AxisReport& report,
                      OutputMoment moment) noexcept;
-  void clear_velocity(PdoOutputs& outputs) const noexcept;
+  std::int64_t torque(const motion::State& state) const noexcept;
+  bool lead_offsets(PdoOutputs& outputs, std::int64_t speed, std::int64_t torque,
+                    OutputMoment moment) noexcept;
+  void clear_offsets(PdoOutputs& outputs) const noexcept;
 
   MotionAxis axis_;
   Scale position_;
   Scale velocity_;
   Scale target_;
   Scale velocity_offset_;
+  Scale torque_offset_;
+  std::int64_t lowest_torque_ = 0;  ///< of the torque offset, in counts
+  std::int64_t highest_torque_ = 0;
   std::vector<SignalIndex> node_outputs_;
   motion::AxisCondition condition_ = motion::AxisCondition::disabled;
   std::size_t row_;                 ///< of the RPDO of the target position
