@@ -151,7 +151,7 @@ for wanted in $stages; do
     # The tests under ASan and UBSan and the fuzz targets are programs of one build: the preset fuzz is asan with clang.
     asan) stage asan-build build fuzz clang++-19 takt_host_tests && stage asan-tests run_tests fuzz -L host ;;
     fuzz) stage fuzz fuzz ;;
-    tsan) stage tsan-build build tsan c++ takt_threaded_tests taktd takt takt-follow takt-home takt-jog takt-move && stage tsan-tests run_tests tsan -L threaded ;;
+    tsan) stage tsan-build build tsan c++ takt_threaded_tests taktd takt takt-follow takt-home takt-jog takt-logic takt-move && stage tsan-tests run_tests tsan -L threaded ;;
     *) echo "no stage $wanted" >&2 && exit 2 ;;
   esac
 done

@@ -19,25 +19,52 @@ std::unexpected<Obstacle> wrong_use(std::string text) {
   return std::unexpected{Obstacle{.kind = Obstacle::Kind::wrong_use, .text = std::move(text)}};
 }
 
-}  // namespace
+struct Connection {
+  std::unique_ptr<Transport> lcm;
+  std::optional<EnvelopeKey> key;
+};
 
-std::expected<Axes, Obstacle> open_axes(const AxesProgram& program) {
+std::expected<Connection, Obstacle> connect(const AxesProgram& program) {
   auto lcm = open_lcm(program.lcm);
   if (!lcm) return std::unexpected{lcm.error()};
-  std::optional<EnvelopeKey> key;
-  if (!program.lcm.keys.empty()) {
-    auto keys = load_keys(program.lcm.keys);
-    if (!keys) return wrong_use(keys.error());
-    key = keys->front();
-  }
-  return Axes::open(program.through ? program.through(std::move(*lcm)) : std::move(*lcm),
+  Connection made{.lcm = std::move(*lcm), .key = {}};
+  if (program.lcm.keys.empty()) return made;
+  auto keys = load_keys(program.lcm.keys);
+  if (!keys) return wrong_use(keys.error());
+  made.key = keys->front();
+  return made;
+}
+
+std::string sender_of(const AxesProgram& program) {
+  return fmt::format("{} {}", program.name, ::getpid());
+}
+
+}  // namespace
+
+bool program_interrupted() noexcept { return stop != 0; }
+
+std::expected<Axes, Obstacle> open_axes(const AxesProgram& program) {
+  auto connection = connect(program);
+  if (!connection) return std::unexpected{connection.error()};
+  auto& [lcm, key] = *connection;
+  return Axes::open(program.through ? program.through(std::move(lcm)) : std::move(lcm),
                     {.bus = program.bus,
                      .names = program.axes,
-                     .sender = fmt::format("{} {}", program.name, ::getpid()),
+                     .sender = sender_of(program),
                      .longest = program.wait,
                      .timeout = std::chrono::ceil<std::chrono::milliseconds>(program.timeout),
-                     .interrupted = [] { return stop != 0; }},
+                     .interrupted = program_interrupted},
                     key ? &*key : nullptr);
+}
+
+std::expected<std::unique_ptr<AxisGroup>, Obstacle> open_group(const AxesProgram& program) {
+  auto connection = connect(program);
+  if (!connection) return std::unexpected{connection.error()};
+  auto group = std::make_unique<AxisGroup>(
+      std::move(connection->lcm),
+      AxisGroupOptions{.bus = program.bus, .sender = sender_of(program)});
+  if (connection->key) group->sign_with(*connection->key);
+  return group;
 }
 
 std::expected<Axes, Obstacle> open_axis(const AxesProgram& program) {

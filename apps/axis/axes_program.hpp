@@ -24,6 +24,12 @@ struct AxesProgram {
   std::function<std::unique_ptr<Transport>(std::unique_ptr<Transport>)> through = {};
 };
 
+/// Returns true once a signal has come while run_program() runs.
+bool program_interrupted() noexcept;
+
+/// Opens LCM for a program that commands other outputs than those of axes.
+std::expected<std::unique_ptr<AxisGroup>, Obstacle> open_group(const AxesProgram& program);
+
 /// Opens the axes of a program. A signal interrupts their calls while run_program() runs.
 std::expected<Axes, Obstacle> open_axes(const AxesProgram& program);
 

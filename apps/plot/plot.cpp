@@ -17,7 +17,7 @@ constexpr double width = 800.0;
 constexpr double left = 84.0;
 constexpr double right = 16.0;
 constexpr double inner_width = width - left - right;
-constexpr double panel_height = 130.0;
+constexpr double lowest_high_panel = 60.0;
 constexpr double panel_gap = 22.0;
 constexpr double title_height = 30.0;
 constexpr double legend_line = 18.0;
@@ -76,7 +76,7 @@ class Picture {
     double y = top;
     for (const Panel& panel : plot_.panels) {
       write_panel(panel, y);
-      y += panel_height + panel_gap;
+      y += panel.height + panel_gap;
     }
     y -= panel_gap;
     write_times(y);
@@ -138,10 +138,11 @@ class Picture {
         any = true;
       }
     }
-    const Ticks ticks = enclosing_ticks(low, high, ticks_of_panel);
+    const bool is_low = panel.height < lowest_high_panel;
+    const Ticks ticks = enclosing_ticks(low, high, is_low ? 1 : ticks_of_panel);
     const double range = ticks.high() - ticks.low();
     const auto y_of = [&](double value) {
-      return top + panel_height * (ticks.high() - value) / range;
+      return top + panel.height * (ticks.high() - value) / range;
     };
     for (const double tick : ticks.values) {
       const double y = y_of(tick);
@@ -152,15 +153,24 @@ class Picture {
           y + 4.0, ticks.text(tick));
     }
     for (const double tick : time_.values) {
-      write("<path class=\"grid\" d=\"M{:.1f} {:.1f}v{}\"/>", x_of(tick), top, panel_height);
+      write("<path class=\"grid\" d=\"M{:.1f} {:.1f}v{}\"/>", x_of(tick), top, panel.height);
     }
-    write("\n<text transform=\"translate(14 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}",
-          top + panel_height / 2.0, escaped(panel.quantity));
-    write("<tspan x=\"0\" dy=\"13\">{}</tspan></text>\n",
-          panel.unit.empty() ? "" : "(" + escaped(panel.unit) + ")");
+    write_name(panel, top);
     for (const Curve& curve : panel.curves) write_curve(curve, y_of);
     write("<rect class=\"frame\" x=\"{}\" y=\"{:.1f}\" width=\"{}\" height=\"{}\"/>\n", left, top,
-          inner_width, panel_height);
+          inner_width, panel.height);
+  }
+
+  void write_name(const Panel& panel, double top) {
+    const std::string unit = panel.unit.empty() ? "" : "(" + escaped(panel.unit) + ")";
+    if (panel.height < lowest_high_panel) {
+      write("\n<text x=\"{}\" y=\"{:.1f}\">{} {}</text>\n", left, top - 5.0,
+            escaped(panel.quantity), unit);
+      return;
+    }
+    write("\n<text transform=\"translate(14 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}",
+          top + panel.height / 2.0, escaped(panel.quantity));
+    write("<tspan x=\"0\" dy=\"13\">{}</tspan></text>\n", unit);
   }
 
   template <class YOf>

@@ -15,11 +15,12 @@ struct Curve {
   Stroke stroke = Stroke::thin;
 };
 
-/// Curves of one quantity over the time.
+/// Curves of one quantity over the time. The name of a low panel, below 60 pixels, stands above it.
 struct Panel {
   std::string quantity = {};  ///< "position"
   std::string unit = {};      ///< "rad"
   std::vector<Curve> curves = {};
+  double height = 130.0;  ///< pixels
 };
 
 /// An entry of the legend, which stands for all curves of this colour and stroke.

@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 
 get_property(libraries GLOBAL PROPERTY TAKT_LIBRARIES)
 install(TARGETS ${libraries} EXPORT takt-targets)
-install(TARGETS takt taktd takt-follow takt-home takt-jog takt-move)
+install(TARGETS takt taktd takt-follow takt-home takt-jog takt-logic takt-move)
 
 install(PROGRAMS apps/python/axes.py apps/python/first_motion.py apps/python/first_speed.py apps/python/motion.py
         DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)

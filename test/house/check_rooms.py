@@ -146,6 +146,7 @@ ROOMS = {
     "apps/follow": ("takt-follow", "apps/axis apps/command_line apps/plot/motion master/lcm"),
     "apps/jog": ("takt-jog", "apps/axis apps/command_line apps/plot/motion master/lcm"),
     "apps/home": ("takt-home", "apps/axis apps/command_line apps/plot/motion master/lcm"),
+    "apps/logic": ("takt-logic", "apps/axis apps/command_line apps/plot eds_parser/network_file eds_parser/report master/lcm"),
     "apps/takt/live": ("commands for a running daemon: status, top, timing, EMCY, record",
                        "apps/command_line master/core master/explain master/gateway/message master/gateway/notice "
                        "master/rt/exchange master/linux " + LCM),

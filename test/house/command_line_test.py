@@ -57,6 +57,8 @@ def wrong_use(tools):
     tools.says("so has one of takt-follow", ["takt-follow", "--leadr", "x"], 2, "did you mean '--leader'?")
     tools.says("takt-follow asks for the leader", ["takt-follow"], 2, "--leader is required")
     tools.says("takt-follow takes no ratio of 1/0", ["takt-follow", "--leader", "x", "--ratio", "1/0"], 2, "neither a number nor two")
+    tools.says("so has one of takt-logic", ["takt-logic", "rules.yaml", "--chek"], 2, "did you mean '--check'?")
+    tools.says("takt-logic prints its rules", ["takt-logic", ROOT / "share/demo/logic/rules.yaml", "--check"], 0, "count parts when")
     tools.says("so has one of takt-home", ["takt-home", "demo", "--togehter"], 2, "did you mean '--together'?")
     tools.says("takt-home asks for the bus", ["takt-home"], 2, "bus is required")
     tools.says("so has a word that an option takes", ["taktd", DEMO, "--rt", "enforc"], 2, "did you mean 'enforce'?")

@@ -14,7 +14,7 @@ trap end EXIT
 prefix=$tmp/prefix
 cmake --install "$build" --prefix "$prefix" >/dev/null
 
-for file in bin/takt bin/taktd bin/takt-follow bin/takt-home bin/takt-jog bin/takt-move lib/systemd/system/taktd@.service lib/systemd/network/60-takt-can.link \
+for file in bin/takt bin/taktd bin/takt-follow bin/takt-home bin/takt-jog bin/takt-logic bin/takt-move lib/systemd/system/taktd@.service lib/systemd/network/60-takt-can.link \
   etc/security/limits.d/takt.conf share/takt/lcm/image_t.lcm share/takt/demo/two_axes.yaml share/doc/takt/index.md \
   share/doc/takt/CHANGELOG.md; do
   [ -e "$prefix/$file" ] || { echo "not installed: $file" >&2; exit 1; }

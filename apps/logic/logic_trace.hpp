@@ -1,0 +1,31 @@
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "apps/plot/plot.hpp"
+
+namespace takt {
+
+/// Keeps how the values of a LogicProgram change, for a picture. The memory is bounded: after
+/// `most_changes` it keeps nothing more, and the picture says so.
+class LogicTrace {
+ public:
+  static constexpr std::size_t most_changes = 20'000;
+
+  /// Takes the values of one image; `time` is that of the bus in seconds. There are as many values
+  /// each time.
+  void take(double time, const std::vector<double>& values);
+  /// Returns a picture with a low panel for each value.
+  Plot plot(std::string title, const std::vector<std::string>& names) const;
+
+ private:
+  struct Change {
+    double time;
+    std::vector<double> values;
+  };
+  std::vector<Change> changes_;
+  double end_ = 0.0;
+};
+
+}  // namespace takt
