@@ -81,6 +81,17 @@ class JudgedMotions : public testing::Test {
     }
     judge.commanded({command, sender, now - 2ms}, now);
   }
+  /// A program lets the shoulder follow an axis that stands.
+  void follow() {
+    motion_command_t gear = message("gear");
+    motion_goal_t goal{};
+    goal.node = "shoulder";
+    goal.max_velocity = limits.max_velocity * scale;
+    goal.max_acceleration = limits.max_acceleration * scale;
+    goal.max_jerk = limits.jerk * scale;
+    gear.goals.push_back(goal);
+    judge.commanded({gear, program, now - 2ms}, now);
+  }
   /// From `begin` on, the axis moves along these limits.
   void lead(std::size_t axis, double target, Time begin, const motion::Limits& along = limits) {
     const double from = path[axis](begin);
@@ -221,6 +232,71 @@ TEST_F(JudgedMotions, OfAJogEndIfItsAxisIsNotNamed) {
   run(350ms, [&] { alive(); });
   EXPECT_EQ(broken(), "");
   run(350ms, [&] { alive(); });
+
+  EXPECT_EQ(broken(), "an axis moves only while its sender commands it");
+}
+
+/// A gear stands while its leader stands, and moves when its leader does.
+TEST_F(JudgedMotions, OfAGearLastAsLongAsTheirProgramIsAlive) {
+  follow();
+  run(10s, [&] { alive(); });
+  lead(0, 20'000, now + 6ms);
+
+  run(3s, [&] { alive(); });
+
+  EXPECT_EQ(broken(), "") << verdict.violation()->what;
+  EXPECT_EQ(judge.motions().orders().gears(), 1U);
+}
+
+TEST_F(JudgedMotions, OfAGearEndIfTheirProgramIsSilent) {
+  follow();
+  run(100ms, [&] { alive(); });
+  lead(0, 20'000, now + 6ms);
+
+  run(350ms);
+  EXPECT_EQ(broken(), "");
+  run(350ms);
+
+  EXPECT_EQ(broken(), "an axis moves only while its sender commands it");
+}
+
+TEST_F(JudgedMotions, OfAGearKeepTheirLimitsWhateverTheirLeaderDoes) {
+  follow();
+  run(100ms, [&] { alive(); });
+  motion::Limits fast = limits;
+  fast.max_velocity = 11'000;
+  lead(0, 20'000, now + 6ms, fast);
+
+  run(500ms, [&] { alive(); });
+
+  EXPECT_EQ(broken(), "a motion keeps its limits");
+}
+
+/// The points of a stream are sent 400 ms in advance. Without further ones, it stops.
+TEST_F(JudgedMotions, OfAStreamEndWithItsPoints) {
+  motion_command_t stream = message("stream");
+  stream.id = 5;
+  motion_goal_t goal{};
+  goal.node = "shoulder";
+  goal.position = 20'000 * scale;
+  goal.max_velocity = limits.max_velocity * scale;
+  goal.max_acceleration = limits.max_acceleration * scale;
+  goal.max_jerk = limits.jerk * scale;
+  stream.goals.push_back(goal);
+  const Time begin = now;
+  judge.commanded({stream, program, now - 2ms, 400ms}, now);
+  lead(0, 20'000, now + 6ms);
+  stream.kind = "points";
+  run(600ms, [&] { judge.commanded({stream, program, now - 2ms, now - begin + 400ms}, now); });
+  EXPECT_EQ(judge.motions().orders().streams(), 1U);
+  EXPECT_EQ(broken(), "");
+
+  path[0] = [from = path[0](now - 2ms), since = now - 2ms](Time when) {
+    return from + 1e4 * std::chrono::duration<double>(when - since).count();
+  };
+  run(1300ms, [&] { alive(); });
+  EXPECT_EQ(broken(), "");
+  run(500ms, [&] { alive(); });
 
   EXPECT_EQ(broken(), "an axis moves only while its sender commands it");
 }

@@ -21,6 +21,8 @@ class MotionDefects : public testing::Test {
       motions += outcome.motions;
       arrivals += outcome.arrivals;
       groups += outcome.groups;
+      gears += outcome.gears;
+      streams += outcome.streams;
       if (!outcome.violation) continue;
       what += fmt::format("seed {}: {}: {}\n", seed, outcome.violation->invariant,
                           outcome.violation->what);
@@ -45,6 +47,8 @@ class MotionDefects : public testing::Test {
   std::uint64_t motions = 0;
   std::uint64_t arrivals = 0;
   std::uint64_t groups = 0;
+  std::uint64_t gears = 0;
+  std::uint64_t streams = 0;
   std::string what;
 };
 
@@ -54,6 +58,8 @@ TEST_F(MotionDefects, NotAtAllBreaksNothing) {
   EXPECT_GT(motions, 100U);
   EXPECT_GT(arrivals, 20U);
   EXPECT_GT(groups, 0U);
+  EXPECT_GT(gears, 0U);
+  EXPECT_GT(streams, 0U);
 }
 
 /// The daemon lets each motion outlive the silence of its sender by 10 s, and the drive with it.
@@ -78,6 +84,14 @@ TEST_F(MotionDefects, AMotionStartsWithAJump) {
     }
   });
   EXPECT_TRUE(breaks(harder, "a motion keeps its limits")) << what;
+}
+
+/// The leader is often faster than the axis may be.
+TEST_F(MotionDefects, AGearIsFasterThanItsCommandAllows) {
+  const auto faster = [](motion_gear_t& gear) {
+    for (motion_goal_t& goal : gear.goals) goal.max_velocity *= 1.3;
+  };
+  EXPECT_TRUE(breaks({.gear = faster}, "a motion keeps its limits")) << what;
 }
 
 /// A program of the same name is the first program.

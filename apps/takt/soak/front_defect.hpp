@@ -4,6 +4,7 @@
 #include <takt/command_t.hpp>
 #include <takt/image_t.hpp>
 #include <takt/motion_command_t.hpp>
+#include <takt/motion_gear_t.hpp>
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
@@ -29,6 +30,8 @@ struct FrontDefect {
   /// Returns the messages about motions that the daemon receives instead of this one.
   std::function<std::vector<motion_command_t>(motion_command_t command, const SeenCycles& cycles)>
       motion{};
+  /// Changes a gear before the daemon judges it.
+  std::function<void(motion_gear_t& gear)> gear{};
   /// Returns the instance that a program uses. `own` is its random one.
   std::function<std::int64_t(unsigned program, std::int64_t own)> instance{};
   /// Returns false if the program shall ignore this image.

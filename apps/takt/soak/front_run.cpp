@@ -124,6 +124,7 @@ class FrontWalk {
         return options_.front.motion(std::move(command), seen_cycles());
       });
     }
+    if (options_.front.gear) daemon_.rewrite(options_.front.gear);
     stage_.add(program_faults_);
     stage_.add(daemon_);
     for (const auto& application : applications_) stage_.add(*application);
@@ -148,6 +149,8 @@ class FrontWalk {
              .motions = wire_.motions().orders().motions(),
              .arrivals = wire_.motions().arrivals(),
              .groups = wire_.motions().groups(),
+             .gears = wire_.motions().orders().gears(),
+             .streams = wire_.motions().orders().streams(),
              .forged = forger_.sent(),
              .program_faults = program_faults_.count()},
             options_.seed,
@@ -164,10 +167,12 @@ class FrontWalk {
     options.commanded = [this, number](const command_t& command, Time computed_from) {
       judge_command(command, {.sender = SenderBit{1} << number, .computed_from = computed_from});
     };
-    options.motion_commanded = [this, number](const motion_command_t& command, Time computed_from) {
+    options.motion_commanded = [this, number](const motion_command_t& command, Time computed_from,
+                                              Time points_until) {
       if (!daemon_.runs() || command.session != daemon_.session()) return;
-      if (options_.verbose && command.kind != "alive") announce(number, command);
-      wire_.commanded({command, SenderBit{1} << number, computed_from}, world_.now());
+      const bool lasts = command.kind == "alive" || command.kind == "points";
+      if (options_.verbose && !lasts) announce(number, command);
+      wire_.commanded({command, SenderBit{1} << number, computed_from, points_until}, world_.now());
     };
     options.released = [this, number](Time now) { wire_.released(SenderBit{1} << number, now); };
     options.deaf = [this](const std::string& what) {

@@ -194,6 +194,8 @@ SoakCounts& SoakCounts::operator+=(const SoakCounts& other) noexcept {
   motions += other.motions;
   arrivals += other.arrivals;
   groups += other.groups;
+  gears += other.gears;
+  streams += other.streams;
   forged += other.forged;
   program_faults += other.program_faults;
   return *this;

@@ -49,6 +49,8 @@ struct SoakCounts {
   std::uint64_t motions = 0;         ///< motions of an axis that the programs commanded
   std::uint64_t arrivals = 0;        ///< motions that ended at their target
   std::uint64_t groups = 0;          ///< groups whose begin was seen and judged
+  std::uint64_t gears = 0;           ///< gears that the programs commanded
+  std::uint64_t streams = 0;         ///< streams that the programs began
   std::uint64_t forged = 0;          ///< forged messages
   std::uint64_t program_faults = 0;  ///< faults of programs: stalls, deaths, rivals, replays ...
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <concepts>
 
 #include "master/lcm/messages.hpp"
 
@@ -30,6 +31,7 @@ Forger::Forger(const BusPlan& plan, VirtualLcm& lcm, Forged forged, sim::Random 
       channels_{plan.name} {
   lcm_.subscribe(channels_.command);
   lcm_.subscribe(channels_.motion_command);
+  lcm_.subscribe(channels_.motion_gear);
   lcm_.subscribe(channels_.image);
 }
 
@@ -39,7 +41,9 @@ void Forger::act(Time now) {
       image_.assign(data.begin(), data.end());
       return;
     }
-    auto& memory_of = channel == channels_.command ? heard_ : motions_;
+    auto& memory_of = channel == channels_.command       ? heard_
+                      : channel == channels_.motion_gear ? gears_
+                                                         : motions_;
     memory_of.push_back({.when = now, .command = {data.begin(), data.end()}});
     if (memory_of.size() > memory) memory_of.pop_front();
   });
@@ -52,8 +56,14 @@ void Forger::publish(const std::string& channel, Bytes data) {
 
 /// A program that has heard no motion acts as if there were none.
 void Forger::act_up(Time now) {
+  if (!gears_.empty() && random_.chance(0.2)) {
+    return random_.chance(0.5) ? forge_motion<motion_gear_t>(gears_, channels_.motion_gear, now)
+                               : replay_motions<motion_gear_t>(gears_, channels_.motion_gear, now);
+  }
   if (!motions_.empty() && random_.chance(0.4)) {
-    return random_.chance(0.5) ? forge_motion(now) : replay_motions(now);
+    return random_.chance(0.5)
+               ? forge_motion<motion_command_t>(motions_, channels_.motion_command, now)
+               : replay_motions<motion_command_t>(motions_, channels_.motion_command, now);
   }
   switch (random_.below(4)) {
     case 0:
@@ -84,19 +94,20 @@ void Forger::replay(Time now) {
   }
 }
 
-void Forger::replay_motions(Time now) {
+template <class Message>
+void Forger::replay_motions(const std::deque<Heard>& heard, const std::string& channel, Time now) {
   const auto old = std::ranges::partition_point(
-      motions_, [&](const Heard& heard) { return heard.when < now - as_good_as_new; });
-  const auto many = static_cast<std::uint32_t>(old - motions_.begin());
+      heard, [&](const Heard& one) { return one.when < now - as_good_as_new; });
+  const auto many = static_cast<std::uint32_t>(old - heard.begin());
   if (many == 0) return;
   const std::uint32_t first = random_.below(many);
   const std::uint32_t last = std::min(many, first + 1 + random_.below(60));
   const bool from_no_cycle = random_.chance(0.5);
   for (std::uint32_t i = first; i < last; ++i) {
-    auto motion = decode<motion_command_t>(motions_[i].command);
+    auto motion = decode<Message>(heard[i].command);
     if (!motion) continue;
     if (from_no_cycle) motion->cycle = 0;
-    publish(channels_.motion_command, encode(*motion, buffer_));
+    publish(channel, encode(*motion, buffer_));
   }
 }
 
@@ -122,10 +133,13 @@ std::array<std::int64_t, 6> Forger::wrong_cycles(std::int64_t cycle) {
           cycle - 2 * far_away()};
 }
 
-void Forger::forge_motion(Time now) {
+/// Sends the newest message with other targets, without limits of its own, and with a wrong cycle
+/// or session.
+template <class Message>
+void Forger::forge_motion(const std::deque<Heard>& heard, const std::string& channel, Time now) {
   const auto cycle = cycle_at(now);
-  if (motions_.empty() || !cycle) return;
-  auto motion = decode<motion_command_t>(motions_.back().command);
+  if (heard.empty() || !cycle) return;
+  auto motion = decode<Message>(heard.back().command);
   if (!motion) return;
   const auto wrong = wrong_cycles(*cycle);
   if (random_.chance(0.2)) {
@@ -134,14 +148,16 @@ void Forger::forge_motion(Time now) {
     motion->cycle = wrong[random_.below(wrong.size())];
   }
   if (random_.chance(0.3)) motion->timeout_ms = 10'000;
-  if (random_.chance(0.7)) motion->kind = "move";
+  if constexpr (std::same_as<Message, motion_command_t>) {
+    if (random_.chance(0.7)) motion->kind = "move";
+  }
   for (motion_goal_t& goal : motion->goals) {
     goal.position = -goal.position;
     goal.max_velocity *= 2;
     goal.max_acceleration *= 2;
     goal.max_jerk = 0;
   }
-  publish(channels_.motion_command, encode(*motion, buffer_));
+  publish(channel, encode(*motion, buffer_));
 }
 
 void Forger::forge_command(Time now) {

@@ -30,9 +30,6 @@ class Forger final : public Actor {
   void replay(Time now);
   /// Sends the newest command with other positions and with a wrong cycle or session.
   void forge_command(Time now);
-  /// Sends the newest motion with other targets, without limits of its own, and with a wrong cycle
-  /// or session.
-  void forge_motion(Time now);
   /// Sends an image of a cycle in the far future.
   void forge_image(Time now);
   /// Sends random bytes of random length, or a truncated command, on a random channel.
@@ -47,7 +44,11 @@ class Forger final : public Actor {
     Time when{};
     std::vector<std::byte> command;
   };
-  void replay_motions(Time now);
+  /// `Message` is motion_command_t or motion_gear_t, which was heard on `channel`.
+  template <class Message>
+  void forge_motion(const std::deque<Heard>& heard, const std::string& channel, Time now);
+  template <class Message>
+  void replay_motions(const std::deque<Heard>& heard, const std::string& channel, Time now);
   std::array<std::int64_t, 6> wrong_cycles(std::int64_t cycle);
   void publish(const std::string& channel, std::span<const std::byte> data);
   std::optional<std::int64_t> cycle_at(Time now) const;
@@ -60,6 +61,7 @@ class Forger final : public Actor {
   Channels channels_;
   std::deque<Heard> heard_;
   std::deque<Heard> motions_;
+  std::deque<Heard> gears_;
   std::vector<std::byte> image_;  // newest genuine image, encoded
   std::vector<std::byte> buffer_;
   std::uint64_t sent_ = 0;

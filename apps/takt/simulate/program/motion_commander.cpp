@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace takt {
 namespace {
@@ -20,8 +21,24 @@ constexpr double jerk_rise = 0.05;  // s until the acceleration is reached
 constexpr double reach_time = 3.0;  // s of a quick motion to the farthest target
 constexpr double part_of_range = 0.5;
 constexpr double near = 0.1;  // part of the reach within which most targets are
+constexpr Time longest_path = 8s;
 constexpr unsigned rival = 7;
 constexpr std::array<std::int32_t, 6> timeouts{0, 0, 100, 200, 1000, 3000};  // ms
+
+/// Fills in the fields that all messages about motions have.
+template <class Message>
+void fill_from(const motion_command_t& command, Message& message) {
+  message.utime = command.utime;
+  message.schema = command.schema;
+  message.session = command.session;
+  message.instance = command.instance;
+  message.sender = command.sender;
+  message.cycle = command.cycle;
+  message.id = command.id;
+  message.timeout_ms = command.timeout_ms;
+  message.goals = command.goals;
+  message.num_goals = command.num_goals;
+}
 
 }  // namespace
 
@@ -30,6 +47,9 @@ MotionCommander::MotionCommander(const BusPlan& plan, const std::vector<bool>& n
     : number_{number} {
   for (const MotionAxis& axis : motion_axes(plan)) {
     if (nodes[axis.node_index]) axes_.push_back(axis_of(plan, axis));
+    leaders_.push_back({.node = plan.nodes[axis.node_index].name,
+                        .number = axis.number,
+                        .position = plan.layout.signals[axis.position].name});
   }
 }
 
@@ -75,6 +95,10 @@ void MotionCommander::start(sim::Random random) {
   calm_ = random_.chance(0.4);
   timeout_ms_ = timeouts[random_.below(timeouts.size())];
   for (Axis& axis : axes_) axis.pace = share(0.2);
+  gear_random_ = random.fork(1);
+  gears_ = gear_random_.chance(0.4);
+  streams_ = gear_random_.chance(0.4);
+  path_ = {};
 }
 
 void MotionCommander::see(SignalIndex target, std::int64_t counts) noexcept {
@@ -133,6 +157,68 @@ motion_command_t MotionCommander::motion() {
   return command;
 }
 
+/// Returns nothing if no other axis can lead the one that was chosen.
+std::optional<motion_command_t> MotionCommander::choose_gear() {
+  const Axis& axis = axes_[gear_random_.below(static_cast<std::uint32_t>(axes_.size()))];
+  const Leader& leader = leaders_[gear_random_.below(static_cast<std::uint32_t>(leaders_.size()))];
+  if (leader.node == axis.node && leader.number == axis.signals.number) return std::nullopt;
+  motion_command_t command{};
+  command.id = ++id_;
+  command.kind = "gear";
+  command.goals.push_back(goal_of(axis));
+  const auto ratio = static_cast<double>(gear_random_.below(1501)) / 1000;
+  gear_ = {};
+  gear_.leader = leader.node;
+  gear_.leader_axis = static_cast<std::int8_t>(leader.number + 1);
+  if (gear_random_.chance(0.4)) gear_.signal = leader.position;
+  gear_.phase = gear_random_.chance(0.5) ? "at" : "here";
+  gear_.numerator = {gear_random_.chance(0.5) ? ratio : -ratio};
+  gear_.denominator = {1.0};
+  gear_.max_phase_error = {gear_random_.chance(0.2) ? std::abs(axis.scale) * 1000 : 0.0};
+  return command;
+}
+
+motion_gear_t MotionCommander::gear(const motion_command_t& command) const {
+  motion_gear_t gear = gear_;
+  fill_from(command, gear);
+  return gear;
+}
+
+/// Returns nothing if the path would take too long, or if the limits are those of the file.
+std::optional<motion_command_t> MotionCommander::choose_stream(Time now) {
+  const Axis& axis = axes_[gear_random_.below(static_cast<std::uint32_t>(axes_.size()))];
+  motion_goal_t goal = goal_of(axis);
+  if (goal.max_velocity == 0) return std::nullopt;
+  if (goal.max_jerk == 0) goal.max_jerk = goal.max_acceleration / jerk_rise;
+  const StreamPath path{
+      axis.position * axis.scale + axis.offset,
+      goal.position,
+      {.velocity = goal.max_velocity, .acceleration = goal.max_acceleration, .jerk = goal.max_jerk},
+      now};
+  if (path.duration() > longest_path) return std::nullopt;
+  path_ = path;
+  path_goal_ = goal;
+  ++id_;
+  motion_due_ += path.duration();
+  return next_points(now);
+}
+
+motion_command_t MotionCommander::next_points(Time now) {
+  stream_ = {};
+  path_.put_points(stream_, now);
+  motion_command_t command{};
+  command.id = id_;
+  command.kind = stream_.first_point == 0 && stream_.num_points > 0 ? "stream" : "points";
+  command.goals.push_back(path_goal_);
+  return command;
+}
+
+motion_stream_t MotionCommander::stream(const motion_command_t& command) const {
+  motion_stream_t stream = stream_;
+  fill_from(command, stream);
+  return stream;
+}
+
 motion_command_t MotionCommander::stop_all() const {
   motion_command_t command{};
   command.kind = "stop";
@@ -153,10 +239,14 @@ std::optional<motion_command_t> MotionCommander::next(Time now) {
   command.kind = "alive";
   if (leaves_) {
     command = stop_all();
+  } else if (!path_.is_over()) {
+    command = next_points(now);
   } else if (now >= motion_due_) {
     motion_due_ =
         now + (calm_ ? calm_pause + random_.up_to(calm_pause) : random_.up_to(busy_pause));
-    command = motion();
+    auto other = gears_ && gear_random_.chance(0.4) ? choose_gear() : std::nullopt;
+    if (!other && streams_ && gear_random_.chance(0.4)) other = choose_stream(now);
+    command = other ? std::move(*other) : motion();
   } else if (random_.chance(0.1)) {
     add_goals(command, true);
   }

@@ -3,8 +3,11 @@
 #include <optional>
 #include <string>
 #include <takt/motion_command_t.hpp>
+#include <takt/motion_gear_t.hpp>
+#include <takt/motion_stream_t.hpp>
 #include <vector>
 
+#include "apps/takt/simulate/program/stream_path.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/motion_axes.hpp"
 #include "master/sim/random.hpp"
@@ -13,7 +16,9 @@ namespace takt {
 
 /// Chooses the motions that a program commands. It sends a message every 20 ms, which may come
 /// 10 ms late; now and then it is silent for 300 ms, seldom for 2 s. Each process has its own
-/// limits and timeout. A target in counts has the number of the program in its low four bits.
+/// limits and timeout. A target in counts has the number of the program in its low four bits. Some
+/// processes also let an axis follow another one, of any program, or lead an axis along the points
+/// of a stream.
 class MotionCommander {
  public:
   /// `nodes` are those of the program, in the order of BusPlan::nodes.
@@ -22,8 +27,16 @@ class MotionCommander {
   /// Begins as a new process.
   void start(sim::Random random);
   /// Returns the next message if it is due. The caller fills in the fields that tell who sends it,
-  /// and when.
+  /// and when. A message of the kind "gear" has to be sent as gear() returns it, and one of the
+  /// kinds "stream" (the first one of a stream) and "points" as stream() returns it.
   std::optional<motion_command_t> next(Time now);
+  /// Returns the message that tells the goals of `command`, which next() has returned last, to
+  /// follow their leader.
+  motion_gear_t gear(const motion_command_t& command) const;
+  /// Returns the message with the points of a stream, as gear() does.
+  motion_stream_t stream(const motion_command_t& command) const;
+  /// Returns the time of the newest point of the present stream, from its begin on.
+  Time points_until() const noexcept { return path_.sent_until(); }
   /// The target position that the drive has at present, in counts.
   void see(SignalIndex target, std::int64_t counts) noexcept;
   /// From now on each message is a stop of all axes.
@@ -45,15 +58,25 @@ class MotionCommander {
     double position = 0.0;      ///< present target position, in counts
     double pace = 1.0;          ///< part of the quick motion that this process chooses
   };
+  /// An axis of the bus that may lead another one.
+  struct Leader {
+    std::string node{};
+    std::uint8_t number = 0;  ///< axis of the device, from 0
+    std::string position{};   ///< name of its actual position
+  };
   static Axis axis_of(const BusPlan& plan, const MotionAxis& signals);
   std::int64_t target_of(const Axis& axis);
   motion_goal_t goal_of(const Axis& axis);
   motion_command_t motion();
+  std::optional<motion_command_t> choose_gear();
+  std::optional<motion_command_t> choose_stream(Time now);
+  motion_command_t next_points(Time now);
   motion_command_t stop_all() const;
   void add_goals(motion_command_t& command, bool all);
   double share(double least) { return least + (1 - least) * 1e-6 * random_.below(1'000'001); }
 
   std::vector<Axis> axes_;
+  std::vector<Leader> leaders_;
   unsigned number_;
   sim::Random random_{0};
   Time due_{};         ///< of the next message
@@ -61,7 +84,14 @@ class MotionCommander {
   std::int32_t timeout_ms_ = 0;
   std::int32_t id_ = 0;
   bool leaves_ = false;
-  bool calm_ = false;  ///< its motions come to rest before the next one
+  bool calm_ = false;   ///< its motions come to rest before the next one
+  bool gears_ = false;  ///< some of its motions are gears
+  sim::Random gear_random_{0};
+  motion_gear_t gear_{};  ///< leader, phase and ratio of the newest gear
+  bool streams_ = false;  ///< some of its motions are streams
+  StreamPath path_{};
+  motion_goal_t path_goal_{};
+  motion_stream_t stream_{};  ///< newest points of the path
 };
 
 }  // namespace takt

@@ -305,9 +305,17 @@ void VirtualApplication::send_motion(const command_t& command, Time now) {
   message->cycle = command.cycle;
   message->instance = instance_;
   message->sender = options_.name;
-  if (options_.motion_commanded) options_.motion_commanded(*message, sync_);
+  if (options_.motion_commanded) {
+    options_.motion_commanded(*message, sync_, commander_.points_until());
+  }
   ++motions_;
-  lcm_.publish(channels_.motion_command, encode(*message, buffer_));
+  if (message->kind == "gear") {
+    lcm_.publish(channels_.motion_gear, encode(commander_.gear(*message), buffer_));
+  } else if (message->kind == "stream" || message->kind == "points") {
+    lcm_.publish(channels_.motion_stream, encode(commander_.stream(*message), buffer_));
+  } else {
+    lcm_.publish(channels_.motion_command, encode(*message, buffer_));
+  }
 }
 
 void VirtualApplication::send(Time now) {

@@ -31,8 +31,11 @@ struct ApplicationOptions {
 
   /// Called with each command that is sent and the SYNC time of the image it was computed from.
   std::function<void(const command_t& command, Time computed_from)> commanded{};
-  /// The same for a message about motions.
-  std::function<void(const motion_command_t& command, Time computed_from)> motion_commanded{};
+  /// The same for a message about motions. A motion_gear_t is a command of the kind "gear"; the
+  /// messages of a stream have the kinds "stream" and "points", and `points_until` is the time of
+  /// their newest point, from the begin of the stream on.
+  std::function<void(const motion_command_t& command, Time computed_from, Time points_until)>
+      motion_commanded{};
   /// Called when the program gives up its outputs.
   std::function<void(Time now)> released{};
   /// Called if the program has received images for a long time and could use none of them.

@@ -31,7 +31,7 @@ VirtualDaemon::VirtualDaemon(const BusPlan& plan, StagedPort& port, VirtualLcm& 
       clocks_{clocks},
       random_{random},
       lcm_{lcm.join(daemon_room)},
-      transport_{lcm_, Channels{plan.name}.command, Channels{plan.name}.motion_command} {}
+      transport_{lcm_, Channels{plan.name}} {}
 
 void VirtualDaemon::start() {
   session_ = static_cast<std::int64_t>(random_.next() >> 2 | 1U);

@@ -52,6 +52,7 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   void rewrite(RewritingTransport::RewriteMotion rewrite) {
     transport_.rewrite(std::move(rewrite));
   }
+  void rewrite(RewritingTransport::RewriteGear rewrite) { transport_.rewrite(std::move(rewrite)); }
 
   /// Starts a new process with a new session.
   void start();

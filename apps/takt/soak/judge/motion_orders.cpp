@@ -69,8 +69,10 @@ void MotionOrders::commanded(const SentMotion& sent, Time now) {
   newest = std::max(newest, sent.computed_from);
   const std::string& kind = sent.command.kind;
   if (kind == "stop") return;
-  const bool begins = kind == "move" || kind == "jog";
+  const bool begins = kind == "move" || kind == "jog" || kind == "gear" || kind == "stream";
   if (begins) ++messages_;
+  if (kind == "gear") ++gears_;
+  if (kind == "stream") ++streams_;
   for (const motion_goal_t& goal : sent.command.goals) {
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       const bool named = plan_.nodes[axes_[i].node_index].name == goal.node &&
@@ -79,6 +81,8 @@ void MotionOrders::commanded(const SentMotion& sent, Time now) {
       Time& renewed = named_[i][number_of(sent.sender)];
       if (kind != "move") renewed = std::max(renewed, sent.computed_from);
       if (begins) add(sent, goal, i, now);
+      if (kind != "points") continue;
+      for (OrderedMotion& order : orders_[i]) take_points(sent, order, now);
     }
   }
 }
@@ -95,18 +99,33 @@ void MotionOrders::add(const SentMotion& sent, const motion_goal_t& goal, std::s
       .sent = now,
       .computed_from = sent.computed_from,
       .timeout = sent.command.timeout_ms == 0 ? usual_timeout : Time{asked},
-      .bounds = bounds_of(goal, axis)};
-  if (sent.command.kind == "move") {
+      .bounds = bounds_of(goal, axis),
+      .follows = sent.command.kind == "gear"};
+  if (sent.command.kind == "stream") order.stream = sent.command.id;
+  if (sent.command.kind == "move" || order.stream) {
     const Signal& target = plan_.layout.signals[axes_[axis].target];
     order.target = std::llround((goal.position - target.offset) / target.scale);
   }
   order.fastest = larger(order.bounds, bounds(axis, now).value_or(order.bounds));
+  take_points(sent, order, now);
   std::vector<OrderedMotion>& orders = orders_[axis];
   std::erase_if(orders,
                 [&](const OrderedMotion& older) { return end_of(axis, older) + 500ms < now; });
   Time& longest = longest_[axis][number_of(order.sender)];
   longest = std::max(longest, order.timeout + stop_time(order.bounds, order.fastest));
   orders.push_back(order);
+}
+
+/// A missing beat delays a stream by a period. The points that are left may take twice their time,
+/// and those before may have taken a tenth more.
+void MotionOrders::take_points(const SentMotion& sent, OrderedMotion& order,
+                               Time now) const noexcept {
+  if (order.stream != sent.command.id || order.sender != sent.sender) return;
+  const Time elapsed = now - order.sent;
+  const Time left = std::max(Time{}, sent.points_until - elapsed);
+  order.points_end = now + longest_way + 2 * left + elapsed / 10 +
+                     stop_time(order.bounds, order.fastest) +
+                     cycles_to_the_wire * plan_.cycle.period;
 }
 
 MotionBounds MotionOrders::bounds_of(const motion_goal_t& goal, std::size_t axis) const noexcept {
@@ -134,16 +153,19 @@ Time MotionOrders::latest_begin(const OrderedMotion& order) const noexcept {
 }
 
 Time MotionOrders::end_of(std::size_t axis, const OrderedMotion& order) const noexcept {
-  const Time last = order.target ? heard(order.sender) : named_[axis][number_of(order.sender)];
+  const bool is_jog = !order.target && !order.follows;
+  const Time last = is_jog ? named_[axis][number_of(order.sender)] : heard(order.sender);
   const Time silent = last + order.timeout + stop_time(order.bounds, order.fastest) +
                       cycles_to_the_wire * plan_.cycle.period;
-  return std::min(silent, order.ended);
+  return std::min({silent, order.ended, order.points_end});
 }
 
-/// An axis that waits for others may move by less than a count in each second.
+/// An axis that waits for others may move by less than a count in each second. One that follows
+/// moves again when its leader does.
 void MotionOrders::stood(std::size_t axis, Time since, Time now) {
   std::erase_if(orders_[axis], [&](const OrderedMotion& order) {
-    return latest_begin(order) < since && (!order.creeps || now - since > longest_creep);
+    return !order.follows && latest_begin(order) < since &&
+           (!order.creeps || now - since > longest_creep);
   });
 }
 

@@ -20,14 +20,17 @@ struct MotionBounds {
   double jerk = 0;
 };
 
-/// A message about motions that a program has sent.
+/// A message about motions that a program has sent. A motion_gear_t has the kind "gear" here; the
+/// first message of a stream has the kind "stream", with the end of its path as the position, and
+/// the others have the kind "points".
 struct SentMotion {
   const motion_command_t& command;
   SenderBit sender = 0;
   Time computed_from{};  ///< SYNC time of the image that the program has seen
+  Time points_until{};   ///< of a stream: time of the newest point, from the begin of the stream on
 };
 
-/// A move or a jog of one axis that a program has sent.
+/// A move, a jog, a gear or a stream of one axis that a program has sent.
 struct OrderedMotion {
   std::uint64_t message = 0;  ///< number of the message; all axes of a group have the same
   std::size_t group_size = 1;
@@ -38,14 +41,17 @@ struct OrderedMotion {
   Time timeout{};
   MotionBounds bounds{};
   MotionBounds fastest{};                ///< of all motions that may have run before
-  std::optional<std::int64_t> target{};  ///< in counts; empty for a jog
+  std::optional<std::int64_t> target{};  ///< in counts; empty for a jog and a gear
+  bool follows = false;                  ///< a gear: it stands while its leader stands
+  std::optional<std::int32_t> stream{};  ///< `id` of a stream; empty for other motions
   Time ended = never;                    ///< it moves nothing after this time
+  Time points_end = never;               ///< the same for a stream that gets no further points
 };
 
 /// Knows from the messages of the programs which motions may run at this moment. A motion may run
 /// while its sender was heard within the timeout, and then for as long as its stop takes. For a
 /// jog, only the messages count that name its axis. The answers are upper limits: a message may
-/// have been refused.
+/// have been refused, and a gear may have been replaced.
 class MotionOrders {
  public:
   /// So long after it was sent, a motion has begun, or it never does: messages are not slower, and
@@ -82,7 +88,9 @@ class MotionOrders {
   Time newest(std::size_t axis) const noexcept {
     return orders_[axis].empty() ? Time{} : orders_[axis].back().sent;
   }
-  std::uint64_t motions() const noexcept { return motions_; }  ///< moves and jogs
+  std::uint64_t motions() const noexcept { return motions_; }  ///< moves, jogs and gears
+  std::uint64_t gears() const noexcept { return gears_; }
+  std::uint64_t streams() const noexcept { return streams_; }
 
  private:
   /// `limits:` of one axis, in counts and seconds; 0 where there is none.
@@ -90,6 +98,7 @@ class MotionOrders {
   static constexpr std::size_t most_senders = 32;
 
   void add(const SentMotion& sent, const motion_goal_t& goal, std::size_t axis, Time now);
+  void take_points(const SentMotion& sent, OrderedMotion& order, Time now) const noexcept;
   MotionBounds bounds_of(const motion_goal_t& goal, std::size_t axis) const noexcept;
   /// `axis` is that of the order.
   Time end_of(std::size_t axis, const OrderedMotion& order) const noexcept;
@@ -105,6 +114,8 @@ class MotionOrders {
   std::vector<std::array<Time, most_senders>> named_;  // by axis: a message that renews its jog
   std::uint64_t messages_ = 0;
   std::uint64_t motions_ = 0;
+  std::uint64_t gears_ = 0;
+  std::uint64_t streams_ = 0;
 };
 
 }  // namespace takt::soak
