@@ -42,7 +42,9 @@ bool AxisMotions::outlives_gap(std::uint8_t axis, CycleNumber cycle) const noexc
 }
 
 void AxisMotions::abandon_all(StopCause cause) noexcept {
-  for (AxisRunner& runner : runners_) runner.abandon({.cause = cause});
+  for (std::size_t i = 0; i < runners_.size(); ++i) {
+    runners_[i].abandon({.cause = cause, .axis = static_cast<std::uint8_t>(i)});
+  }
 }
 
 void AxisMotions::stop_all(StopCause cause) noexcept {

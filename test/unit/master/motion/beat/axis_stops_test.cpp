@@ -252,6 +252,7 @@ TEST(MotionStops, AxesWhoseMotionsEndAtOnceAreKeptAliveWhileTheirSenderIsAlive) 
   }
   EXPECT_EQ(plant.last[0].stop.cause, StopCause::none);
   EXPECT_EQ(plant.last[1].stop.cause, StopCause::no_sync);
+  EXPECT_EQ(plant.last[1].stop.axis, 1) << "no other axis is the cause";
   EXPECT_TRUE(plant.motions.outlives_gap(0, plant.cycle + 99));
   EXPECT_FALSE(plant.motions.outlives_gap(0, plant.cycle + 100)) << "its sender is silent";
 }
