@@ -89,6 +89,17 @@ Done Axes::gear(const Gear& gear, const MotionBounds& bounds) {
 Done Axes::wait_locked(std::chrono::nanoseconds longest) {
   return state_->speed ? state_->no_position() : state_->wait_locked(longest);
 }
+
+Done Axes::begin_stream(const MotionBounds& bounds) {
+  return state_->speed ? state_->no_position() : state_->begin_stream(bounds);
+}
+
+Done Axes::stream(std::span<const PathPoint> points) {
+  return state_->speed ? state_->no_position() : state_->stream(points);
+}
+
+double Axes::stream_left() const { return state_->speed ? 0.0 : state_->stream_left(); }
+
 bool Axes::locked() const { return !state_->speed && state_->locked(); }
 
 Eigen::VectorXd Axes::phase_errors() const {

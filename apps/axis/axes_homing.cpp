@@ -144,7 +144,7 @@ std::string Axes::State::trouble_of(HomingRun& run) {
   const std::int64_t cycle = group.input().cycle();
   const std::int64_t sent = group.input().values()[*known.signals(run.axis).controlword];
   if (!run.started && (sent & start_bit) != 0) run.started = cycle;
-  if (!run.started || cycle < *run.started + settled_cycles) {
+  if (!run.started || group.motion_cycle(run.axis) < *run.started + settled_cycles) {
     run.moved = now;
     return {};
   }

@@ -60,6 +60,10 @@ std::vector<motion_goal_t> Axes::State::goals_within(const MotionBounds& bounds)
 
 Done Axes::State::wait_for_begin(const MotionBounds& bounds) {
   jog_goes_on_ = false;
+  if (stream_ && stream_->begun && stream_goes_on()) {
+    return obstacle(Obstacle::Kind::blocked, "the axes follow a stream: call wait() or stop()");
+  }
+  stream_.reset();
   for (const Eigen::VectorXd* bound :
        {&bounds.velocity, &bounds.acceleration, &bounds.jerk, &bounds.following_error}) {
     if (bound->size() <= 1 || bound->size() == size()) continue;
@@ -128,14 +132,16 @@ Done Axes::State::jog(const Values& velocities, const MotionBounds& bounds) {
 }
 
 Done Axes::State::wait(nanoseconds longest) {
-  const auto over = [this] {
-    const Course now = course();
-    const bool waits = now == Course::unanswered && Clock::now() - motion_begin_ < answer_time;
-    return !waits && now != Course::runs;
-  };
-  const auto waited = wait_until(over, longest);
+  finish_stream();
+  const auto waited = wait_until([this] { return !is_under_way(course()); }, longest);
   if (!waited) return obstacle(Obstacle::Kind::time_over, "the axes still move");
+  stream_.reset();
   return *waited ? ended() : *waited;
+}
+
+bool Axes::State::is_under_way(Course course) const {
+  const bool waits = course == Course::unanswered && Clock::now() - motion_begin_ < answer_time;
+  return waits || course == Course::runs;
 }
 
 Axes::State::Course Axes::State::course_of(Index axis) const {
@@ -149,22 +155,23 @@ Axes::State::Course Axes::State::course_of(Index axis) const {
   return motion->outcome == outcome_refused ? Course::refused : Course::replaced;
 }
 
-/// How all axes stand: an answer that one of them waits for comes before the others.
+/// How all axes stand: an answer that one of them waits for comes before the others. taktd also
+/// refuses points of a stream that runs, and copies of points when it is over.
 Axes::State::Course Axes::State::course() const {
   if (!has_motion_) return Course::none;
-  const std::string refusal = fmt::format("motion {} of '{}'", id_, group.sender());
-  if (!event_text("motion_refused", refusal).empty()) return Course::refused;
-  Course worst = Course::done;
+  Course all_axes = Course::done;
   for (const Index axis : axes) {
     const Course one = course_of(axis);
-    if (one == Course::unanswered) return one;
-    if (one == Course::runs || worst == Course::runs) {
-      worst = Course::runs;
-    } else {
-      worst = std::max(worst, one);
+    if (one == Course::unanswered) {
+      all_axes = one;
+      break;
     }
+    const bool runs = one == Course::runs || all_axes == Course::runs;
+    all_axes = runs ? Course::runs : std::max(all_axes, one);
   }
-  return worst;
+  if (all_axes != Course::unanswered && all_axes != Course::runs) return all_axes;
+  const std::string refusal = fmt::format("motion {} of '{}'", id_, group.sender());
+  return event_text("motion_refused", refusal).empty() ? all_axes : Course::refused;
 }
 
 /// Returns what the events and the drives say about the end of the newest motion.
@@ -217,6 +224,7 @@ void Axes::State::send_stop() {
 
 Done Axes::State::stop() {
   jog_goes_on_ = false;
+  stream_.reset();
   if (sending_ == Sending::nothing || (!has_motion_ && !moving())) return {};
   // taktd refuses a stop from an old image, so the messages that wait come first.
   const Done heard = step(Interruption::ignored);

@@ -140,6 +140,7 @@ Done Axes::State::step(Interruption interruption) {
     } else if (sending_ == Sending::controls) {
       group.send_controls(axes);
     }
+    if (stream_) serve_stream();
   }
   keep_alive();
   const auto silence = now - last_image_;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/axis/speed_drives.hpp"
+#include "apps/axis/stream/stream_buffer.hpp"
 
 namespace takt {
 
@@ -19,9 +20,9 @@ inline std::unexpected<Obstacle> obstacle(Obstacle::Kind kind, std::string text)
   return std::unexpected{Obstacle{.kind = kind, .text = std::move(text)}};
 }
 
-/// What an Axes knows and does. Its code is in six files: waiting (axes_state.cpp), the states of
-/// the drives (axes_drives.cpp), homing (axes_homing.cpp), motions (axes_motions.cpp), gears
-/// (axes_gear.cpp) and speed axes (axes_speed.cpp).
+/// What an Axes knows and does. Its code is in seven files: waiting (axes_state.cpp), the states of
+/// the drives (axes_drives.cpp), homing (axes_homing.cpp), motions (axes_motions.cpp), streams
+/// (axes_stream.cpp), gears (axes_gear.cpp) and speed axes (axes_speed.cpp).
 class Axes::State {
  public:
   using Clock = std::chrono::steady_clock;
@@ -50,6 +51,9 @@ class Axes::State {
   Done begin(const std::string& kind, const Values& values, const MotionBounds& bounds);
   Done gear(const Gear& gear, const MotionBounds& bounds);
   Done wait_locked(std::chrono::nanoseconds longest);
+  Done begin_stream(const MotionBounds& bounds);
+  Done stream(std::span<const PathPoint> points);
+  double stream_left() const;
   bool locked() const;
   Done jog(const Values& velocities, const MotionBounds& bounds);
   Done wait(std::chrono::nanoseconds longest);
@@ -88,6 +92,12 @@ class Axes::State {
   enum class Interruption : std::uint8_t { obeyed, ignored };
   /// How the newest motion stands.
   enum class Course : std::uint8_t { none, unanswered, runs, done, refused, stopped, replaced };
+  /// A stream from begin_stream() on.
+  struct Stream {
+    StreamBuffer buffer;
+    std::vector<motion_goal_t> goals;
+    bool begun = false;  ///< its first points were sent
+  };
   using Condition = std::function<bool()>;
   using AxisCondition = std::function<bool(Index)>;
 
@@ -137,6 +147,13 @@ class Axes::State {
   /// Waits until taktd has answered a motion that goes on. If it does not go on, returns why.
   Done wait_for_answer();
   Course course() const;
+  /// Returns true if a motion runs, or if taktd may still answer it.
+  bool is_under_way(Course course) const;
+  Done give_points(std::span<const PathPoint> points);
+  void finish_stream();
+  /// Sends the points that are due.
+  void serve_stream();
+  bool stream_goes_on() const;
   Course course_of(Index axis) const;
   std::string reason(Course course) const;
   Done ended();
@@ -146,10 +163,11 @@ class Axes::State {
 
   Sending sending_ = Sending::nothing;
   DriveMode mode_ = DriveMode::cyclic_position;
-  std::int32_t id_ = 0;       // of the newest motion
-  bool has_motion_ = false;   // false before the first motion, and after a stop
-  bool jog_goes_on_ = false;  // the newest motion is a jog, and no call has ended it
-  std::int64_t session_ = 0;  // of the layout in which the axes were found
+  std::int32_t id_ = 0;           // of the newest motion
+  bool has_motion_ = false;       // false before the first motion, and after a stop
+  bool jog_goes_on_ = false;      // the newest motion is a jog, and no call has ended it
+  std::optional<Stream> stream_;  // until it has ended
+  std::int64_t session_ = 0;      // of the layout in which the axes were found
   Clock::time_point motion_begin_{};
   std::int64_t stop_cycle_ = -1;   // of the image from which the newest stop was sent
   Clock::time_point last_sent_{};  // the newest sign of life

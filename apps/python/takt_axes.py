@@ -1,4 +1,4 @@
-"""Axes of a bus whose motions taktd runs: enable, move, jog, gear, stop. This program may be late.
+"""Axes of a bus whose motions taktd runs: enable, move, jog, gear, stream, stop. This program may be late.
 
     from takt_axes import Axes
 
@@ -36,10 +36,11 @@ import time
 from collections.abc import Callable
 
 import lcm
-from takt import (command_t, event_t, image_t, layout_t, motion_command_t, motion_gear_t, motion_goal_t, motion_t,
-                  speed_axes_t, status_t)
+from takt import (command_t, event_t, image_t, layout_t, motion_command_t, motion_gear_t, motion_goal_t, motion_stream_t,
+                  motion_t, speed_axes_t, status_t)
 
 from takt_speed import FAULT, OFF, READY, STANDING, SpeedAxis, SpeedDrives
+from takt_stream import StreamBuffer
 
 SCHEMA = 2  # of the LCM messages that this module knows
 CONTROLWORD, STATUSWORD, MODE, MODE_DISPLAY, POSITION, VELOCITY = 0x6040, 0x6041, 0x6060, 0x6061, 0x6064, 0x606C
@@ -137,6 +138,7 @@ class Axes:
         self._has_motion, self._begun = False, 0.0
         self._may_move = False  # something was begun, and no stop since then has led to standing axes
         self._jog_wanted = False  # only then signs of life name the axes, which renews a jog
+        self._stream = None  # the StreamBuffer of a stream until it has ended
         self._stop_cycle, self._stop_sent = -1, 0.0
         self._axes, self._values, self._events, self._nodes = [], {}, [], {}
         self._session, self._hash, self._cycle, self._parts = None, None, -1, set()
@@ -408,16 +410,61 @@ class Axes:
         if not self.locked:
             self._raise_end()
 
+    def begin_stream(self, **limits: float | list[float]) -> None:
+        """Prepares a stream: a path of points that this program computes in advance. The axes must be at rest, and nothing
+        moves yet."""
+        goals = self._ready_goals("stream", [0.0] * len(self._axes), limits)
+        if self.moving:
+            raise Obstacle("blocked", "the axes move: a stream begins at rest")
+        self._stream = StreamBuffer(self.commanded_positions, self._period, goals)
+
+    def stream(self, *points: tuple) -> None:
+        """Gives further points of the stream: (time, positions, velocities, accelerations) with one number for each axis, and
+        the time in seconds since the begin of the stream. Without accelerations the curve to the point is a cubic one. Points
+        are sent about 0.4 s, and at most 60 points, before the axes reach them; the call returns when there is room for more.
+        The axes begin when the room is full, or with wait(). A point at time 0 states where the axes stand; without one,
+        point 0 is their commanded position. Two points are 4 s apart at most. taktd checks the whole path against the limits,
+        the range and the possibility of a stop. If the call fails, it stops the axes.
+
+        wait() returns when the axes are at rest at the last point. If the points end while the axes move, or if this program
+        is silent, the axes stop along their limits, and the next call says so."""
+        try:
+            self._needs_position()
+            if not self._stream:
+                raise Obstacle("wrong use", "no stream has begun, or it has ended: call begin_stream() first")
+            for point in points:
+                wrong = self._stream.add(*point)
+                if wrong:
+                    raise Obstacle("wrong use", wrong)
+            self._wait(lambda: not self._stream_goes_on() or self._stream.has_room(), float("inf"))
+            if not self._stream_goes_on():
+                self._raise_end()
+                raise Obstacle("stopped", "the stream has come to rest at its last point: begin_stream() begins another")
+        except BaseException:
+            self._stream = None
+            if self._commanding and self._may_move:
+                self._stop_now()
+            raise
+
+    @property
+    def stream_left(self) -> float:
+        """Seconds until the axes reach the newest point that the bus thread of taktd has, as taktd has reported last. 0 if no
+        stream runs."""
+        if not self._stream or not self._stream.begun:
+            return 0.0
+        return min(axis.motion.time_left if axis.motion and axis.motion.id == self._number else 0.0 for axis in self._axes)
+
     def wait(self, seconds: float = float("inf")) -> None:
         """Waits until the newest motion has ended: a move, when the commanded positions are at its target. Does not stop it
         when `seconds` are over. Speed axes run until something stops them."""
         if self._speed:
             return self._wait_speed(seconds)
-        def over():
-            course = self._course()
-            return course != "runs" and (course != "unanswered" or time.monotonic() > self._begun + ANSWER_TIME)
-        if not self._wait(over, seconds):
+        if self._stream:
+            self._stream.starts = True  # with the points that are there
+            self._serve_stream()
+        if not self._wait(lambda: not self._is_under_way(), seconds):
             raise Obstacle("time over", "the axes still move")
+        self._stream = None
         self._raise_end()
 
     def run(self, seconds: float) -> None:
@@ -426,7 +473,7 @@ class Axes:
 
     def stop(self) -> None:
         """Stops the axes along their limits, and returns when taktd reports that their commanded positions stand."""
-        self._jog_wanted = False
+        self._jog_wanted, self._stream = False, None
         if not self._commanding:
             return
         if self._speed:
@@ -630,6 +677,9 @@ class Axes:
         self._needs_position()
         self._jog_wanted = False
         self._check(values)
+        if self._stream and self._stream.begun and self._is_under_way():
+            raise Obstacle("blocked", "the axes follow a stream: call wait() or stop()")
+        self._stream = None
         if not self._enabled:
             raise Obstacle("blocked", f"{', '.join(self.names)}: call enable() first")
         if not self._wait(lambda: self._cycle > self._stop_cycle, self.longest):  # taktd refuses motions from before a stop
@@ -659,14 +709,43 @@ class Axes:
         return goals
 
     def _course(self) -> str:
-        """How the newest motion stands."""
+        """How the newest motion stands. taktd also refuses points of a stream that runs, and copies of points when it is
+        over."""
         if not self._has_motion:
             return "none"
-        if self._event("motion_refused", f"motion {self._number} of '{self.sender}'"):
-            return "refused"
         courses = {self._course_of(axis.motion) for axis in self._axes}
         order = ("unanswered", "runs", "refused", "replaced", "stopped", "done")
-        return next(course for course in order if course in courses)
+        course = next(course for course in order if course in courses)
+        refused = self._event("motion_refused", f"motion {self._number} of '{self.sender}'")
+        return "refused" if refused and course in ("unanswered", "runs") else course
+
+    def _is_under_way(self) -> bool:
+        """The newest motion runs, or taktd may still answer it."""
+        course = self._course()
+        return course == "runs" or course == "unanswered" and time.monotonic() <= self._begun + ANSWER_TIME
+
+    def _stream_goes_on(self) -> bool:
+        return self._stream is not None and (not self._stream.begun or self._is_under_way())
+
+    def _serve_stream(self) -> None:
+        """Sends the points that are due."""
+        stream, axis = self._stream, self._axes[0]
+        if stream.begun and not self._is_under_way():
+            return
+        if stream.begun and axis.motion and axis.motion.id == self._number:
+            stream.observe(axis.motion_cycle, axis.motion.time_left)
+        message = motion_stream_t()
+        message.first_point, message.points = stream.points_due(self._cycle)
+        if not message.points:
+            return
+        if not stream.begun:
+            self._note_begin()
+            stream.begun = True
+        message.id, message.timeout_ms, message.goals = self._number, round(self.timeout * 1000), stream.goals
+        message.num_goals, message.num_points = len(message.goals), len(message.points)
+        self._fill(message)
+        self._link.publish(f"{self.bus}_MOTION_STREAM", message.encode())
+        self._alive_sent = time.monotonic()
 
     def _course_of(self, motion) -> str:
         if motion is None or self._number not in (motion.id, motion.ended_id):
@@ -738,7 +817,8 @@ class Axes:
                 if time.monotonic() >= end:
                     return False
         except BaseException:
-            self._jog_wanted = False  # who catches it may wait again, which must not renew a jog
+            # Who catches it may wait again, which must not renew a jog, or send points.
+            self._jog_wanted, self._stream = False, None
             if self._speed:
                 self._speed.stop()
             raise
@@ -771,6 +851,8 @@ class Axes:
                 self._command()
         elif self._words is not None and self._cycle != cycle:
             self._command()
+        if self._stream and self._cycle != cycle:
+            self._serve_stream()
 
     def _fill(self, message) -> None:
         self._utime = max(self._utime + 1, int(time.time() * 1e6))  # a move_by needs a later one than each motion before

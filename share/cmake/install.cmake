@@ -9,7 +9,7 @@ install(TARGETS takt taktd takt-follow takt-home takt-jog takt-logic takt-move)
 
 install(PROGRAMS apps/python/axes.py apps/python/first_motion.py apps/python/first_speed.py apps/python/motion.py
         DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
-install(FILES apps/python/envelopes.py apps/python/takt_axes.py apps/python/takt_speed.py
+install(FILES apps/python/envelopes.py apps/python/takt_axes.py apps/python/takt_speed.py apps/python/takt_stream.py
         DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
 install(DIRECTORY share/devices share/eds share/demo DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)
 

@@ -135,8 +135,9 @@ ROOMS = {
 
     "apps/command_line": ("options, numbers, durations and suggestions of all command lines", "eds_parser/report master/lcm"),
     "apps/drive402": ("leads one CiA 402 drive through its states", ""),
+    "apps/axis/stream": ("which points of a stream to send when", ""),
     "apps/axis": ("the axes of a bus over LCM, for applications",
-                  "apps/drive402 master/units master/explain master/lcm master/lcm/link master/lcm/envelope"),
+                  "apps/drive402 apps/axis/stream master/units master/explain master/lcm master/lcm/link master/lcm/envelope"),
     "apps/master": ("the library for programs that contain a master; its bus and its thread are also those of taktd",
                     "eds_parser/report eds_parser/network_file master master/units master/wire master/core master/explain "
                     "master/rt master/rt/exchange master/rt/journal " + LINUX + " " + SIM),

@@ -62,6 +62,37 @@ def as_command(gear):
     return command
 
 
+class Stream:
+    """The points that taktd has; its axes begin LEAD cycles after the first ones, and go from point to point on straight lines."""
+
+    def __init__(self, message, cycle):
+        self.id, self.begin, self.points, self.waiting = message.id, cycle + LEAD, [], []
+        self.nodes = [goal.node for goal in message.goals]
+
+    def add(self, message, cycle):
+        """Returns why it takes not all of the points."""
+        if message.first_point > len(self.points):
+            return f"its point {len(self.points)} is missing: the message begins with {message.first_point}"
+        for point in message.points[len(self.points) - message.first_point:]:
+            if sum(known.time > self.time(cycle) for known in self.points) >= 64:
+                return f"its point {len(self.points)}: 64 points wait already"
+            self.points.append(point)
+        return ""
+
+    def time(self, cycle):
+        return max(0, cycle - self.begin) * PERIOD
+
+    def left(self, cycle):
+        return self.points[-1].time - self.time(cycle)
+
+    def position(self, node, cycle):
+        place, now = self.nodes.index(node), self.time(cycle)
+        before = max((point for point in self.points if point.time <= now), key=lambda point: point.time)
+        after = next((point for point in self.points if point.time > now), before)
+        part = (now - before.time) / (after.time - before.time) if after is not before else 0.0
+        return before.position[place] + part * (after.position[place] - before.position[place])
+
+
 class Daemon:
     """In the place of the modules lcm and time: each wait for messages is a cycle."""
 
@@ -70,7 +101,7 @@ class Daemon:
         self.motions, self.active, self.refuses, self.holder, self.sender = True, False, "", "", ""
         self.commands, self.signs, self.released, self.emcy, self.each_cycle = [], 0, 0, 0, lambda daemon: None
         self.loses, self.mute_until, self.refuses_signs = lambda command: False, 0, False
-        self.gears = []
+        self.gears, self.streams, self.messages = [], [], 0  # messages of streams
         self.delay, self.late = 0, []  # of motion commands on their way here, in cycles
 
     def LCM(self):
@@ -96,11 +127,29 @@ class Daemon:
             self.gears.append(takt.motion_gear_t.decode(data))
             self.late.append((self.cycle + self.delay, as_command(self.gears[-1])))
             self.take_due()
+        elif channel == "LIFT_MOTION_STREAM":
+            self.messages += 1
+            message = takt.motion_stream_t.decode(data)
+            if not self.loses(message):
+                self.take_points(message)
         elif self.motions:
             self.late.append((self.cycle + self.delay, takt.motion_command_t.decode(data)))
             self.take_due()
         else:
             self.say("motion_refused", "taktd runs no motions: it was started with --no-motions")
+
+    def take_points(self, message):
+        stream = self.streams[-1] if self.streams and self.streams[-1].id == message.id else None
+        if not stream and message.first_point:
+            return self.refuse(message, "its stream does not run, and a new one begins with point 0")
+        if not stream:
+            stream = Stream(message, self.cycle)
+            self.streams.append(stream)
+            for drive in self.drives:
+                drive.motion.id = message.id if NAMES[drive.node] in stream.nodes else drive.motion.id
+        why = self.refuses or stream.add(message, self.cycle)
+        if why:
+            self.refuse(message, why)
 
     def take_due(self):
         while self.late and self.late[0][0] <= self.cycle:
@@ -175,7 +224,16 @@ class Daemon:
             drive.slowing -= 1
             if not drive.slowing:
                 drive.end(2)
-        if motion.id:
+        motion.time_left = 0.0
+        if motion.id and self.streams and self.streams[-1].id == motion.id:
+            stream = self.streams[-1]
+            drive.position, motion.time_left = stream.position(NAMES[drive.node], self.cycle), max(0.0, stream.left(self.cycle))
+            if not motion.time_left and any(stream.points[-1].velocity):
+                self.say("motion_stopped", f"motion {motion.id} has stopped because of {NAMES[drive.node]}: the points of its "
+                                           "stream have ended while it moved")
+            if not motion.time_left:
+                drive.end(2 if any(stream.points[-1].velocity) else 1)
+        elif motion.id:
             left = drive.target - drive.position
             drive.position += math.copysign(0.001 if drive.velocity else min(abs(left), STEP), drive.velocity or left)
             if not drive.velocity and drive.position == drive.target:
@@ -497,6 +555,83 @@ check("two objects of one program have different names", other.sender != axes.se
       other.sender.split()[:2] == axes.sender.split()[:2], other.sender)
 axes.disable()
 check("nor does one after disable()", "call enable() first" in obstacle(axes.jog, 1.0)[1])
+
+
+def path(end, step):
+    """Points of a path that is at rest at 0 s and at 1 s, 2 s ..."""
+    for number in range(1, round(end / step) + 1):
+        angle = 2 * math.pi * number * step
+        velocity = 2 * math.pi * math.sin(angle)
+        yield number * step, [1 - math.cos(angle)] * 2, [velocity if abs(velocity) > 1e-9 else 0.0] * 2
+
+
+def streams(points, loses=None):
+    """Enabled axes that are given points, two at a time."""
+    daemon, axes = on_a_bus()
+    daemon.loses = loses or daemon.loses
+    axes.enable()
+    axes.begin_stream(velocity=3)
+    points = list(points)
+    for place in range(0, len(points), 2):
+        axes.stream(*points[place:place + 2])
+    return daemon, axes
+
+
+daemon, axes = streams(path(2.0, 0.02))
+check("a program is ahead of its stream", 0.3 < axes.stream_left < 0.5 and axes.moving, axes.stream_left)
+axes.wait()
+check("a stream ends in order", axes.commanded_positions == [0.0, 0.0] and not axes.moving and axes.stream_left == 0.0)
+check("all points have come once", len(daemon.streams[0].points) == 101 and daemon.messages < 2.2 / 0.02, daemon.messages)
+check("nothing was refused", not axes._events, axes._events)
+lost = iter(range(1000))
+daemon, axes = streams(path(2.0, 0.02), lambda message: not isinstance(message, takt.motion_command_t) and next(lost) % 3 == 0)
+axes.wait()
+check("a stream outlives messages that are lost", len(daemon.streams[0].points) == 101 and not axes._events)
+daemon, axes = streams(path(1.0, 0.004))
+axes.wait()
+check("many points do not flood taktd", len(daemon.streams[0].points) == 251 and not axes._events, axes._events)
+daemon, axes = on_a_bus()
+axes.enable()
+axes.begin_stream()
+axes.stream((0.3, [0.01, 0.02], [0, 0], [0, 0]))
+axes.run(0.1)
+check("few points wait for more", not daemon.messages)
+axes.wait()
+check("or for wait()", axes.commanded_positions == [0.01, 0.02])
+daemon, axes = streams(path(0.8, 0.02))
+for _ in range(500):
+    daemon.pass_cycle()
+kind, text = obstacle(axes.stream, (0.82, [0, 0], [0, 0]))
+check("points that have ended are named", kind == "stopped" and "the points of its stream have ended while it moved" in text, (kind, text))
+messages = daemon.messages
+kind, text = obstacle(axes.stream, (0.84, [0, 0], [0, 0]))
+check("then no points are taken", kind == "wrong use" and "begin_stream()" in text, (kind, text))
+axes.run(0.5)
+check("nor sent", daemon.messages == messages)
+daemon, axes = streams(path(0.8, 0.02))
+daemon.refuses = "its point 41: the axis would leave its range of positions"
+kind, text = obstacle(lambda: (axes.stream((0.82, [9, 9], [0, 0])), axes.wait()))
+check("a refused point is named", kind == "refused" and "its point 41" in text, (kind, text))
+for wrong in ((0.1, [0], [0, 0]), (-1.0, [0, 0], [0, 0]), (5.0, [0, 0], [0, 0]), (math.nan, [0, 0], [0, 0])):
+    daemon, axes = on_a_bus()
+    axes.enable()
+    axes.begin_stream()
+    kind, text = obstacle(axes.stream, wrong)
+    check("a wrong point is named", kind == "wrong use" and "point 1 of the stream" in text and not daemon.messages, (kind, text))
+daemon, axes = streams(path(0.8, 0.02))
+check("no other motion begins during a stream", "follow a stream: call wait() or stop()" in obstacle(axes.move, 0, 0)[1])
+daemon.each_cycle = interrupt
+try:
+    axes.run(1.0)
+except KeyboardInterrupt:
+    pass
+messages = daemon.messages
+axes.run(2.0)
+check("after an exception no points are sent", daemon.messages == messages and not axes.moving)
+daemon.each_cycle = lambda daemon: None
+axes.begin_move(50.0, 50.0)
+axes.run(0.05)
+check("a stream begins at rest", "a stream begins at rest" in obstacle(axes.begin_stream)[1])
 
 
 class Homing:

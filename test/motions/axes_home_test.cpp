@@ -4,46 +4,16 @@
 #include <gtest/gtest.h>
 #include <takt/motion.hpp>
 
-#include "test/motions/motion_bus.hpp"
+#include "test/motions/link_in_virtual_time.hpp"
 
 namespace takt {
 namespace {
 
 using namespace std::chrono_literals;
+using test::LinkInVirtualTime;
 using test::MotionBus;
 using testing::HasSubstr;
 using Kind = Obstacle::Kind;
-
-/// The end of a link on which an application listens. A cycle passes each time that it looks for
-/// messages.
-class LinkInVirtualTime final : public Transport {
- public:
-  explicit LinkInVirtualTime(MotionBus& bus) : bus_{bus} {
-    bus_.lcm.listener = [this](const std::string& channel, std::span<const std::byte> data) {
-      arriving_.emplace_back(channel, std::vector<std::byte>{data.begin(), data.end()});
-    };
-  }
-  ~LinkInVirtualTime() override { bus_.lcm.listener = {}; }
-  LinkInVirtualTime(const LinkInVirtualTime&) = delete;
-  LinkInVirtualTime& operator=(const LinkInVirtualTime&) = delete;
-
-  bool publish(const std::string& channel, std::span<const std::byte> data) override {
-    bus_.lcm.waiting.emplace_back(channel, std::vector<std::byte>{data.begin(), data.end()});
-    return true;
-  }
-  void subscribe(const std::string&) override {}
-  void serve(const MessageHandler& handler) override {
-    bus_.cycle();
-    for (const auto& [channel, data] : std::exchange(arriving_, {})) handler(channel, data);
-  }
-  void watch(std::vector<pollfd>&) const override {}
-  bool good() const override { return true; }
-  std::string url() const override { return {}; }
-
- private:
-  MotionBus& bus_;
-  std::deque<std::pair<std::string, std::vector<std::byte>>> arriving_;
-};
 
 class AxesHome : public ::testing::Test {
  protected:

@@ -15,6 +15,7 @@
 #include <takt/lcm.hpp>
 #include <takt/motion_command_t.hpp>
 #include <takt/motion_gear_t.hpp>
+#include <takt/motion_stream_t.hpp>
 #include <takt/node_status_t.hpp>
 #include <takt/speed_axis_t.hpp>
 #include <vector>
@@ -99,6 +100,9 @@ class AxisGroup {
   /// Sends a gear in the same way. The caller fills in the leader, the ratios, `id`, `phase`,
   /// `timeout_ms` and `goals`.
   bool send_gear(motion_gear_t& gear);
+  /// Sends points of a stream in the same way. The caller fills in `id`, `timeout_ms`, `goals`,
+  /// `first_point` and `points`.
+  bool send_stream(motion_stream_t& stream);
 
   /// Sends these values of outputs, in the name of this group and from its newest image. The caller
   /// fills in `signals` and `values`. Returns false if LCM did not take the message. Axes
@@ -124,6 +128,8 @@ class AxisGroup {
   /// unit of the target position. Empty if this run of taktd has reported none: it does so from the
   /// first command for motions on.
   std::optional<axis_motion_t> motion(AxisControl::Index axis) const;
+  /// Returns the cycle of what motion() returns for this axis, or -1.
+  std::int64_t motion_cycle(AxisControl::Index axis) const;
   /// Returns the newest status of the node of this axis. Empty before the first status_t.
   std::optional<node_status_t> node_status(AxisControl::Index axis) const;
   /// Returns the newest status of the node with this node-ID. Empty before the first status_t.

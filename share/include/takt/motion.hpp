@@ -1,14 +1,15 @@
 #pragma once
 /// @file
-/// Motions of CiA 402 axes that taktd runs: enable, move, jog, gear, stop. The bus thread of taktd
-/// gives the drives their set-points, so the program may be late. Inverters obey the same calls, as
-/// axes with a speed and without a position.
+/// Motions of CiA 402 axes that taktd runs: enable, move, jog, gear, stream, stop. The bus thread
+/// of taktd gives the drives their set-points, so the program may be late. Inverters obey the same
+/// calls, as axes with a speed and without a position.
 #include <Eigen/Core>
 #include <chrono>
 #include <cstdint>
 #include <expected>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <takt/axis.hpp>
 #include <takt/drive402.hpp>
@@ -66,6 +67,15 @@ struct MotionBounds {
   Eigen::VectorXd acceleration = {};     ///< unit/s^2
   Eigen::VectorXd jerk = {};             ///< unit/s^3
   Eigen::VectorXd following_error = {};  ///< unit; the axes stop above it. None or 0: not watched
+};
+
+/// A state through which a stream leads the axes. See Axes::stream(). Vectors have one value for
+/// each axis, in its unit.
+struct PathPoint {
+  double time = 0.0;             ///< s since the begin of the stream; later than the point before
+  Eigen::VectorXd position;      ///< unit
+  Eigen::VectorXd velocity;      ///< unit/s
+  Eigen::VectorXd acceleration;  ///< unit/s^2. None: the curve to this point is a cubic one
 };
 
 /// A leader that axes follow, and how. See Axes::gear(). Vectors have one value for each axis, or
@@ -174,6 +184,23 @@ class Axes {
   /// state of the leader within their limits, and follow it until stop(), until another motion
   /// begins, or until this program is silent. move() takes over without a stop. See wait_locked().
   Done gear(const Gear& gear, const MotionBounds& bounds = {});
+  /// Prepares a stream: a path of points that this program computes in advance. The axes must be
+  /// at rest, and nothing moves yet.
+  Done begin_stream(const MotionBounds& bounds = {});
+  /// Gives further points of the stream. They are sent about 0.4 s, and at most 60 points, before
+  /// the axes reach them; the call returns when there is room for more. The axes begin when the
+  /// room is full, or with wait(). A point at time 0 states where the axes stand; without one,
+  /// point 0 is their commanded position. Two points are 4 s apart at most. taktd checks the whole
+  /// path against the bounds, the range and the possibility of a stop. If the call fails, it stops
+  /// the axes.
+  ///
+  /// wait() returns when the axes are at rest at the last point. If the points end while the axes
+  /// move, or if this program is silent, the axes stop along their limits, and the next call says
+  /// so.
+  Done stream(std::span<const PathPoint> points);
+  /// Returns the seconds until the axes reach the newest point that the bus thread of taktd has, as
+  /// taktd has reported last. 0 if no stream runs.
+  double stream_left() const;
   /// Waits until all axes have the positions that their gears want.
   Done wait_locked(std::chrono::nanoseconds longest);
   /// Stops the axes along their limits, and waits until they stand.

@@ -1,0 +1,112 @@
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <takt/axis.hpp>
+#include <takt/motion_t.hpp>
+#include <takt/speed_axes_t.hpp>
+#include <utility>
+#include <vector>
+
+#include "apps/axis/node_holders.hpp"
+#include "master/lcm/envelope/envelope.hpp"
+#include "master/lcm/messages.hpp"
+
+namespace takt {
+
+/// What an AxisGroup knows of its bus. It takes messages in axis_group_input.cpp.
+class AxisGroup::State {
+ public:
+  using Clock = std::chrono::steady_clock;
+  /// What taktd has reported about an axis, and in which cycle.
+  struct Motion {
+    axis_motion_t axis;
+    std::int64_t cycle;
+  };
+
+  State(std::unique_ptr<Transport> transport, AxisGroupOptions given);
+
+  void serve();
+  void take(std::string_view channel, std::span<const std::byte> data);
+  void listen_to(std::string_view name);
+  void take_image(std::span<const std::byte> data);
+  void take_layout(std::span<const std::byte> data);
+  void take_status(std::span<const std::byte> data);
+  void take_speed_axes(std::span<const std::byte> data);
+  void use_speed_axes();
+  void take_motion(std::span<const std::byte> data);
+  void report_schema(std::int16_t schema);
+  bool publish(command_t& command);
+  template <class Message>
+  bool send(const std::string& channel, Message& message);
+  /// The same for a message about motions, from the newest image.
+  template <class Message>
+  bool send_goals(const std::string& channel, Message& message);
+  const Motion* motion_of(const AxisSignals& signals) const;
+  std::chrono::nanoseconds age() const { return Clock::now() - arrival; }
+  std::chrono::nanoseconds period() const { return std::chrono::nanoseconds{input.period_ns()}; }
+  bool is_stale() const { return input.has_image() && age() > options.stale_cycles * period(); }
+
+  std::unique_ptr<Transport> lcm;
+  AxisGroupOptions options;
+  std::int64_t instance;
+  std::string sender;
+  std::string bus;
+  std::string heard;  // first bus whose layout arrived; only if no bus was configured
+  std::string image_channel;
+  std::string layout_channel;
+  std::string speed_axes_channel;
+  std::string command_channel;
+  std::string secured_channel;
+  std::string motion_channel;
+  std::string motion_command_channel;
+  std::string motion_gear_channel;
+  std::string motion_stream_channel;
+  std::string event_channel;
+  std::string status_channel;
+  ImageInput input;
+  AxisControl axes;
+  NodeHolders holders;
+  std::map<std::int16_t, node_status_t> nodes;                     // by node-ID
+  std::map<std::pair<std::int16_t, std::int8_t>, Motion> motions;  // by node-ID and axis
+  std::vector<speed_axis_t> speed_axes;                            // of the layout
+  std::vector<std::optional<speed_axes_t>> speed_parts;  // of the newest messages about them
+  bool fresh = false;
+  bool new_layout = false;
+  bool reported_stale = false;
+  bool reported_schema = false;
+  bool commands = false;  // something was sent since the last release
+  Clock::time_point arrival{};
+  std::optional<EnvelopeSeal> seal;  // empty if there is no key
+  std::vector<event_t> events;
+  std::vector<std::byte> buffer;
+};
+
+template <class Message>
+bool AxisGroup::State::send(const std::string& channel, Message& message) {
+  using std::chrono::microseconds;
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  message.utime = std::chrono::duration_cast<microseconds>(now).count();
+  message.instance = instance;
+  message.sender = sender;
+  const Bytes bytes = encode(message, buffer);
+  if (!seal) return lcm->publish(channel, bytes);
+  return lcm->publish(secured_channel, seal->seal(channel, bytes, message.session, now));
+}
+
+template <class Message>
+bool AxisGroup::State::send_goals(const std::string& channel, Message& message) {
+  commands = true;
+  message.schema = message_schema;
+  message.session = input.session();
+  message.cycle = input.cycle();
+  message.num_goals = static_cast<std::int32_t>(message.goals.size());
+  return send(channel, message);
+}
+
+}  // namespace takt
