@@ -171,19 +171,31 @@ class MotionBus final : public AxesInVirtualTime {
     lcm.send(bridge.channels().motion_stream, message);
   }
   void keep_alive() { send(command("alive", 0)); }
-  /// A command_t of one controlword.
-  void send_controlword(std::size_t axis, std::int64_t word, std::int32_t time_to_live = 0) {
+  /// A command_t of these outputs of an axis, by the index of their objects.
+  void send_outputs(std::size_t axis,
+                    const std::vector<std::pair<std::uint16_t, std::int64_t>>& outputs,
+                    std::int32_t time_to_live = 0) {
     command_t message{};
     message.schema = message_schema;
     message.session = session;
     message.instance = 5;
     message.sender = "test";
     message.cycle = lcm.cycle;
-    message.signals = {static_cast<std::int32_t>(*axes[axis].controlword)};
-    message.values = {word};
+    const auto& signals = network.plan.layout.signals;
+    for (std::size_t i = network.plan.layout.inputs; i < signals.size(); ++i) {
+      for (const auto& [index, value] : outputs) {
+        if (signals[i].node_index != axes[axis].node_index) continue;
+        if (signals[i].object.index != index) continue;
+        message.signals.push_back(static_cast<std::int32_t>(i));
+        message.values.push_back(value);
+      }
+    }
     message.time_to_live = time_to_live;
-    message.num_values = 1;
+    message.num_values = static_cast<std::int32_t>(message.values.size());
     lcm.send(bridge.channels().command, message);
+  }
+  void send_controlword(std::size_t axis, std::int64_t word, std::int32_t time_to_live = 0) {
+    send_outputs(axis, {{0x6040, word}}, time_to_live);
   }
   /// The application gives up its nodes.
   void release() {
