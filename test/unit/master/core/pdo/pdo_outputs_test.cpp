@@ -208,8 +208,8 @@ TEST(PdoOutputs, AReleaseDoesNotWaitForAnotherAxisOfItsNode) {
   plan.pdos.rpdos[1].node_index = 0;
   constexpr SignalIndex second_target = 7;
   OutputsRig out{plan};
-  for (const std::size_t word : {0, 1}) out.command(word, 0x000F);
-  for (const std::size_t position : {2, 3}) out.command(position, 5);
+  for (const std::size_t word : {0U, 1U}) out.command(word, 0x000F);
+  for (const std::size_t position : {2U, 3U}) out.command(position, 5);
   out.pack();
   for (std::size_t output = 0; output < 4; ++output) out.command(output, 0, output_released);
   ASSERT_TRUE(out.pdos.outputs().lead(second_target, 6, {.cycle = 1}));
