@@ -14,7 +14,8 @@ using std::chrono::nanoseconds;
 constexpr std::uint16_t start_bit = 0x0010;       // of the controlword, CiA 402-2, homing mode
 constexpr std::uint16_t target_reached = 0x0400;  // of the statusword, as the next one
 constexpr std::uint16_t homing_result = 0x3000;
-/// A run that does not go on for so long was not begun by the drive, or is interrupted.
+/// If the statusword shows no homing for this time, the drive has not begun the run, or has
+/// interrupted it.
 constexpr std::chrono::seconds start_patience{1};
 /// Cycles in which a drive may show words from before a command.
 constexpr std::int64_t settled_cycles = 10;

@@ -16,7 +16,7 @@ constexpr std::chrono::seconds answer_time{2};
 constexpr std::chrono::milliseconds reason_time{100};
 /// Cycles between two stops, until the axes stand.
 constexpr std::int64_t cycles_between_stops = 4;
-/// A motion begins at most so many cycles after its command, or never.
+/// A motion begins at most this number of cycles after its command, or never.
 constexpr std::int64_t longest_begin = 12;
 /// Values of axis_motion_t::state and axis_motion_t::outcome.
 constexpr std::int8_t motion_moves = 2;

@@ -17,7 +17,8 @@ constexpr std::chrono::milliseconds longest_silence{50};
 constexpr int signs_in_timeout = 4;
 /// Longest wait for the speed axes of a layout, which are published once a second.
 constexpr std::chrono::milliseconds layout_time{1500};
-/// The bus is silent if no image comes for so long, for so many periods, and for the timeout.
+/// The bus is silent if no image comes for longer than each of three times: `image_time`,
+/// `image_periods` periods, and the timeout.
 constexpr std::chrono::seconds image_time{2};
 constexpr int image_periods = 20;
 constexpr std::size_t most_kept_events = 64;

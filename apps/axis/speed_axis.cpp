@@ -15,7 +15,7 @@ constexpr std::int8_t reset_by_level = 1;
 constexpr int steps_before_reset = 3;
 /// Longest time for which the set speed changes in one step.
 constexpr double longest_step = 0.05;
-/// A status word that is missing in so many images in a row is unknown.
+/// A status word that is missing in this number of images in a row is unknown.
 constexpr int most_silent_images = 3;
 /// CiA 402-2, 0x6041.
 constexpr unsigned state_bits = 0x6F;

@@ -6,7 +6,7 @@ namespace takt {
 
 inline constexpr int one_line = -1;
 
-/// Returns JSON that is safe for a terminal, in one line or indented by so many spaces a level.
+/// Returns JSON that is safe for a terminal, in one line or indented by `indent` spaces a level.
 /// Everything outside printable ASCII is escaped: control characters (C0, DEL, C1), marks that
 /// change the writing direction, and letters of other scripts. Bytes that are not UTF-8 become
 /// U+FFFD.

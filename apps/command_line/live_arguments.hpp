@@ -24,7 +24,7 @@ struct LiveOptions {
 
 /// Adds the options that choose the daemon and the bus.
 void add_bus_choice(CLI::App& verb, LiveOptions& options);
-/// Adds the options of programs that may need a key.
+/// Adds `--keys` and `--check-images`: the options of programs whose daemon may have a key file.
 void add_key_options(CLI::App& app, std::string& keys, bool& check_images);
 /// Adds both, and `--json`.
 void add_live_options(CLI::App& verb, LiveOptions& options);

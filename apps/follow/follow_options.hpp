@@ -20,7 +20,7 @@ struct FollowOptions {
   double velocity = 0.0;  ///< 0: that of the network file, as for the next two
   double acceleration = 0.0;
   double jerk = 0.0;
-  std::optional<Time> seconds;  ///< follow for so long, then stop
+  std::optional<Time> seconds;  ///< time for which the axis follows
 };
 
 /// Result of reading the command line. If there is an exit code, the program ends with it.

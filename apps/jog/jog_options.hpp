@@ -16,7 +16,7 @@ struct JogOptions {
   double jerk = 0.0;  ///< 0: that of the network file
   Time first = std::chrono::milliseconds{700};
   Time dead_man = std::chrono::milliseconds{250};
-  std::optional<Time> seconds;  ///< jog for so long without a keyboard
+  std::optional<Time> seconds;  ///< duration of a jog without a keyboard
 };
 
 /// Result of reading the command line. If there is an exit code, the program ends with it.

@@ -14,8 +14,8 @@ namespace {
 constexpr std::chrono::milliseconds pause{50};
 /// Time between two stops if no image comes.
 constexpr std::chrono::milliseconds stop_pause{10};
-/// taktd has taken a command after so many images. Its set-points are at most three cycles ahead of
-/// them.
+/// After this number of images, taktd has taken a command. The set-points of taktd are at most
+/// three cycles ahead of the images.
 constexpr int images_to_stop = 20;
 /// The move stops if this program is silent for so long, as its set-points would end.
 constexpr std::int32_t timeout_ms = 1000;

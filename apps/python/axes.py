@@ -66,9 +66,9 @@ DISABLE_TIME = 2.0  # seconds until all axes have to be disabled
 LAYOUT_TIME = 10.0  # seconds until the daemon has to be heard
 IMAGE_TIME = 1  # seconds between two images
 MOST_STALE_IMAGES = 50  # images in sequence without the PDOs of an axis
-MOST_CYCLES = 5  # The motion advances by so many cycles at most, so missed cycles are no jump.
+MOST_CYCLES = 5  # The motion advances by at most this many cycles, so missed cycles are no jump.
 MOST_AHEAD = 16  # cycles between two images that follow each other
-MOST_STRANGE = 3  # So many images in sequence that follow each other are believed in any case.
+MOST_STRANGE = 3  # This number of images in sequence is believed in any case.
 
 # The CiA 402 state machine: a state is seen in some bits of the statusword (0x6041). The controlword
 # (0x6040) leads one step further on the way to Operation enabled, or on the way back.
@@ -479,7 +479,7 @@ def why_not_enabled(axis):
 
 
 def move(bus, axes, seconds, stop):
-    """Moves all axes there and back for so many seconds."""
+    """Moves all axes there and back in a sine for this number of seconds."""
     elapsed, speed, held = 0.0, 1.0, 0.0
     while elapsed < seconds:
         step = bus.next_image()

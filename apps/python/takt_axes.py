@@ -249,7 +249,7 @@ class Axes:
         self._enabled = True
 
     def disable(self) -> None:
-        """Stops the axes, leads them to Switch on disabled, and gives their nodes up."""
+        """Stops the axes, leads them to Switch on disabled, and releases their nodes."""
         self._jog_wanted = self._enabled = False
         if not self._commanding:
             return
@@ -393,12 +393,12 @@ class Axes:
 
     @property
     def locked(self) -> bool:
-        """True if all axes follow their leader with the position that their gear wants."""
+        """True if all axes have the positions that their gears prescribe."""
         return all(axis.motion is not None and axis.motion.gear == LOCKED for axis in self._axes)
 
     @property
     def phase_errors(self) -> list[float]:
-        """Of gears: how far each axis is ahead of the position that its gear wants."""
+        """Of gears: how far each axis is ahead of the position that its gear prescribes."""
         return [axis.motion.phase_error if axis.motion else 0.0 for axis in self._axes]
 
     def wait_locked(self, seconds: float) -> None:

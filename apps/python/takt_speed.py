@@ -13,7 +13,7 @@ OFF, STANDING, RUNNING = "off", "standing", "running"  # what the program wants
 UNKNOWN, FAULT, NOT_READY, READY = "unknown", "fault", "not ready", "ready"  # what the status word shows
 LONGEST_STEP = 0.05  # seconds for which the set speed changes in one step
 STEPS_BEFORE_RESET = 3  # images for which the command before a fault reset is sent
-SILENT_IMAGES = 3  # a status word that is missing in so many images in a row is unknown
+SILENT_IMAGES = 3  # a status word that is missing in this number of images in a row is unknown
 # The controlword of CiA 402 for each state (mask, pattern) on the way to Operation enabled, and on the way back.
 ENABLING = ((0x4F, 0x40, 0x06), (0x6F, 0x21, 0x07), (0x6F, 0x23, 0x0F), (0x6F, 0x27, 0x0F))
 DISABLING = ((0x6F, 0x27, 0x07), (0x6F, 0x23, 0x06))

@@ -25,8 +25,8 @@ class OtherMaster {
   OtherMaster(const BusPlan& plan, std::string bus, std::int64_t session,
               StatusCounts status = StatusCounts::as_refusal);
 
-  /// Returns how long to listen for frames: 1.5 times the producer time of this master's heartbeat,
-  /// limited to 1.1 s .. 1.5 s. This assumes that the other master has the same producer time.
+  /// Returns how long to listen for frames: 1.1 times the producer time of this master's heartbeat,
+  /// limited to 1.1 s .. 5 s. This assumes that the other master has the same producer time.
   Time listening_time() const noexcept;
 
   void on_frame(const Frame& frame);

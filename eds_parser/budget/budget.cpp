@@ -41,7 +41,8 @@ class Others {
     const Time bit = wire_time(1, plan_.bitrate);
     if (other_traffic_.services == Services::apart)
       return worst_responses(streams_, bit, options_.errors);
-    // In one queue all service frames wait for the frames that go before the lowest of them.
+    // In one queue, each service frame may wait for all frames that have priority over the service
+    // frame with the lowest priority.
     const auto services = with_services_together();
     const Bounds together = worst_responses(services, bit, options_.errors);
     for (std::size_t i = 0; i < streams_.size(); ++i) {

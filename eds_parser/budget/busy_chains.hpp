@@ -79,8 +79,9 @@ class BusyChains : protected CycleFrames {
     return std::max(std::max(outputs_end_, services_end_) - plan_.cycle.period, Time{0});
   }
 
-  /// Returns whether the frame at `at` waits for all service frames: it has a lower priority than
-  /// the lowest of them. One queue makes all its frames wait as long as its lowest frame.
+  /// Returns whether the frame at `at` waits for all service frames, because its priority is not
+  /// higher than that of any service frame. In one queue, all frames wait as long as the one with
+  /// the lowest priority.
   bool waits_for_services(std::size_t at) const noexcept {
     return services_in_queue() && at >= lowest_service_;
   }

@@ -32,8 +32,8 @@ struct CycleBounds {
 
 /// Returns the latest end of each frame of a cycle. An end is empty if there is no bound or if the
 /// frame does not belong to the cycle. Times count from the moment at which the master queues SYNC.
-/// If the master follows the SYNC of another device, they count from the arrival of that SYNC, and
-/// for SYNC itself from being queued.
+/// If the master follows the SYNC of another device, they count from the arrival of that SYNC. The
+/// end of that SYNC itself then counts from the moment at which its sender queues it.
 ///
 /// The analysis bounds the frames of a cycle within that cycle: no frame of the cycle before is
 /// left, all TPDOs become ready together, and the outputs are sent at the output deadline. All

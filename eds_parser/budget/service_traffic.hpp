@@ -5,7 +5,7 @@ namespace takt {
 
 inline constexpr unsigned longest_data = 8;  ///< data bytes of the longest frame
 
-/// A service frame that waits in the queue of the master leaves within so many cycles.
+/// A service frame that waits in the queue of the master leaves it within this number of cycles.
 inline constexpr int cycles_to_relief = 3;
 
 /// The SDO requests, each with its answer, that the master sends in the slack of a cycle.

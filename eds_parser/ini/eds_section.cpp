@@ -87,7 +87,8 @@ constexpr std::uint64_t folded(const char* letters) noexcept {
   return std::bit_cast<std::uint64_t>(eight) | 0x2020'2020'2020'2020;
 }
 
-/// A keyword of 4 to 16 letters as two numbers.
+/// A keyword of 4 to 16 letters in lower case, packed into two numbers: `first` holds its first 8
+/// letters and `last` its last 8. If the keyword has fewer than 8 letters, each number holds 4.
 struct FoldedWord {
   std::uint64_t first = 0;
   std::uint64_t last = 0;

@@ -16,8 +16,8 @@ struct KeySection {
 /// Returns the sections of a network file, each followed by the maps in it. Maps with the same keys
 /// are listed once.
 std::vector<KeySection> network_file_keys();
-/// Returns the sections of a file of the device data in the same form. The section of the file as a
-/// whole is named "entry".
+/// Returns the sections of a device data file as network_file_keys() returns those of a network
+/// file. The section of the whole file is named "entry".
 std::vector<KeySection> device_data_keys();
 
 /// Returns the keys as Markdown tables, each below a line with the name of its section.

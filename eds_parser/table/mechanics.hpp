@@ -56,7 +56,8 @@ struct ZoneParameters {
   double high = std::numeric_limits<double>::infinity();
 };
 
-/// Where on its way the axis meets what. The places are those of the load before homing.
+/// The positions at which the axis meets stops, switches and the index pulse. They are positions of
+/// the load before homing.
 struct TravelParameters {
   std::optional<ZoneParameters> stops{};     ///< hard stops at both ends
   std::optional<ZoneParameters> switches{};  ///< limit switches: active outside
@@ -74,7 +75,7 @@ struct MechanicsTable {
   EncoderParameters encoder{};
   BrakeParameters brake{};
   TravelParameters travel{};
-  double turn = 0;  ///< way of the axis in one turn of the motor; in a specification, 0 is unknown
+  double turn = 0;  ///< travel of the axis per turn of the motor; in a specification, 0 is unknown
 };
 
 /// The controllers and the integration of a simulated axis have this period, in seconds.

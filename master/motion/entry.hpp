@@ -3,8 +3,9 @@
 
 namespace takt::motion {
 
-/// The beginning of a motion that brings the velocity and the acceleration inside their limits. It
-/// is a phase with jerk, followed by a phase with constant acceleration, in the units of Transfer.
+/// The first part of a motion. This part brings the velocity and the acceleration inside their
+/// limits, by a phase with jerk and then a phase with constant acceleration. Values are in the
+/// units of Transfer.
 struct Entry {
   double jerk = 0.0;      ///< 1, -1, or 0 if the state is inside already
   double duration = 0.0;  ///< duration of the phase with jerk

@@ -137,7 +137,8 @@ void BusLoop<P, L, S>::finish_cycle() noexcept {
   beat_.next();  // F: the bus is quiet until the next SYNC
 }
 
-/// Sends SYNC on the beat, or follows the SYNC of another device.
+/// Waits until the cycle begins: until the time of SYNC, which this function then sends, or until
+/// the SYNC of another device arrives.
 template <Port P, FrontLink L, Services S>
 void BusLoop<P, L, S>::begin_beat() noexcept {
   beat_.await(port_, bus_.services, [&] { intake_.drain(); });

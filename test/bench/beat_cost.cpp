@@ -108,7 +108,8 @@ void streaming(benchmark::State& state) {
 }
 BENCHMARK(streaming)->Unit(benchmark::kMicrosecond);
 
-/// All axes follow counters that turn with a constant velocity and a noise of some counts.
+/// All axes follow measured leaders. The counters of the leaders advance at a constant velocity,
+/// with a noise of some counts.
 struct GearedAxes {
   GearedAxes() : motions{axes, period}, inputs(axes) {
     for (AxisInput& input : inputs) input.condition = AxisCondition::enabled;

@@ -109,8 +109,8 @@ std::vector<FrameStream> sync_and_pdos(int drives, Time period, Time one_bit) {
   return streams;
 }
 
-/// Returns the greatest number of drives whose last PDO ends before the next SYNC, if it waits for
-/// a frame that has begun.
+/// Returns the greatest number of drives of which the last PDO ends before the next SYNC, even if
+/// this PDO waits for a frame of lower priority that has begun.
 int most_in_time(Time period, Time one_bit) {
   for (int count = 0;; ++count) {
     auto streams = sync_and_pdos(count + 1, period, one_bit);

@@ -52,7 +52,7 @@ class MotionTrace {
 
   std::vector<Cycle> cycles_;
   std::int64_t session_ = 0;
-  std::int64_t every_ = 1;  // only each so many cycles are kept
+  std::int64_t every_ = 1;  // of this number of cycles, one is kept
 };
 
 }  // namespace takt

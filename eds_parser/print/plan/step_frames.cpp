@@ -92,7 +92,8 @@ class Frames {
     return out.substr(0, out.size() - 2) + "..";
   }
 
-  /// Remembers that the master knows this COB-ID from now on.
+  /// Notes that the master has just read or written this object, if the object is a COB-ID that
+  /// the boot switches off or on.
   void remember(ObjectKey object) {
     if (switched_.contains(object)) cob_id_ = object;
   }

@@ -162,9 +162,9 @@ class NodeSession {
   }
   const NodePlan& plan() const noexcept { return *plan_; }
   NodeStatus status() const noexcept;
-  /// Returns true if the node is booted, or is only watched, and is OPERATIONAL. After an NMT
-  /// command that ends the exchange of PDOs, one heartbeat with OPERATIONAL is not enough: the node
-  /// may have sent it before it has received the command.
+  /// Returns true if the node is OPERATIONAL, and is booted or only watched. After an NMT command
+  /// that ends the exchange of PDOs, two heartbeats in a row must show OPERATIONAL: the node may
+  /// have sent the first one before it received the command.
   bool exchanges_pdos() const noexcept;
   /// Returns true if no boot and no transfer is running, and no command waits to be sent.
   bool idle() const noexcept {

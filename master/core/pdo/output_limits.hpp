@@ -202,9 +202,10 @@ class OutputLimits {
     bool both() const noexcept { return commanded && shown; }
   };
   ModesFollowed modes_followed(std::size_t place, std::int64_t mode) const noexcept;
-  /// Returns true if steps of this output are checked, because the drive follows each of its
-  /// values. Steps of target velocities and torques are checked in every mode, because the drive
-  /// may follow them after a change of the mode.
+  /// Returns true if steps between successive values of this output are checked. Steps of a
+  /// position are checked in the modes in which the drive follows each value. Steps of target
+  /// velocities and torques are checked in every mode, because the drive may follow them after a
+  /// change of the mode.
   bool follows_each(std::size_t place, ModesFollowed modes) const noexcept {
     return limits_[place].quantity != AxisQuantity::position || modes.any();
   }

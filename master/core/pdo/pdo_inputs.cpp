@@ -178,7 +178,8 @@ bool PdoInputs::use_late(std::size_t position, const StampedFrame& stamped) noex
       --outstanding_;
       last_arrival_ = stamped.when;
     } else if (before != 0 && row.known && row.due == beat_ && !row.waited) [[unlikely]] {
-      // The phase has just become known, so this beat begins to wait for the frame.
+      // This frame has shown the phase of the TPDO, whose next frame is due in this beat. So the
+      // beat waits for that frame, too.
       row.waited = true;
       ++expected_;
       ++outstanding_;

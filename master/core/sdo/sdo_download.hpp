@@ -34,11 +34,11 @@ class SdoDownload {
   /// Notes that the frame of to_send() was sent.
   void sent() noexcept { to_send_.reset(); }
 
-  /// Returns the request that was sent last.
+  /// Returns the answer that the newest request expects.
   SdoQuestion question() const noexcept;
   /// Returns true if no data were transferred yet.
   bool initiates() const noexcept { return state_ == State::initiate; }
-  /// Takes a frame that fits question().
+  /// Processes an answer of the server. `frame` must fit the answer that question() describes.
   SdoStep on_answer(const Frame& frame) noexcept;
 
   /// Returns the number of bytes that were sent, including the segment that is to be sent next.

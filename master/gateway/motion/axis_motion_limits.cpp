@@ -54,7 +54,7 @@ motion::PositionRange range_of_integer32(const Signal& target) {
   return {.min = std::min(one, other), .max = std::max(one, other)};
 }
 
-/// A set-point is rounded to a count, so a step may be longer than the way of its cycle by one.
+/// A set-point is rounded to a count, so a step may be one count longer than the exact distance.
 double velocity_of_step(double step, const Signal& target, Time period) {
   const double way = std::max(step - std::abs(target.scale), step / 2);
   return way / std::chrono::duration<double>{period}.count();

@@ -20,7 +20,8 @@ std::uint64_t cycles_in(Time span, Time period) noexcept;
 /// Returns the command that a message of a stream is, without its points: it has the kind "stream",
 /// and its goals are at the first point.
 motion_command_t command_of(const motion_stream_t& stream);
-/// The same of a gear: it has the kind "gear" and the goals of the message.
+/// Returns the command that a message of a gear is: it has the kind "gear" and the goals of the
+/// message.
 motion_command_t command_of(const motion_gear_t& gear);
 
 /// Turns a move, jog or stream into a job, of which the caller sets `until` and the number of the

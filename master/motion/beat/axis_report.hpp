@@ -147,7 +147,7 @@ struct AxisReport {
   /// The sender of the newest motion is alive, or the axis moves: the drive has to stay enabled.
   bool kept_alive = false;
   GearPhase gear = GearPhase::none;  ///< of the gear that the axis follows
-  double phase_error = 0.0;          ///< commanded position minus that which the gear wants
+  double phase_error = 0.0;          ///< commanded position minus the one that the gear prescribes
   Stop stop;
   EndedOrders ended;  ///< in this cycle
 

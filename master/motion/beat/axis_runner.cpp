@@ -126,8 +126,8 @@ void AxisRunner::refuse(Outcome why) noexcept {
   waiting_.reset();
 }
 
-/// The way of a motion from one set-point to the next is never longer than that of one period:
-/// where a beat is missing, the motion is delayed by a period.
+/// From one set-point to the next, a motion never advances by more than one period: a missing beat
+/// delays it by a period.
 void AxisRunner::wait_for_drive(CycleNumber cycle, bool is_unsent) noexcept {
   const bool runs = report_.state == AxisState::moving || report_.state == AxisState::stopping;
   is_unsent_ = is_unsent;

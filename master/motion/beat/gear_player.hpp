@@ -9,7 +9,7 @@ namespace takt::motion {
 enum class GearPhase : std::uint8_t {
   none,         ///< it has no gear
   approaching,  ///< it is on the way to the moving state of its leader
-  locked,       ///< it has the position that the gear wants, up to the lock window
+  locked,       ///< it has the position that the gear prescribes, up to the lock window
   released,     ///< it keeps its velocity until the next motion takes over
 };
 

@@ -31,8 +31,9 @@ struct StreamRules {
 /// All extremes of the curve count. Stops are not checked. Takes a short, constant time.
 std::optional<StreamDefect> defect_of_way(const StreamPoint& from, const StreamPoint& to,
                                           const StreamRules& rules) noexcept;
-/// The same for a stop from the state of each cycle in which the bus thread can begin one. The way
-/// must have no defect. Takes a time in proportion to the number of cycles between the points.
+/// Checks a stop from the state of each cycle in which the bus thread can begin one, and returns
+/// the first defect. defect_of_way() must have found no defect. Takes a time in proportion to the
+/// number of cycles between the points.
 std::optional<StreamDefect> defect_of_stops(const StreamPoint& from, const StreamPoint& to,
                                             const StreamRules& rules) noexcept;
 

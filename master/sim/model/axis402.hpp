@@ -118,9 +118,9 @@ class Axis402 {
   DriveMode mode_ = DriveMode::none;
   std::uint16_t controlword_ = 0;
   std::uint16_t fault_code_ = 0;
-  bool settled_ = false;       ///< the controlword requests no further transition
-  bool releases_ = false;      ///< the axis has torque, and is enabled when its brake has opened
-  bool blocked_ = false;       ///< the axis is at the end of its way, and its set-points lead on
+  bool settled_ = false;   ///< the controlword requests no further transition
+  bool releases_ = false;  ///< the axis has torque, and is enabled when its brake has opened
+  bool blocked_ = false;   ///< the axis is at the end of its travel; its set-points lead further
   bool interpolates_ = false;  ///< with mechanics: the points of the buffer are being followed
   bool following_error_ = false;
   bool on_target_ = false;

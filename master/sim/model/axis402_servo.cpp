@@ -82,8 +82,8 @@ double Axis402::stop_ramp() const noexcept {
   return objects_.quick_stop_deceleration.positive_or(slow);
 }
 
-/// At the end of its way, the axis stops on the quick-stop ramp. It stays enabled, and obeys again
-/// when the set-points lead back. Returns false if the axis may obey.
+/// Stops the axis on the quick-stop ramp while it is at the end of its travel and its set-points
+/// lead further. The axis stays enabled. Returns false if the axis can follow its set-points.
 bool Axis402::blocks(double h) noexcept {
   const bool was_blocked = blocked_;
   blocked_ = servo_->at_end(wanted_direction());

@@ -35,8 +35,8 @@ class AxisServo {
   /// Positions of the sensors lack origin().
   const TravelSensors& sensors() const noexcept { return sensors_; }
   double origin() const noexcept { return servo_.origin(); }
-  /// True if the axis is at the end of its way in a direction (1 or -1): on the limit switch, or at
-  /// the software limit 0x607D.
+  /// True if the axis is at the end of its travel in a direction (1 or -1): on the limit switch, or
+  /// at the software limit 0x607D.
   bool at_end(double direction) const noexcept;
   /// Returns the set-point with which the position controller keeps the present motion.
   Demand demand() const noexcept;

@@ -52,7 +52,7 @@ struct AxesOptions {
   /// Longest time of each call. But move(), move_by() and wait() last as long as their motions, and
   /// run() as long as it is told to. jog() waits for the answer of taktd for 2 s at most.
   std::chrono::nanoseconds longest = std::chrono::seconds{10};
-  /// The motions stop along their limits if this program is silent for so long, 1 ms to 10 s.
+  /// The motions stop along their limits if this program is silent for this time, 1 ms to 10 s.
   std::chrono::milliseconds timeout{500};
   /// Calls that wait ask this function, and end with Obstacle::Kind::interrupted if it returns
   /// true. stop() and disable() do not ask it. Empty: nothing interrupts them.
@@ -151,7 +151,7 @@ class Axes {
   /// Leads all axes to Operation enabled and cyclic synchronous position mode, and waits until
   /// taktd reports their motions. A fault is an obstacle: see reset().
   Done enable();
-  /// Stops the axes, leads them to Switch on disabled, and gives their nodes up.
+  /// Stops the axes, leads them to Switch on disabled, and releases their nodes.
   Done disable();
   /// Resets the faults of all axes.
   Done reset();
@@ -201,7 +201,7 @@ class Axes {
   /// Returns the seconds until the axes reach the newest point that the bus thread of taktd has, as
   /// taktd has reported last. 0 if no stream runs.
   double stream_left() const;
-  /// Waits until all axes have the positions that their gears want.
+  /// Waits until all axes have the positions that their gears prescribe.
   Done wait_locked(std::chrono::nanoseconds longest);
   /// Stops the axes along their limits, and waits until they stand.
   Done stop();
@@ -238,7 +238,7 @@ class Axes {
   Eigen::VectorXd following_errors() const;
   /// Returns true if the gears of all axes are locked, as taktd has reported last.
   bool locked() const;
-  /// Returns how far each axis is ahead of the position that its gear wants.
+  /// Returns how far each axis is ahead of the position that its gear prescribes.
   Eigen::VectorXd phase_errors() const;
   /// Returns the group below: its image, its events, and the states of its drives.
   AxisGroup& group() noexcept;

@@ -64,7 +64,8 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   /// Keeps the front thread from running before `until`.
   void stall(Time until) noexcept { stalled_until_ = std::max(stalled_until_, until); }
 
-  /// Lets the front thread read all that the bus thread has reported before its end.
+  /// Lets the front thread process all reports that the bus thread made before the bus thread
+  /// ended.
   void hear_the_end() {
     do {
       bridge_->serve();

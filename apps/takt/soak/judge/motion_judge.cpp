@@ -12,9 +12,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr unsigned failed_cycles = 3;   // after so many, the master knows that a drive is disabled
-constexpr unsigned silent_cycles = 8;   // after so many, the master knows that a drive is silent
-constexpr unsigned hold_tolerance = 5;  // a lease may end this much early
+constexpr unsigned failed_cycles = 3;      // after these, the master knows that a drive is disabled
+constexpr unsigned silent_cycles = 8;      // after these, the master knows that a drive is silent
+constexpr unsigned hold_tolerance = 5;     // a lease may end this much early
 constexpr unsigned cycles_after_late = 3;  // in which a late frame may be followed by an early one
 constexpr unsigned most_cycles_of_frame = 2;  // one frame may be missing
 constexpr Time short_rest = 150ms;            // a motion that ends has ended by then
@@ -208,8 +208,8 @@ void MotionJudge::sent(SignalIndex target, std::int64_t value, const Cause& caus
   }
 }
 
-/// Each of the values is rounded to a count. From one SYNC to the next, an axis moves by the way of
-/// one period at most, however late this SYNC is.
+/// Each of the values is rounded to a count. From one SYNC to the next, an axis moves at most as
+/// far as its velocity limit allows in one period, however late the next SYNC is.
 void MotionJudge::judge_way(std::size_t axis, const Way& way, unsigned syncs, Time now) {
   const auto bounds = orders_.bounds(axis, now);
   if (!bounds) return;

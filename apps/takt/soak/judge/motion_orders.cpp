@@ -147,7 +147,8 @@ void MotionOrders::begin_anew() {
 
 Time MotionOrders::heard(SenderBit sender) const noexcept { return heard_[number_of(sender)]; }
 
-/// A message may wait for so long on its way, and then until its motion can begin.
+/// A message may travel for `oldest_message`. Its motion may then wait for the timeout and 20
+/// periods before it begins.
 Time MotionOrders::latest_begin(const OrderedMotion& order) const noexcept {
   return order.computed_from + oldest_message + order.timeout + 20 * plan_.cycle.period;
 }

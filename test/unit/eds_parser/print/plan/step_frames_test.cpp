@@ -16,8 +16,8 @@ using test::compile;
 using test::Compiled;
 using testing::ElementsAre;
 
-/// Returns the frames of the steps of these kinds of the first node. A download that may follow is
-/// separated by a blank.
+/// Returns a text for each step of the first node that has one of these actions: its first frame
+/// and, after a blank, the download that may follow.
 std::vector<std::string> frames(const Compiled& net, std::initializer_list<BootAction> kinds) {
   const NodePlan& node = net.plan.nodes.at(0);
   const std::vector<StepFrames> all = step_frames(node);

@@ -187,7 +187,8 @@ TEST(LssFastScan, FindsADeviceWhoseAnswerIsTakenForThatOfTheNextQuestion) {
   }
 }
 
-/// Two devices would get the same node-ID.
+/// If the scan found one device while two are in configuration state, both would get the same
+/// node-ID.
 TEST(LssFastScan, DoesNotFindASecondDeviceWhereTheFirstOneHasSwitchedUnheard) {
   const LssAddress others[] = {
       {0x15A, 2, 0x0001'0003, 0xA6}, {0x15A, 2, 0x0001'0004, 3}, {0x15A, 3, 0x0001'0003, 0x10}};

@@ -186,7 +186,8 @@ TEST(AxisGears, UsesAsMuchOfTheJerkOfTheMotionBeforeAsItNeeds) {
   EXPECT_NEAR(plant.last[0].commanded.velocity, 0.0, 1e-3);
 }
 
-/// From one frame to the next, an axis moves by the way of one period at most.
+/// From one frame to the next, an axis moves at most as far as its velocity limit allows in one
+/// period.
 TEST(AxisGears, WaitsForASetPointThatWasNotSent) {
   Plant plant{2};
   plant.step();

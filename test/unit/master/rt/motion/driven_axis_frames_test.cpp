@@ -19,7 +19,7 @@ TEST(DrivenAxis, AnAxisWhoseRpdoIsNotReadyIsNotEnabled) {
   EXPECT_EQ(bench.condition(), AxisCondition::enabled);
 }
 
-/// An event-driven RPDO whose set-points do not change sends nothing.
+/// The master does not send an event-driven RPDO while its set-points do not change.
 TEST(DrivenAxis, ATargetThatDoesNotChangeNeedsNoFrame) {
   Bench bench;
   bench.hear(0x0027, 0);
