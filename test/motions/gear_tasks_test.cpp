@@ -24,12 +24,13 @@ class GearTasks : public testing::Test {
   }
   Signal& leader() { return network.plan.layout.signals[axes[0].position]; }
   std::expected<std::vector<motion::GearTask>, MotionRefusal> tasks() {
-    const AxisMotionLimits limits{network.plan};
     return gear_tasks(gear, std::array{std::size_t{1}}, {network.plan, axes, limits});
   }
 
   LoadedNetwork network;
+  // Those of the plan before a test has changed it.
   std::vector<MotionAxis> axes;
+  AxisMotionLimits limits{network.plan};
   motion_gear_t gear{};
 };
 
