@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "apps/axis/axes_state.hpp"
-#include "apps/axis/find_axes.hpp"
+#include "apps/axis/group/find_axes.hpp"
 #include "apps/axis/not_ready.hpp"
 
 namespace takt {

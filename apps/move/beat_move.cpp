@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "apps/axis/find_axes.hpp"
+#include "apps/axis/group/find_axes.hpp"
 #include "apps/move/held_axes.hpp"
 #include "master/lcm/random_number.hpp"
 

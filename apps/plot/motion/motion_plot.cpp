@@ -6,7 +6,7 @@
 #include <fstream>
 #include <utility>
 
-#include "apps/axis/find_axes.hpp"
+#include "apps/axis/group/find_axes.hpp"
 #include "master/lcm/messages.hpp"
 #include "master/lcm/printable_text.hpp"
 

@@ -1,9 +1,9 @@
-#include "apps/axis/axis_state.hpp"
+#include "apps/axis/group/axis_state.hpp"
 
 #include <cmath>
 #include <utility>
 
-#include "apps/axis/find_axes.hpp"
+#include "apps/axis/group/find_axes.hpp"
 #include "master/lcm/messages.hpp"
 
 namespace takt {

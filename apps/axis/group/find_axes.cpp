@@ -1,4 +1,4 @@
-#include "apps/axis/find_axes.hpp"
+#include "apps/axis/group/find_axes.hpp"
 
 #include <array>
 #include <map>

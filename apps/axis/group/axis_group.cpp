@@ -3,7 +3,7 @@
 #include <poll.h>
 #include <utility>
 
-#include "apps/axis/axis_group_state.hpp"
+#include "apps/axis/group/axis_group_state.hpp"
 #include "master/lcm/random_number.hpp"
 
 namespace takt {
@@ -12,7 +12,7 @@ namespace {
 /// How often wait() checks whether the newest image is stale.
 constexpr std::chrono::milliseconds longest_pause{1};
 
-timespec to_timespec(std::chrono::nanoseconds time) {
+timespec timespec_of(std::chrono::nanoseconds time) {
   const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
   return {.tv_sec = seconds.count(), .tv_nsec = (time - seconds).count()};
 }
@@ -44,7 +44,7 @@ Input AxisGroup::wait(std::chrono::nanoseconds longest) {
     if (left <= left.zero()) return Input::nothing;
     descriptors.clear();
     state.lcm->watch(descriptors);
-    const auto pause = to_timespec(std::min<std::chrono::nanoseconds>(left, longest_pause));
+    const auto pause = timespec_of(std::min<std::chrono::nanoseconds>(left, longest_pause));
     ::ppoll(descriptors.data(), descriptors.size(), &pause, nullptr);
   }
 }

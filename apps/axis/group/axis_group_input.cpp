@@ -3,8 +3,8 @@
 #include <poll.h>
 #include <utility>
 
-#include "apps/axis/axis_group_state.hpp"
-#include "apps/axis/find_axes.hpp"
+#include "apps/axis/group/axis_group_state.hpp"
+#include "apps/axis/group/find_axes.hpp"
 #include "master/lcm/channel_names.hpp"
 #include "master/lcm/random_number.hpp"
 

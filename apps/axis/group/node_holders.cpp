@@ -1,4 +1,4 @@
-#include "apps/axis/node_holders.hpp"
+#include "apps/axis/group/node_holders.hpp"
 
 #include <algorithm>
 #include <limits>

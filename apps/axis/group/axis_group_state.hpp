@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/axis/node_holders.hpp"
+#include "apps/axis/group/node_holders.hpp"
 #include "master/lcm/envelope/envelope.hpp"
 #include "master/lcm/messages.hpp"
 

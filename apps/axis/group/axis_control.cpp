@@ -3,7 +3,7 @@
 #include <takt/axis_control.hpp>
 #include <utility>
 
-#include "apps/axis/axis_state.hpp"
+#include "apps/axis/group/axis_state.hpp"
 
 namespace takt {
 namespace {
