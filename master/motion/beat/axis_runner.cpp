@@ -182,9 +182,17 @@ StopCause AxisRunner::cause_of_motion(CycleNumber cycle, const Silence& silence)
   return StopCause::none;
 }
 
-void AxisRunner::stop(const Stop& stop) noexcept {
+/// An order that waits ends, too. If nothing moves, the stop that the report tells so far is that
+/// of an older motion.
+void AxisRunner::note(const Stop& stop) noexcept {
+  const bool runs = report_.state == AxisState::moving || report_.state == AxisState::stopping;
+  const bool is_first = report_.stop.cause == StopCause::none || (waiting_ && !runs);
   if (waiting_) refuse(Outcome::stopped);
-  if (report_.stop.cause == StopCause::none) report_.stop = stop;
+  if (is_first) report_.stop = stop;
+}
+
+void AxisRunner::stop(const Stop& stop) noexcept {
+  note(stop);
   if (report_.state != AxisState::moving) return;
   end(Outcome::stopped);
   report_.state = AxisState::stopping;
@@ -194,9 +202,9 @@ void AxisRunner::stop(const Stop& stop) noexcept {
 }
 
 void AxisRunner::abandon(const Stop& stop) noexcept {
-  if (waiting_) refuse(Outcome::stopped);
-  if (report_.state != AxisState::moving && report_.state != AxisState::stopping) return;
-  if (report_.stop.cause == StopCause::none) report_.stop = stop;
+  const bool runs = report_.state == AxisState::moving || report_.state == AxisState::stopping;
+  if (runs || waiting_) note(stop);
+  if (!runs) return;
   if (report_.state == AxisState::moving) end(Outcome::stopped);
   report_.state = AxisState::standing;
   report_.commanded = {.position = report_.commanded.position};

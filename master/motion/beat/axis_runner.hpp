@@ -65,7 +65,7 @@ class AxisRunner {
   /// Starts the shortest stop from the commanded state of the cycle before. It also ends an order
   /// that waits. An axis that doesn't move keeps its state.
   void stop(const Stop& stop) noexcept;
-  /// Ends the motion at once: the axis stands at its commanded position.
+  /// Ends the motion, and an order that waits, at once: the axis stands at its commanded position.
   void abandon(const Stop& stop) noexcept;
   /// The axis is in a group of its own until its next motion, and is not kept alive.
   void leave_group() noexcept;
@@ -158,6 +158,7 @@ class AxisRunner {
   bool can_stop_with(const MotionOrder& gear) const noexcept;
   StopCause cause_of_motion(CycleNumber cycle, const Silence& silence) const noexcept;
   void end_or_count_down(CycleNumber cycle) noexcept;
+  void note(const Stop& stop) noexcept;
   void end(Outcome outcome) noexcept;
   void end(std::uint32_t id, Outcome outcome) noexcept {
     report_.ended.add({.id = id, .outcome = outcome});

@@ -268,6 +268,31 @@ TEST(MotionStops, TheReportKeepsTheFirstCauseOfAStop) {
   EXPECT_EQ(plant.last[0].stop.axis, 0);
 }
 
+/// The axis stands, and an older motion of it has ended by another cause.
+TEST(MotionStops, TheReportHasTheCauseThatEndsAnOrderWhichWaits) {
+  Plant plant{2};
+  plant.step();
+  MotionOrder first = plant.order(0, {.position = 5.0}, 1);
+  first.max_following_error = 0.1;
+  ASSERT_TRUE(plant.take(first));
+  plant.steps(200);
+  plant.inputs[0].actual.position -= 0.2;
+  plant.steps(1000);
+  ASSERT_EQ(plant.last[0].state, AxisState::standing);
+  ASSERT_EQ(plant.last[0].stop.cause, StopCause::following_error);
+
+  for (std::uint8_t axis = 0; axis < 2; ++axis) {
+    ASSERT_TRUE(plant.take(plant.order(axis, {.position = 1.0}, 10)));
+  }
+  plant.motions.abandon_all(StopCause::no_sync);
+  plant.step();
+  for (std::uint8_t axis = 0; axis < 2; ++axis) {
+    EXPECT_EQ(plant.ended[axis].outcome, Outcome::stopped);
+    EXPECT_EQ(plant.last[axis].stop.cause, StopCause::no_sync);
+    EXPECT_EQ(plant.last[axis].stop.axis, axis);
+  }
+}
+
 TEST(MotionStops, AJogKeepsItsVelocityAndStopsInsideTheRange) {
   Plant plant{1};
   plant.step();
