@@ -282,12 +282,12 @@ def layout():
 
 
 sys.modules["lcm"] = Daemon()
-import takt_axes
+import takt_link
 from takt_axes import Axes, Obstacle
 
 
 def on_a_bus(*names, longest=LONG):
-    daemon = takt_axes.lcm = takt_axes.time = Daemon()
+    daemon = takt_link.lcm = takt_link.time = Daemon()
     return daemon, Axes("lift", *names, longest=longest)
 
 
@@ -582,14 +582,14 @@ check("a program is ahead of its stream", 0.3 < axes.stream_left < 0.5 and axes.
 axes.wait()
 check("a stream ends in order", axes.commanded_positions == [0.0, 0.0] and not axes.moving and axes.stream_left == 0.0)
 check("all points have come once", len(daemon.streams[0].points) == 101 and daemon.messages < 2.2 / 0.02, daemon.messages)
-check("nothing was refused", not axes._events, axes._events)
+check("nothing was refused", not axes._link.events, axes._link.events)
 lost = iter(range(1000))
 daemon, axes = streams(path(2.0, 0.02), lambda message: not isinstance(message, takt.motion_command_t) and next(lost) % 3 == 0)
 axes.wait()
-check("a stream outlives messages that are lost", len(daemon.streams[0].points) == 101 and not axes._events)
+check("a stream outlives messages that are lost", len(daemon.streams[0].points) == 101 and not axes._link.events)
 daemon, axes = streams(path(1.0, 0.004))
 axes.wait()
-check("many points do not flood taktd", len(daemon.streams[0].points) == 251 and not axes._events, axes._events)
+check("many points do not flood taktd", len(daemon.streams[0].points) == 251 and not axes._link.events, axes._link.events)
 daemon, axes = on_a_bus()
 axes.enable()
 axes.begin_stream()

@@ -1,0 +1,74 @@
+"""One axis of a CiA 402 drive: its objects, its state, and its controlwords. Used by takt_axes."""
+
+CONTROLWORD, STATUSWORD, MODE, MODE_DISPLAY = 0x6040, 0x6041, 0x6060, 0x6061
+POSITION, VELOCITY, TARGET = 0x6064, 0x606C, 0x607A  # actual position and velocity, target position
+# The objects that an axis has in its PDOs, and whether the master sends them.
+OBJECTS = ({(index, True) for index in (CONTROLWORD, MODE, TARGET)} |
+           {(index, False) for index in (STATUSWORD, MODE_DISPLAY, POSITION, VELOCITY)})
+# The objects of each further axis of a device are 0x800 higher.
+FIRST_OBJECT, LAST_OBJECT, AXIS_STEP = 0x6000, 0x9FFF, 0x800
+HOMING, CYCLIC_SYNCHRONOUS_POSITION = 6, 8  # modes of operation (0x6060)
+START_HOMING = 0x10  # bit 4 of the controlword in homing mode
+# Bit 10, and bits 12 and 13, of the statusword.
+TARGET_REACHED, HOMING_RESULT = 0x0400, 0x3000
+ENABLED, FAULTS = "operation enabled", ("fault", "fault reaction active")
+DISABLED = ("switch on disabled", "not ready to switch on", "fault")
+# Mask and pattern of the statusword, state, and the bit that shows why the drive is not enabled.
+STATES = ((0x4F, 0x00, "not ready to switch on", "bit 0 (ready to switch on)", 0),
+          (0x4F, 0x40, "switch on disabled", "bit 6 (switch on disabled)", 1),
+          (0x6F, 0x21, "ready to switch on", "bit 1 (switched on)", 0),
+          (0x6F, 0x23, "switched on", "bit 2 (operation enabled)", 0),
+          (0x6F, 0x27, ENABLED, "", 0),
+          (0x6F, 0x07, "quick stop active", "bit 5 (quick stop)", 0),
+          (0x4F, 0x0F, "fault reaction active", "bit 3 (fault)", 1),
+          (0x4F, 0x08, "fault", "bit 3 (fault)", 1))
+# The controlword for each state on the way to Operation enabled, on the way back, and to keep the
+# state. Disable voltage is 0, which is for all other states.
+ENABLING = {"switch on disabled": 0x06, "ready to switch on": 0x07, "switched on": 0x0F,
+            ENABLED: 0x0F}
+DISABLING = {ENABLED: 0x07, "switched on": 0x06}
+KEEPING = {"ready to switch on": 0x06, "switched on": 0x07, ENABLED: 0x0F}
+RESETTING = KEEPING | {"fault": 0x80}
+
+
+class Axis:
+    """What the messages say about one axis, and what this program commands it."""
+
+    def __init__(self, name: str, node: str, node_id: int, number: int):
+        self.name, self.node, self.node_id, self.number = name, node, node_id, number
+        # Of its objects, by the index that the first axis of a device has: places in the layout,
+        # and their signal_t.
+        self.places, self.signals = {}, {}
+        self.statusword = None  # of the newest image
+        self.motion, self.motion_cycle = None, -1  # the newest axis_motion_t and its cycle
+        self.held = 0  # status_t in sequence in which another program holds the node
+        self.mode = CYCLIC_SYNCHRONOUS_POSITION  # commanded mode of operation
+        self.mode_bits = 0  # of the controlword in Operation enabled: what the mode defines
+
+    @property
+    def state(self) -> str:
+        if self.statusword is None:
+            return "unknown"
+        return next((name for mask, bits, name, _, _ in STATES if self.statusword & mask == bits),
+                    "unknown")
+
+    @property
+    def enabled(self) -> bool:
+        return self.state == ENABLED
+
+    def controlword(self, words: dict) -> int:
+        return words.get(self.state, 0) | (self.mode_bits if self.enabled else 0)
+
+    def bits(self) -> str:
+        """Names the bits of the statusword that show why the drive is not enabled."""
+        if self.statusword is None:
+            return "its statusword has not arrived"
+        word = f"its statusword 0x{self.statusword:04X}"
+        bit, value = next(((bit, value) for _, _, name, bit, value in STATES if name == self.state),
+                          ("", 0))
+        text = f"{bit} of {word} is {value}" if bit else f"{word} shows no state of CiA 402"
+        if not self.statusword & 0x0010:
+            text += "; bit 4 (voltage enabled) is 0: is its power supply on?"
+        if not self.statusword & 0x0200:
+            text += "; bit 9 (remote) is 0: the drive does not obey the controlword from the bus"
+        return text

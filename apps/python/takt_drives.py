@@ -1,0 +1,160 @@
+"""The states and modes of the drives of an Axes: enable, disable, reset, mode. Used by
+takt_axes."""
+from __future__ import annotations
+
+from takt import command_t
+
+from takt_cia402 import (CONTROLWORD, CYCLIC_SYNCHRONOUS_POSITION, DISABLED, DISABLING, ENABLING,
+                         FAULTS, KEEPING, MODE, MODE_DISPLAY, RESETTING, Axis)
+from takt_link import Link, Obstacle
+
+NOT_ENABLED = 0  # axis_motion_t::state
+BOOT_READY = 2  # node_status_t::boot_state
+# status_t (10 in a second) in sequence in which another program holds an axis before enable()
+# gives up.
+HELD_STATUSES = 20
+LOW_TIME = 0.1  # seconds for which bit 7 of the controlword is low before its rising edge
+
+
+class Drives:
+    """Sends controlwords and modes while a state or a mode changes. The values stay valid after
+    that as long as this program gives signs of life."""
+
+    def __init__(self, link: Link):
+        self._link = link
+        self.words = None  # the controlword for each state, while it is sent
+        self.enabled = False  # by enable() of this object
+        link.in_each_cycle.append(self._send)
+
+    def enable(self) -> str:
+        """Returns why the axes are not enabled, or an empty text."""
+        link = self._link
+        for axis in link.axes:
+            axis.mode = CYCLIC_SYNCHRONOUS_POSITION
+        self.words, link.commanding = ENABLING, True
+
+        def no_motions() -> str:
+            return link.event("motion_refused", "taktd runs no motions")
+
+        def blocked() -> bool:
+            return any(axis.state in FAULTS or axis.held >= HELD_STATUSES for axis in link.axes)
+        link.wait(lambda: self.ready() or blocked() or no_motions(), link.longest)
+        self.words = None
+        self.enabled = self.ready()
+        return "" if self.enabled else no_motions() or self.why_not_ready()
+
+    def disable(self) -> None:
+        link = self._link
+        self.words = DISABLING
+
+        def over(axis: Axis) -> bool:
+            return axis.state in DISABLED or axis.held > 0
+        try:
+            good = link.wait(lambda: all(map(over, link.axes)), link.longest)
+        finally:
+            self.words, link.commanding = None, False
+            release(link)
+        if not good:
+            raise Obstacle("time over", "; ".join(
+                f"{axis.name} does not confirm that it is disabled: {axis.bits()}"
+                for axis in link.axes if not over(axis)))
+
+    def in_fault(self) -> bool:
+        return any(axis.state in FAULTS for axis in self._link.axes)
+
+    def reset(self) -> None:
+        """Resets faults. The axes without one keep their states."""
+        link = self._link
+        link.commanding, self.words = True, KEEPING
+        link.wait(lambda: all(axis.state != "fault reaction active" for axis in link.axes),
+                  link.longest)
+        link.wait(lambda: False, LOW_TIME)
+        self.words = RESETTING
+        good = link.wait(lambda: not self.in_fault(), link.longest)
+        self.words = None
+        if not good:
+            raise Obstacle("blocked", self.why_not_ready())
+
+    def set_mode(self, mode: int) -> None:
+        link = self._link
+        for axis in link.axes:
+            axis.mode = mode
+        self.words, link.commanding = KEEPING, True
+
+        def shown(axis: Axis) -> bool:
+            return self.shown_mode(axis) == mode
+        good = link.wait(lambda: all(map(shown, link.axes)), link.longest)
+        self.words = None
+        if not good:
+            raise Obstacle("blocked", "; ".join(f"{axis.name}: 0x6061 does not show mode {mode}"
+                                                for axis in link.axes if not shown(axis)))
+
+    def shown_mode(self, axis: Axis) -> int | None:
+        """The mode that the drive shows, or the commanded one if 0x6061 is in no TPDO."""
+        return self._link.raw(axis, MODE_DISPLAY if MODE_DISPLAY in axis.places else MODE)
+
+    def needs_enable(self) -> None:
+        if not self.enabled:
+            raise Obstacle("blocked", f"{self._link.names}: call enable() first")
+
+    def ready(self) -> bool:
+        """True if taktd can move all axes."""
+        return all(axis.enabled and axis.motion and axis.motion.state != NOT_ENABLED
+                   for axis in self._link.axes)
+
+    def why_not_ready(self) -> str:
+        return "; ".join(filter(None, map(self.why, self._link.axes)))
+
+    def why(self, axis: Axis) -> str:
+        """Says why taktd can't move the axis. Empty: it can."""
+        node = self._link.nodes.get(axis.node_id)
+        if axis.held:
+            return (f"{axis.name} belongs to '{node.holder}', and the commands of this program are "
+                    "refused")
+        if node and node.boot_state != BOOT_READY:
+            return f"{axis.name}: its device has not booted"
+        if not axis.enabled:
+            text = f"{axis.name}: not enabled, {axis.state}: {axis.bits()}"
+            if axis.state in FAULTS and node and node.num_emcys:
+                text += "; " + self._newest_error(node)
+            return text
+        if axis.motion is None:
+            return (f"{axis.name}: taktd reports no motion of it: was taktd started with "
+                    "--no-motions, and are 6041 and 6064 in TPDOs and 607A in an RPDO of the "
+                    "drive?")
+        return "" if axis.motion.state != NOT_ENABLED else (
+            f"{axis.name}: taktd does not count it as enabled: is its mode of operation 8, and is "
+            "its target position sent?")
+
+    def _newest_error(self, node) -> str:
+        told = next((event.text for event in reversed(self._link.events)
+                     if event.kind == "emcy" and event.node_id == node.node_id), "")
+        return told or f"its newest error is 0x{node.emcys[0] & 0xFFFF:04X}"
+
+    def _send(self) -> None:
+        if self.words is None:
+            return
+        values = {}
+        for axis in self._link.axes:
+            for index, value in ((CONTROLWORD, axis.controlword(self.words)), (MODE, axis.mode)):
+                if index in axis.places:
+                    values[axis.places[index]] = value
+        command(self._link, values)
+
+
+def command(link: Link, values: dict[int, int], time_to_live: int = 0) -> None:
+    """Sends raw values by their places in the layout. `time_to_live` in cycles; 0: as
+    configured."""
+    message = command_t()
+    link.fill(message)
+    message.signals, message.values = list(values), list(values.values())
+    message.num_values, message.time_to_live = len(values), time_to_live
+    link.publish("COMMAND", message)
+
+
+def release(link: Link) -> None:
+    """Gives up all nodes that this program holds."""
+    message = command_t()
+    link.fill(message)
+    message.release = True
+    link.publish("COMMAND", message)

@@ -1,0 +1,225 @@
+"""The messages of one bus: what they say, and how a program waits for them. Used by takt_axes."""
+from __future__ import annotations
+
+import os
+import random
+import sys
+import time
+from collections.abc import Callable
+
+import lcm
+from takt import event_t, image_t, layout_t, motion_t, speed_axes_t, status_t
+
+from takt_cia402 import AXIS_STEP, CONTROLWORD, FIRST_OBJECT, LAST_OBJECT, OBJECTS, STATUSWORD, Axis
+
+SCHEMA = 2  # of the LCM messages that this module knows
+IMAGE_TIME = 2.0  # seconds without an image after which the bus is gone
+FLOOD = 100  # messages that are taken in sequence; more do not hold the program
+MOST_EVENTS = 64  # that are remembered
+
+
+class Obstacle(Exception):
+    """What blocks a call, in words. `kind` is "wrong use", "no bus", "blocked", "refused",
+    "stopped", "time over" or "restarted"."""
+
+    def __init__(self, kind: str, text: str):
+        super().__init__(text)
+        self.kind = kind
+
+
+class Link:
+    """The newest messages of a bus, and the messages to it. The tables of functions at the end of
+    __init__ are filled by those who use it."""
+
+    def __init__(self, bus: str, timeout: float, longest: float):
+        """Waits until the bus is heard, for `longest` seconds at most."""
+        self.bus, self.timeout, self.longest = bus.upper(), timeout, longest
+        # A random number tells two senders apart, also in one process.
+        self.instance = random.SystemRandom().randrange(1, 2**63)
+        program = os.path.basename(sys.argv[0])[:32] or "python"
+        self.sender = f"{program} {os.getpid()} {self.instance & 0xFFFF_FFFF:08x}"
+        self.commanding = False  # this program commands nodes, and gives signs of life
+        self.axes = []  # first all axes of the bus with their words in PDOs, then the chosen ones
+        self.session, self.period, self.cycle, self.image_time = None, 0.0, -1, self.now()
+        self.values, self.signals, self.stale = {}, {}, set()  # by their places in the layout
+        self.events, self.nodes = [], {}
+        self.in_each_cycle, self.in_each_step, self.when_abandoned = [], [], []
+        self._restarted, self._utime, self._hash = False, 0, None
+        self._found, self._layout_parts, self._image_parts, self._speed_parts = {}, set(), set(), {}
+        self._lcm = lcm.LCM()  # LCM_DEFAULT_URL, else LCM's default
+        for channel, handler in (("SPEED_AXES", self._on_speed_axes), ("LAYOUT", self._on_layout),
+                                 ("IMAGE", self._on_image), ("MOTION", self._on_motion),
+                                 ("EVENT", self._on_event), ("STATUS", self._on_status)):
+            self.subscribe(channel, handler)
+        end = self.now() + longest
+        while self.cycle < 0:
+            self.serve(0.05)
+            if self.now() > end:
+                raise Obstacle("no bus", f"no image of bus {bus} has come: is taktd running, with "
+                                         "the same LCM URL?")
+
+    def now(self) -> float:
+        return time.monotonic()
+
+    @property
+    def names(self) -> str:
+        return ", ".join(axis.name for axis in self.axes)
+
+    # What the newest messages say.
+
+    def raw(self, axis: Axis, index: int) -> int | None:
+        return self.values.get(axis.places.get(index))
+
+    def value(self, axis: Axis, index: int) -> float:
+        """In the unit of the object; 0 where no PDO carries it."""
+        raw, signal = self.raw(axis, index), axis.signals.get(index)
+        return 0.0 if raw is None else raw * signal.scale + signal.offset
+
+    def event(self, kind: str, part: str = "") -> str:
+        """The text of the newest event of this kind that contains `part`."""
+        return next((event.text for event in reversed(self.events)
+                     if event.kind == kind and part in event.text), "")
+
+    def holder(self, axis: Axis) -> str:
+        """The name of the program that holds the node of the axis."""
+        return self.nodes[axis.node_id].holder if axis.node_id in self.nodes else ""
+
+    def speed_words(self) -> list:
+        """The speed axes of the layout, as speed_axis_t; empty until all of them have come."""
+        parts = [part for (session, _), part in self._speed_parts.items()
+                 if session == self.session]
+        if not parts or len(parts) < parts[0].parts:
+            return []
+        return [words for part in sorted(parts, key=lambda part: part.part) for words in part.axes]
+
+    # How a program waits.
+
+    def wait(self, reached: Callable[[], bool], seconds: float) -> bool:
+        """Takes messages and sends what is due until `reached()`. False: the time is over."""
+        end = self.now() + seconds
+        try:
+            while True:
+                self.step()
+                if reached():
+                    return True
+                if self.now() >= end:
+                    return False
+        except BaseException:
+            for abandon in self.when_abandoned:  # who catches it may wait again
+                abandon()
+            raise
+
+    def step(self) -> None:
+        """Waits for a message for a short time, takes those that have come, and sends what is
+        due."""
+        before = self.now()
+        self.serve(0.005)
+        if self._restarted:
+            self.commanding = False
+            raise Obstacle("restarted", "taktd has restarted")
+        if before - self.image_time > max(IMAGE_TIME, self.timeout):
+            raise Obstacle("no bus", f"no image of bus {self.bus} has come for "
+                                     f"{before - self.image_time:.1f} s")
+        for send in self.in_each_step:
+            send()
+
+    def serve(self, seconds: float) -> None:
+        """Handles all messages that have come; waits for the first one at most for this time."""
+        cycle = self.cycle
+        if self._lcm.handle_timeout(max(1, int(seconds * 1000))):
+            for _ in range(FLOOD):
+                if not self._lcm.handle_timeout(0):
+                    break
+        if self.cycle != cycle:
+            for send in self.in_each_cycle:
+                send()
+
+    # Messages.
+
+    def subscribe(self, channel: str, handler: Callable[[str, bytes], None]) -> None:
+        self._lcm.subscribe(f"{self.bus}_{channel}", handler)
+
+    def publish(self, channel: str, message) -> None:
+        self._lcm.publish(f"{self.bus}_{channel}", message.encode())
+
+    def fill(self, message) -> None:
+        """Writes what each command has. A move_by needs a later utime than each motion before."""
+        self._utime = max(self._utime + 1, int(time.time() * 1e6))
+        message.utime, message.schema = self._utime, SCHEMA
+        message.session, message.cycle = self.session, self.cycle
+        message.instance, message.sender = self.instance, self.sender
+
+    def _on_speed_axes(self, channel: str, data: bytes) -> None:
+        message = speed_axes_t.decode(data)
+        if message.schema == SCHEMA:
+            self._speed_parts[message.session, message.part] = message
+
+    def _on_layout(self, channel: str, data: bytes) -> None:
+        layout = layout_t.decode(data)
+        if layout.schema != SCHEMA:
+            raise Obstacle("wrong use", f"taktd speaks schema {layout.schema} of the messages, "
+                                        f"this program {SCHEMA}")
+        if self.session is not None:
+            self._restarted |= (layout.session, layout.hash) != (self.session, self._hash)
+            return
+        self._layout_parts.add(layout.part)
+        for place, signal in enumerate(layout.signals, layout.first_signal):
+            self._add(place, signal)
+        if len(self._layout_parts) == layout.parts:
+            self.session, self._hash = layout.session, layout.hash
+            self.period = layout.period_ns * 1e-9
+            self.axes = [axis for _, axis in sorted(self._found.items())
+                         if CONTROLWORD in axis.places and STATUSWORD in axis.places]
+
+    def _add(self, place: int, signal) -> None:
+        self.signals[place] = signal
+        index = FIRST_OBJECT + signal.index % AXIS_STEP
+        if (not FIRST_OBJECT <= signal.index <= LAST_OBJECT or signal.sub or
+                (index, bool(signal.output)) not in OBJECTS):
+            return
+        number = (signal.index - FIRST_OBJECT) // AXIS_STEP + 1
+        name = signal.node if number == 1 else f"{signal.node}.{number}"
+        axis = self._found.setdefault((signal.node_id, number),
+                                      Axis(name, signal.node, signal.node_id, number))
+        axis.places[index], axis.signals[index] = place, signal
+
+    def _on_image(self, channel: str, data: bytes) -> None:
+        image = image_t.decode(data)
+        if self.session is None or (image.session, image.layout_hash) != (self.session, self._hash):
+            return
+        self.values.update(enumerate(image.values, image.first_signal))
+        if image.part == 0:
+            self._image_parts, self.stale = set(), set()
+        self.stale.update(image.stale)
+        self._image_parts.add(image.part)
+        if len(self._image_parts) < image.parts:
+            return
+        self.cycle, self.image_time = image.cycle, self.now()
+        for axis in self.axes:
+            if STATUSWORD in axis.places:
+                axis.statusword = self.values[axis.places[STATUSWORD]] & 0xFFFF
+
+    def _on_motion(self, channel: str, data: bytes) -> None:
+        motion = motion_t.decode(data)
+        if motion.session != self.session:
+            return
+        reported = {(axis.node_id, axis.axis): axis for axis in motion.axes}
+        for axis in self.axes:
+            if (axis.node_id, axis.number) in reported:
+                axis.motion, axis.motion_cycle = reported[axis.node_id, axis.number], motion.cycle
+
+    def _on_event(self, channel: str, data: bytes) -> None:
+        event = event_t.decode(data)
+        if event.session == self.session and event.severity > 0:
+            self.events = self.events[1 - MOST_EVENTS:] + [event]
+
+    def _on_status(self, channel: str, data: bytes) -> None:
+        status = status_t.decode(data)
+        if status.session != self.session:
+            return
+        self.nodes.update((node.node_id, node) for node in status.nodes)
+        shown = {node.node_id for node in status.nodes}
+        for axis in self.axes:
+            if axis.node_id in shown:
+                other = self.holder(axis) not in ("", self.sender)
+                axis.held = axis.held + 1 if other else 0
