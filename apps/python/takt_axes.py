@@ -33,11 +33,13 @@ module, because it sends no envelopes.
 from __future__ import annotations
 
 from takt_cia402 import POSITION, VELOCITY
-from takt_drives import Drives
+from takt_drives import IDLE, Drives, release
 from takt_find import find_axes
 from takt_homing import HOMED, home
 from takt_link import Link, Obstacle
 from takt_motions import Motions
+from takt_outputs import Outputs
+from takt_services import Services
 from takt_speed_axes import SpeedAxes
 
 __all__ = ["Axes", "Obstacle"]
@@ -58,6 +60,7 @@ class Axes:
         self._speed = SpeedAxes(self._link, words) if words else None
         self._drives = None if words else Drives(self._link)
         self._motions = None if words else Motions(self._link, self._drives)
+        self._services, self._outputs = Services(self._link), Outputs(self._link)
 
     def __enter__(self) -> Axes:
         return self
@@ -133,9 +136,11 @@ class Axes:
     def disable(self) -> None:
         """Stops the axes, leads them to Switch on disabled, and releases their nodes."""
         if self._drives:
-            self._drives.enabled = False
             self._motions.abandon()
+        sent = self._outputs.drop()
         if not self._link.commanding:
+            if sent:
+                release(self._link)
             return
         if self._speed:
             return self._speed.disable()
@@ -143,6 +148,26 @@ class Axes:
             self._motions.stop()
         finally:
             self._drives.disable()
+
+    def halt(self) -> None:
+        """Sets the Halt bit (bit 8 of 0x6040) of all axes, and waits until they stand. taktd ends
+        their motions along their limits, too, so that they also stand if a drive ignores the bit,
+        as many do in cyclic synchronous modes. No motion begins before resume() or enable()."""
+        self._needs_position()
+        self._motions.abandon()
+        self._drives.halt()
+
+    def resume(self) -> None:
+        """Ends the Halt. The axes stand until the next motion."""
+        self._needs_position()
+        self._drives.resume()
+
+    def quick_stop(self) -> None:
+        """Commands a quick stop (bit 2 of 0x6040 is 0): the drives brake by themselves, along
+        0x6085. Waits until they show it and stand. Then they are not enabled: see enable()."""
+        self._needs_position()
+        self._motions.abandon()
+        self._drives.quick_stop()
 
     def reset(self) -> None:
         """Resets the faults of all axes. Axes that move stop first; those without a fault keep
@@ -168,7 +193,8 @@ class Axes:
         other in the order of their names, or all `together`. `seconds`: longest time of a run; 0:
         that of the network file, else 60 s."""
         self._needs_position()
-        if not self._drives.enabled or not self._drives.ready():
+        self._drives.check_not_halted()
+        if self._drives.readiness == IDLE or not self._drives.ready():
             self.enable()
         self._motions.stop()
         axes = self._link.axes
@@ -278,6 +304,40 @@ class Axes:
         """Stops the axes along their limits, and returns when taktd reports that their commanded
         positions stand."""
         (self._speed or self._motions).stop()
+
+    # Objects of the devices, and the inputs and outputs of all nodes.
+
+    def read(self, node: str, index: int, sub: int = 0) -> bytes:
+        """Reads an object of a node by SDO; its bytes are in little-endian order. taktd makes the
+        transfer. Motions go on. An abort is an obstacle, with its code in words."""
+        return self._services.read(node, index, sub)
+
+    def read_number(self, node: str, index: int, sub: int = 0, signed: bool = False) -> int:
+        """Like read(), of an object that is a whole number."""
+        return int.from_bytes(self.read(node, index, sub), "little", signed=signed)
+
+    def write(self, node: str, index: int, sub: int, data: bytes) -> None:
+        """Writes an object of a node by SDO. The number of bytes has to be that of the object."""
+        self._services.write(node, index, sub, data)
+
+    def write_number(self, node: str, index: int, sub: int, value: int, size: int) -> None:
+        """Like write(), of an object that is a whole number of `size` bytes."""
+        try:
+            data = value.to_bytes(size, "little", signed=value < 0)
+        except OverflowError as why:
+            raise Obstacle("wrong use", f"{value} needs more than {size} bytes") from why
+        self.write(node, index, sub, data)
+
+    def signal(self, name: str) -> float:
+        """The newest value of an input or output of any node, in its unit. The name is that of the
+        node and of the signal in layout_t, "io.digital_input_1", or its object, "io.0x6000:1"."""
+        return self._outputs.signal(name)
+
+    def set(self, name: str, value: float) -> None:
+        """Sets an output of any node, and returns when taktd sends it. The value stays while this
+        program is alive: calls that wait repeat it. After a silence of `timeout` the node takes
+        the fallback of `on_timeout`, and the value is not sent again. disable() ends it, too."""
+        self._outputs.set(name, value)
 
     def _needs_position(self) -> None:
         if self._speed:

@@ -9,9 +9,11 @@ OBJECTS = ({(index, True) for index in (CONTROLWORD, MODE, TARGET)} |
 FIRST_OBJECT, LAST_OBJECT, AXIS_STEP = 0x6000, 0x9FFF, 0x800
 HOMING, CYCLIC_SYNCHRONOUS_POSITION = 6, 8  # modes of operation (0x6060)
 START_HOMING = 0x10  # bit 4 of the controlword in homing mode
+HALT = 0x100  # bit 8 of the controlword
 # Bit 10, and bits 12 and 13, of the statusword.
 TARGET_REACHED, HOMING_RESULT = 0x0400, 0x3000
-ENABLED, FAULTS = "operation enabled", ("fault", "fault reaction active")
+ENABLED, QUICK_STOP = "operation enabled", "quick stop active"
+FAULTS = ("fault", "fault reaction active")
 DISABLED = ("switch on disabled", "not ready to switch on", "fault")
 # Mask and pattern of the statusword, state, and the bit that shows why the drive is not enabled.
 STATES = ((0x4F, 0x00, "not ready to switch on", "bit 0 (ready to switch on)", 0),
@@ -19,7 +21,7 @@ STATES = ((0x4F, 0x00, "not ready to switch on", "bit 0 (ready to switch on)", 0
           (0x6F, 0x21, "ready to switch on", "bit 1 (switched on)", 0),
           (0x6F, 0x23, "switched on", "bit 2 (operation enabled)", 0),
           (0x6F, 0x27, ENABLED, "", 0),
-          (0x6F, 0x07, "quick stop active", "bit 5 (quick stop)", 0),
+          (0x6F, 0x07, QUICK_STOP, "bit 5 (quick stop)", 0),
           (0x4F, 0x0F, "fault reaction active", "bit 3 (fault)", 1),
           (0x4F, 0x08, "fault", "bit 3 (fault)", 1))
 # The controlword for each state on the way to Operation enabled, on the way back, and to keep the
@@ -27,8 +29,9 @@ STATES = ((0x4F, 0x00, "not ready to switch on", "bit 0 (ready to switch on)", 0
 ENABLING = {"switch on disabled": 0x06, "ready to switch on": 0x07, "switched on": 0x0F,
             ENABLED: 0x0F}
 DISABLING = {ENABLED: 0x07, "switched on": 0x06}
-KEEPING = {"ready to switch on": 0x06, "switched on": 0x07, ENABLED: 0x0F}
+KEEPING = {"ready to switch on": 0x06, "switched on": 0x07, ENABLED: 0x0F, QUICK_STOP: 0x02}
 RESETTING = KEEPING | {"fault": 0x80}
+QUICK_STOPPING = {ENABLED: 0x02, QUICK_STOP: 0x02}
 
 
 class Axis:

@@ -1,18 +1,22 @@
-"""The states and modes of the drives of an Axes: enable, disable, reset, mode. Used by
-takt_axes."""
+"""The states and modes of the drives of an Axes: enable, disable, reset, mode, Halt, quick stop.
+Used by takt_axes."""
 from __future__ import annotations
 
 from takt import command_t
 
-from takt_cia402 import (CONTROLWORD, CYCLIC_SYNCHRONOUS_POSITION, DISABLED, DISABLING, ENABLING,
-                         FAULTS, KEEPING, MODE, MODE_DISPLAY, RESETTING, Axis)
+from takt_cia402 import (CONTROLWORD, CYCLIC_SYNCHRONOUS_POSITION, DISABLED, DISABLING, ENABLED,
+                         ENABLING, FAULTS, HALT, KEEPING, MODE, MODE_DISPLAY, POSITION, QUICK_STOP,
+                         QUICK_STOPPING, RESETTING, TARGET_REACHED, Axis)
 from takt_link import Link, Obstacle
 
-NOT_ENABLED = 0  # axis_motion_t::state
+NOT_ENABLED, MOVES, STOPS = 0, 2, 3  # axis_motion_t::state
+# What this program has made of the drives, and so whether it may move them.
+IDLE, READY, HALTED = "not enabled", "enabled", "halted"
 BOOT_READY = 2  # node_status_t::boot_state
 # status_t (10 in a second) in sequence in which another program holds an axis before enable()
 # gives up.
 HELD_STATUSES = 20
+WORD_CYCLES = 10  # in which a drive may show words from before a command
 LOW_TIME = 0.1  # seconds for which bit 7 of the controlword is low before its rising edge
 
 
@@ -23,15 +27,15 @@ class Drives:
     def __init__(self, link: Link):
         self._link = link
         self.words = None  # the controlword for each state, while it is sent
-        self.enabled = False  # by enable() of this object
+        self.readiness = IDLE
         link.in_each_cycle.append(self._send)
 
     def enable(self) -> str:
         """Returns why the axes are not enabled, or an empty text."""
         link = self._link
         for axis in link.axes:
-            axis.mode = CYCLIC_SYNCHRONOUS_POSITION
-        self.words, link.commanding = ENABLING, True
+            axis.mode, axis.mode_bits = CYCLIC_SYNCHRONOUS_POSITION, 0
+        self.words, self.readiness, link.commanding = ENABLING, IDLE, True
 
         def no_motions() -> str:
             return link.event("motion_refused", "taktd runs no motions")
@@ -40,12 +44,14 @@ class Drives:
             return any(axis.state in FAULTS or axis.held >= HELD_STATUSES for axis in link.axes)
         link.wait(lambda: self.ready() or blocked() or no_motions(), link.longest)
         self.words = None
-        self.enabled = self.ready()
-        return "" if self.enabled else no_motions() or self.why_not_ready()
+        if not self.ready():
+            return no_motions() or self.why_not_ready()
+        self.readiness = READY
+        return ""
 
     def disable(self) -> None:
         link = self._link
-        self.words = DISABLING
+        self.words, self.readiness = DISABLING, IDLE
 
         def over(axis: Axis) -> bool:
             return axis.state in DISABLED or axis.held > 0
@@ -89,13 +95,78 @@ class Drives:
             raise Obstacle("blocked", "; ".join(f"{axis.name}: 0x6061 does not show mode {mode}"
                                                 for axis in link.axes if not shown(axis)))
 
+    def halt(self) -> None:
+        link = self._link
+        self.check_enabled()
+        self.words, self.readiness = KEEPING, HALTED
+        if not self.wait_for_rest(link.axes):
+            raise Obstacle("time over", "; ".join(
+                f"{axis.name} does not obey the Halt, or does not come to rest: its statusword is "
+                f"0x{axis.statusword:04X}" for axis in link.axes))
+        if not all(axis.enabled for axis in link.axes):
+            raise Obstacle("blocked", self.why_not_ready())
+
+    def resume(self) -> None:
+        if self.readiness != HALTED:
+            return
+        link = self._link
+        self.words, self.readiness, begin = KEEPING, READY, link.cycle
+        good = link.wait(lambda: link.cycle >= begin + WORD_CYCLES and self.ready(), link.longest)
+        self.words = None
+        if not good:
+            raise Obstacle("blocked", self.why_not_ready())
+
+    def quick_stop(self) -> None:
+        link = self._link
+        if not link.commanding:
+            self.check_enabled()
+        self.words, self.readiness = QUICK_STOPPING, IDLE
+
+        def obeys(axis: Axis) -> bool:
+            return axis.state in (QUICK_STOP, *DISABLED)
+        if not link.wait(lambda: all(map(obeys, link.axes)), link.longest):
+            raise Obstacle("blocked", "; ".join(
+                f"{axis.name} ignores the quick stop: it is in {axis.state}, its statusword is "
+                f"0x{axis.statusword:04X}" for axis in link.axes if not obeys(axis)))
+        if not self.wait_for_rest(link.axes):
+            raise Obstacle("time over", "the axes still move")
+
+    def wait_for_rest(self, axes: list[Axis]) -> bool:
+        """Waits until the actual positions stand, or the drives say so, and taktd moves none of
+        the axes. False: they still move."""
+        link = self._link
+        moved, before = link.cycle, [link.raw(axis, POSITION) for axis in axes]
+
+        def may_move(axis: Axis, position: int | None, old: int | None) -> bool:
+            turns = position != old and axis.state in (ENABLED, QUICK_STOP)
+            reached = axis.statusword & TARGET_REACHED
+            return moves(axis) or turns and not reached
+
+        def at_rest() -> bool:
+            nonlocal moved, before
+            now = [link.raw(axis, POSITION) for axis in axes]
+            if any(map(may_move, axes, now, before)):
+                moved = link.cycle
+            before = now
+            return link.cycle >= moved + WORD_CYCLES
+        return link.wait(at_rest, link.longest)
+
     def shown_mode(self, axis: Axis) -> int | None:
         """The mode that the drive shows, or the commanded one if 0x6061 is in no TPDO."""
         return self._link.raw(axis, MODE_DISPLAY if MODE_DISPLAY in axis.places else MODE)
 
-    def needs_enable(self) -> None:
-        if not self.enabled:
+    def check_enabled(self) -> None:
+        if self.readiness == IDLE:
             raise Obstacle("blocked", f"{self._link.names}: call enable() first")
+
+    def check_may_move(self) -> None:
+        self.check_enabled()
+        self.check_not_halted()
+
+    def check_not_halted(self) -> None:
+        if self.readiness == HALTED:
+            raise Obstacle("blocked", f"{self._link.names}: the axes are halted: call resume() "
+                                      "first")
 
     def ready(self) -> bool:
         """True if taktd can move all axes."""
@@ -136,10 +207,17 @@ class Drives:
             return
         values = {}
         for axis in self._link.axes:
-            for index, value in ((CONTROLWORD, axis.controlword(self.words)), (MODE, axis.mode)):
+            halt = HALT if self.readiness == HALTED and axis.enabled else 0
+            word = axis.controlword(self.words) | halt
+            for index, value in ((CONTROLWORD, word), (MODE, axis.mode)):
                 if index in axis.places:
                     values[axis.places[index]] = value
         command(self._link, values)
+
+
+def moves(axis: Axis) -> bool:
+    """True if taktd moves or stops the axis."""
+    return axis.motion is not None and axis.motion.state in (MOVES, STOPS)
 
 
 def command(link: Link, values: dict[int, int], time_to_live: int = 0) -> None:

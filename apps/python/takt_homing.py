@@ -2,12 +2,11 @@
 from __future__ import annotations
 
 from takt_cia402 import (CONTROLWORD, CYCLIC_SYNCHRONOUS_POSITION, HOMING, HOMING_RESULT, KEEPING,
-                         POSITION, START_HOMING, TARGET_REACHED, Axis)
-from takt_drives import NOT_ENABLED, Drives
+                         START_HOMING, TARGET_REACHED, Axis)
+from takt_drives import NOT_ENABLED, WORD_CYCLES, Drives
 from takt_link import Link, Obstacle
 
 HOMED, HOMING_FAILED = 2, 3  # axis_motion_t::homing
-WORD_CYCLES = 10  # in which a drive may show words from before a command
 START_TIME = 1.0  # seconds for which a drive may show that it has not begun
 LONGEST_RUN = 60.0  # seconds, if taktd names none
 
@@ -83,7 +82,7 @@ def _leave(link: Link, drives: Drives, axes: list[Axis]) -> None:
     positions follow the actual ones until the drives obey them."""
     for axis in axes:
         axis.mode_bits = 0
-    if not wait_for_rest(link, axes):
+    if not drives.wait_for_rest(axes):
         raise Obstacle("time over", "the axes still move")
     for axis in axes:
         axis.mode = CYCLIC_SYNCHRONOUS_POSITION
@@ -93,18 +92,3 @@ def _leave(link: Link, drives: Drives, axes: list[Axis]) -> None:
     drives.words = None
     if not drives.ready():
         raise Obstacle("blocked", drives.why_not_ready())
-
-
-def wait_for_rest(link: Link, axes: list[Axis]) -> bool:
-    """Waits until the actual positions stand, or the drives say so. False: they still move."""
-    moved, before = link.cycle, [link.raw(axis, POSITION) for axis in axes]
-
-    def at_rest() -> bool:
-        nonlocal moved, before
-        now = [link.raw(axis, POSITION) for axis in axes]
-        for axis, position, old in zip(axes, now, before):
-            if position != old and axis.enabled and not axis.statusword & TARGET_REACHED:
-                moved = link.cycle
-        before = now
-        return link.cycle >= moved + WORD_CYCLES
-    return link.wait(at_rest, link.longest)

@@ -6,11 +6,10 @@ import random
 
 from takt import motion_command_t, motion_gear_t, motion_goal_t, motion_stream_t
 
-from takt_drives import Drives
+from takt_drives import STOPS, Drives, moves
 from takt_link import Link, Obstacle
 from takt_stream import StreamBuffer
 
-MOVES, STOPS = 2, 3  # axis_motion_t::state
 LOCKED = 2  # axis_motion_t::gear
 DONE, STOPPED, REFUSED = 1, 2, 4  # axis_motion_t::outcome
 ANSWER_TIME, REASON_TIME = 2.0, 0.1  # seconds
@@ -43,7 +42,7 @@ class Motions:
 
     @property
     def moving(self) -> bool:
-        return any(axis.motion and axis.motion.state in (MOVES, STOPS) for axis in self._link.axes)
+        return any(map(moves, self._link.axes))
 
     @property
     def locked(self) -> bool:
@@ -193,7 +192,7 @@ class Motions:
         if self._stream and self._stream.begun and self._is_under_way():
             raise Obstacle("blocked", "the axes follow a stream: call wait() or stop()")
         self._stream = None
-        drives.needs_enable()
+        drives.check_may_move()
         # taktd refuses motions from before a stop.
         if not link.wait(lambda: link.cycle > self._stop_cycle, link.longest):
             raise Obstacle("time over", "no newer image has come")

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import time
 
+from takt_signals import raw_limits
+
 CIA402 = 1  # speed_axis_t::sequence
 LEVEL = 1  # speed_axis_t::fault_reset
 OFF, STANDING, RUNNING = "off", "standing", "running"  # what the program wants
@@ -24,19 +26,12 @@ def _shows(pattern, word: int) -> bool:
     return pattern.mask != 0 and word & pattern.mask in pattern.values
 
 
-def _limits(signal) -> tuple[int, int]:
-    """The smallest and the largest value of an object of whole numbers (CiA 301 data types)."""
-    if signal.data_type in (2, 3, 4, 0x10, 0x12, 0x13, 0x14, 0x15):  # INTEGER8 to INTEGER64
-        return -2 ** (signal.bits - 1), 2 ** (signal.bits - 1) - 1
-    return 0, 2 ** signal.bits - 1
-
-
 class SpeedAxis:
     """Turns each image into the control word and the set speed of one axis."""
 
     def __init__(self, words, signals: dict):
         self.words, self.name, self.node_id = words, words.node, words.node_id
-        self.range = _limits(signals[words.set_speed])
+        self.range = raw_limits(signals[words.set_speed])
         self.goal, self.state, self.control = OFF, UNKNOWN, words.off
         self.target = self.acceleration = self.commanded = self.actual = 0.0
         self.counts, self.status, self.cycle, self.reset_steps = 0, 0, None, None

@@ -82,7 +82,9 @@ class StreamBuffer:
 
     def _is_open(self, number) -> bool:
         """Another point may be sent after those before this number."""
-        return not number or self._left_before(number) < LEAD and self._waiting_before(number) < MOST_WAITING
+        margin = self._period / 2  # more than the times lose by rounding
+        return not number or (self._left_before(number) < LEAD - margin and
+                              self._waiting_before(number) < MOST_WAITING)
 
     def _is_due(self, cycle) -> bool:
         if not self.starts or self._end() == 1:

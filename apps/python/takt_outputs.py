@@ -1,0 +1,94 @@
+"""Inputs and outputs of the nodes of a bus, by their names. Used by takt_axes."""
+from __future__ import annotations
+
+from takt_drives import command
+from takt_link import Link, Obstacle
+from takt_signals import decode, encode
+
+ANSWER_TIME = 2.0  # seconds after which a value that taktd has not taken is refused
+# The shortest time to live in cycles: a command needs some of them to arrive.
+SHORTEST_LIFE = 3
+
+
+class Outputs:
+    """Raw values that are sent from each image, by their places in the layout. Their time to live
+    is the timeout of the program. After a longer silence they are not sent again."""
+
+    def __init__(self, link: Link):
+        self._link, self._values, self._sent = link, {}, 0.0
+        link.in_each_cycle.append(self._send)
+
+    def signal(self, name: str) -> float:
+        link, place = self._link, self._place(name)
+        if place not in link.values:
+            raise Obstacle("blocked", f"{name}: no value of it has come")
+        if place in link.stale:
+            raise Obstacle("blocked", f"{name}: its newest value has not come in time")
+        return decode(link.signals[place], link.values[place])
+
+    def set(self, name: str, value: float) -> None:
+        link, place = self._link, self._place(name)
+        signal = link.signals[place]
+        if not signal.output:
+            raise Obstacle("wrong use", f"{name} is an input of the master: no program sets it")
+        if any(place in axis.places.values() for axis in link.axes):
+            raise Obstacle("wrong use", f"{name} is a word of an axis, which enable() and motions "
+                                        "command")
+        raw = encode(signal, value)
+        if raw is None:
+            raise Obstacle("wrong use", f"{name} can't hold {value} {signal.unit}".rstrip())
+        link.events.clear()
+        self.hold({place: raw})
+
+        mask = (1 << signal.bits) - 1
+
+        def taken() -> bool:
+            return (link.values.get(place, ~raw) ^ raw) & mask == 0
+
+        def refused() -> str:
+            limited = (event.text for event in link.events
+                       if (event.kind, event.node_id) == ("limit_exceeded", signal.node_id))
+            return link.event("command_refused", link.sender) or next(limited, "")
+        link.wait(lambda: taken() or refused(), ANSWER_TIME)
+        if refused() or not taken():
+            self._values.pop(place, None)
+            raise Obstacle("refused", refused() or f"{name}: taktd has not taken the value")
+
+    def hold(self, values: dict[int, int]) -> None:
+        """Sends these values now and from each image."""
+        self._drop_after_silence()
+        self._values |= values
+        self._sent = self._link.now()
+        self._send()
+
+    def drop(self) -> bool:
+        """Sends no value any longer. Returns whether some were sent."""
+        held, self._values = bool(self._values), {}
+        return held
+
+    def _place(self, name: str) -> int:
+        node, _, part = name.partition(".")
+        places = [place for place, signal in self._link.signals.items() if signal.node == node and
+                  part in (signal.name, f"0x{signal.index:04X}:{signal.sub}")]
+        if len(places) == 1:
+            return places[0]
+        known = [f"{signal.node}.{signal.name}" if not places else
+                 f"{signal.node}.0x{signal.index:04X}:{signal.sub}"
+                 for place, signal in self._link.signals.items()
+                 if (place in places if places else signal.node == node)]
+        what = "names several signals" if places else "names no signal of the PDOs"
+        raise Obstacle("wrong use", f"'{name}' {what} of bus {self._link.bus}; there are: "
+                                    f"{', '.join(known) or 'none of this node'}")
+
+    def _drop_after_silence(self) -> None:
+        if self._values and self._link.now() - self._sent > self._link.timeout:
+            self._values = {}
+
+    def _send(self) -> None:
+        self._drop_after_silence()
+        if not self._values:
+            return
+        link = self._link
+        cycles = int(link.timeout / link.period) if link.period else 0
+        command(link, self._values, max(SHORTEST_LIFE, cycles))
+        self._sent = link.now()

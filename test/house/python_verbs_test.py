@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""python_verbs_test.py TYPES - what apps/python/takt_axes.py does beside motions, on the bus of python_daemon.py: Halt,
+quick stop, SDO, inputs and outputs."""
+import sys
+
+from python_daemon import PERIOD, SHORT, check, failures, jogs, obstacle, on_a_bus
+
+daemon, axes = jogs()
+axes.halt()
+stood = axes.positions
+check("a Halt ends a motion", daemon.drives[0].controlword == 0x10F and not axes.moving and
+      daemon.drives[0].statusword == 0x237)
+check("a halted axis takes no motion", "the axes are halted: call resume() first" in obstacle(axes.jog, 1.0)[1] and
+      "halted" in obstacle(axes.home)[1])
+axes.run(1.0)
+check("it stays halted", daemon.drives[0].controlword == 0x10F and axes.positions == stood)
+axes.resume()
+axes.run(0.1)
+check("it stands after the Halt", daemon.drives[0].controlword == 0x0F and axes.positions == stood)
+axes.move(stood[0] + 1.0)
+axes.jog(1.0)
+axes.quick_stop()
+check("a quick stop is confirmed", daemon.drives[0].statusword == 0x217 and not axes.moving)
+check("then the axis is not enabled", "call enable() first" in obstacle(axes.move, 1.0)[1])
+axes.run(1.0)
+check("and stays so", daemon.drives[0].statusword == 0x217)
+axes.enable()
+axes.halt()
+axes.enable()
+check("it can be enabled again, which ends a Halt", daemon.drives[0].controlword == 0x0F)
+axes.halt()
+axes.disable()
+check("a halted axis can be disabled", daemon.drives[0].statusword == 0x250)
+daemon, axes = jogs()
+axes._link.longest = SHORT
+daemon.each_cycle = lambda daemon: setattr(daemon.drives[0], "position", daemon.drives[0].position + 0.01)
+kind, text = obstacle(axes.halt)
+check("a drive that goes on is named", kind == "time over" and "shoulder does not obey the Halt" in text, (kind, text))
+daemon, axes = jogs()
+axes._link.longest, daemon.stubborn = SHORT, True
+kind, text = obstacle(axes.quick_stop)
+check("so is one that ignores a quick stop", kind == "blocked" and
+      "shoulder ignores the quick stop: it is in operation enabled" in text, text)
+daemon, axes = on_a_bus("shoulder")
+kinds = {obstacle(axes.halt)[0], obstacle(axes.quick_stop)[0]}
+check("an axis that is not enabled is not halted", kinds == {"blocked"} and not daemon.sender, kinds)
+
+
+daemon, axes = on_a_bus("shoulder", longest=SHORT)
+axes.run(0.1)
+daemon.objects = {(5, 0x6081, 0): b"\x10\x27\0\0", (5, 0x2001, 3): b"\xFE\xFF"}
+axes.write("shoulder", 0x6081, 0, b"\x20\x4E\0\0")
+check("objects are written and read by SDO", axes.read("shoulder", 0x6081) == b"\x20\x4E\0\0")
+axes.write_number("shoulder", 0x6081, 0, -2, 4)
+check("also as numbers", (axes.read_number("shoulder", 0x6081), axes.read_number("shoulder", 0x6081, signed=True),
+                          axes.read_number("shoulder", 0x2001, 3)) == (0xFFFF_FFFE, -2, 0xFFFE))
+kind, text = obstacle(axes.write_number, "shoulder", 0x6081, 0, 256, 1)
+check("a number that is too large is named", (kind, text) == ("wrong use", "256 needs more than 1 bytes"), text)
+kind, text = obstacle(axes.read, "shoulder", 0x2000, 3)
+check("a refused access is named", (kind, text) ==
+      ("refused", "shoulder 0x2000:03: the device refused it: object does not exist"), (kind, text))
+kind, text = obstacle(axes.read, "wrist", 0x6081)
+check("so is a node that does not exist", "the nodes are: shoulder, elbow, io" in text, text)
+daemon.mute = True
+check("and a missing answer", obstacle(axes.read, "shoulder", 0x6081)[0] == "time over")
+check("SDO takes no node", not daemon.sender)
+
+
+daemon, axes = on_a_bus("shoulder")
+daemon.io[0x6000] = 5
+axes.run(0.0)
+check("an input of any node has its value", axes.signal("io.switches") == axes.signal("io.0x6000:1") == 5.0)
+axes.set("io.valve", -1.5)
+check("an output is set in its unit", daemon.io[0x6411] == -1500 and axes.signal("io.valve") == -1.5)
+axes.run(2.0)
+check("it is repeated while a call waits", daemon.io_life > daemon.cycle)
+check("and the drives are left alone", daemon.drives[0].controlword == 0 and not daemon.signs)
+for _ in range(300):
+    daemon.pass_cycle()
+check("it ends with a silence of the program", daemon.io_life < daemon.cycle)
+axes.run(1.0)
+check("and does not come again by itself", daemon.io_life < daemon.cycle)
+axes.set("io.valve", 0.5)
+axes.disable()
+check("the end gives the node up", daemon.released == 1)
+life = daemon.io_life
+axes.run(0.1)
+check("and ends the value", daemon.io_life == life)
+for name, value, words in (("io.valve", 40.0, "can't hold 40.0"), ("io.valve", float("nan"), "can't hold nan"),
+                           ("io.switches", 1.0, "is an input"), ("io.lamp", 1.0, "there are: io.switches, io.valve"),
+                           ("shoulder.controlword", 0.0, "is a word of an axis")):
+    kind, text = obstacle(axes.set, name, value)
+    check("a wrong output is named", kind == "wrong use" and words in text and daemon.io_life == life, (kind, text))
+daemon.holder = "another"
+kind, text = obstacle(axes.set, "io.valve", 0.25)
+check("a refused value is named", kind == "refused" and "'another' holds the node" in text, (kind, text))
+daemon.holder = ""
+axes.run(10 * PERIOD)
+check("and not sent again", daemon.io[0x6411] == 500)
+sys.exit(1 if failures else 0)
