@@ -12,14 +12,13 @@ class FixedQueue {
   static_assert(N >= 2 && (N & (N - 1)) == 0);
 
  public:
-  /// Adds an item. Returns false if the queue is full.
-  bool push(const T& item) noexcept {
+  /// Adds an item. If the queue is full, it only counts the item.
+  void push(const T& item) noexcept {
     if (head_ - tail_ == N) {
       ++lost_;
-      return false;
+    } else {
+      items_[head_++ & (N - 1)] = item;
     }
-    items_[head_++ & (N - 1)] = item;
-    return true;
   }
   /// Takes the oldest item. Returns false if the queue is empty.
   bool pop(T& item) noexcept {

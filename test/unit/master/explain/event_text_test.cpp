@@ -78,6 +78,11 @@ TEST_F(EventText, AReadLimitIsNamedByItsLine) {
   EXPECT_THAT(read_limit_text(plan, {.detail = 1U << 8U, .value = 4}), Not(HasSubstr("607F")));
 }
 
+TEST_F(EventText, ADeviceThatGotItsIdByLssHasItsSerialNumber) {
+  EXPECT_THAT(describe(plan, {.kind = EventKind::lss_assigned, .node = 1, .value = 4711}),
+              AllOf(HasSubstr("4711"), HasSubstr("by LSS")));
+}
+
 TEST_F(EventText, ADriveThatStaysArmedNamesTheObject) {
   EXPECT_THAT(still_armed_text({.detail = 0x6007U << 8U | 1U}), HasSubstr("6007:01"));
 }

@@ -187,6 +187,52 @@ TEST_F(NetworkTest, RefusesTheRequestThatDoesNotFitAndAnswersAllOthers) {
   EXPECT_EQ(replies.size(), accepted);
 }
 
+TEST_F(NetworkTest, KnowsWhichObjectOfWhichNodeIsBeingWritten) {
+  constexpr ObjectKey controlword{0x6040, 0};
+  add_drive(5);
+  add_drive(6);
+  start();
+  run(100ms);
+  device(1).latency = 50ms;
+  Request write{.id = 1, .kind = RequestKind::sdo_download, .node = 6, .object = controlword};
+  write.size = 2;
+  network->submit(write, now);
+  for (const Time span : {0ms, 10ms}) {  // while it waits, and after it was sent
+    run(span);
+    EXPECT_TRUE(network->writes(6, controlword)) << span.count();
+    EXPECT_FALSE(network->writes(5, controlword)) << span.count();
+    EXPECT_FALSE(network->writes(6, {0x6060, 0})) << span.count();
+  }
+  run(100ms);
+  EXPECT_FALSE(network->writes(6, controlword));
+
+  network->submit(read(2, controlword, 6), now);
+  EXPECT_FALSE(network->writes(6, controlword));
+}
+
+TEST_F(NetworkTest, IsIdleWhileNothingIsUnderWay) {
+  add_drive();
+  start();
+  EXPECT_FALSE(network->idle());
+  run(10ms);  // The node has been reset and has not booted.
+  EXPECT_FALSE(network->idle());
+  run(90ms);
+  EXPECT_TRUE(network->idle());
+
+  device().latency = 50ms;
+  network->submit(read(1, {0x1000, 0}), now);
+  EXPECT_FALSE(network->idle());
+  run(10ms);
+  EXPECT_FALSE(network->idle());
+  run(90ms);
+  EXPECT_TRUE(network->idle());
+
+  network->begin_stop(now);
+  run(100ms);
+  EXPECT_TRUE(network->stopped());
+  EXPECT_FALSE(network->idle());
+}
+
 TEST_F(NetworkTest, SendsNmtCommandsAndFollowsThem) {
   add_drive(5);
   add_drive(6);

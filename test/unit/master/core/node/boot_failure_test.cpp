@@ -50,6 +50,26 @@ TEST_F(Boot, FailsWithTheLetterOfTheIdentityThatDiffers) {
   }
 }
 
+TEST_F(Boot, OfAnotherDeviceOnlyReadsItsIdentityUntilTheRightDeviceIsThere) {
+  const auto right = bytes({0x5A, 0x01, 0x00, 0x00});
+  Steps steps;
+  steps.nmt(NmtCommand::reset_communication)
+      .wait(BootAction::await_bootup, 'B', 500ms)
+      .object(BootAction::expect, 'D', {0x1018, 1}, right)
+      .object(BootAction::write, 'J', {0x2000, 0}, bytes({5}));
+  identity[{0x1018, 1}] = bytes({0x99, 0x09, 0x00, 0x00});
+  boot(std::move(steps), 5s);
+  EXPECT_EQ(failure().letter, 'D');
+  EXPECT_EQ(device().resets, 1);
+  EXPECT_TRUE(device().writes.empty());
+
+  device().objects[{0x1018, 1}] = right;
+  run(2s);
+  EXPECT_EQ(status().boot, BootState::ready);
+  EXPECT_EQ(device().resets, 2);  // The whole boot has run.
+  EXPECT_EQ(device().writes.size(), 1U);
+}
+
 TEST_F(Boot, FailsWithEWhenANodeToKeepAliveIsSilent) {
   Steps steps;
   steps.wait(BootAction::await_heartbeat, 'E', 300ms);

@@ -69,6 +69,23 @@ TEST(DeviceLimits, OfARangeHoldCommandsThatComeSlowly) {
   EXPECT_EQ(axes.controlword(), quick_stop);
 }
 
+TEST(DeviceLimits, OfARangeHaveTheUnitOfTheDevice) {
+  LimitedAxes axes{1, {.wraps = true}, [](BusPlan& plan) {
+                     reported_by_the_device(plan);
+                     plan.limits.device[0].factor = 0.5;
+                   }};
+  axes.learn(0, std::vector<LimitReading>{{lowest, 0xFFFF'FC18}, {highest, 2000}});
+  for (const std::int64_t inside : {-500, 1000}) {
+    axes.cycle_with(0, inside);
+    EXPECT_EQ(axes.position(), inside);
+  }
+  EXPECT_EQ(axes.refusals(), 0U);
+
+  axes.cycle_with(0, -501);
+  EXPECT_EQ(axes.refusals(), 1U);
+  EXPECT_EQ(axes.controlword(), quick_stop);
+}
+
 TEST(DeviceLimits, ThatAreImplausibleAreIgnoredAndThatIsReported) {
   const std::vector<std::vector<LimitReading>> cases{
       {{lowest, 0}, {highest, 0}},

@@ -267,6 +267,21 @@ TEST(OutputLimits, SeeTheSecondDifference) {
   EXPECT_EQ(axes.refusals(), 1U);
 }
 
+// What an acceleration of 2 counts per cycle and cycle allows in 50 ms, which are 25 cycles.
+TEST(OutputLimits, OfTheAccelerationAloneHoldTheFirstCommandToo) {
+  LimitedAxes axes{1, {.bend = 2, .wraps = true}};
+  axes.cycle_with(0, 2 * 25 * 25 + 1);
+  EXPECT_NE(axes.controlword(), enable_operation);
+  const std::vector<Event> reported = axes.reported();
+  ASSERT_FALSE(reported.empty());
+  EXPECT_EQ(reported[0].kind, EventKind::limit_exceeded);
+
+  LimitedAxes near{1, {.bend = 2, .wraps = true}};
+  near.cycle_with(0, 2 * 25 * 25);
+  EXPECT_EQ(near.position(), 2 * 25 * 25);
+  EXPECT_EQ(near.controlword(), enable_operation);
+}
+
 TEST(OutputLimits, LetOneAxisStopNoOther) {
   LimitedAxes axes{2, stepping};
   axes.command(0, 5);

@@ -163,5 +163,10 @@ TEST_F(SdoTextTest, ValuesOfTheCommunicationProfileAreExplained) {
             "\"save\"");
 }
 
+TEST_F(SdoTextTest, AByteAtSubIndexTwoOfAnotherObjectIsNoTransmissionType) {
+  EXPECT_EQ(plain(0x605, {0x2F, 0x00, 0x20, 0x02, 0x0A, 0, 0, 0}),
+            "SDO node 5 is asked: write 2000:02 = 10 (0xA)");
+}
+
 }  // namespace
 }  // namespace takt
