@@ -52,6 +52,13 @@ Done Axes::reset() { return state_->speed ? state_->reset_speed() : state_->rese
 Done Axes::home(const HomingOptions& options) {
   return state_->speed ? state_->no_position() : state_->home(options);
 }
+Done Axes::halt() { return state_->speed ? state_->no_drive() : state_->halt(); }
+Done Axes::resume() { return state_->speed ? state_->no_drive() : state_->resume(); }
+Done Axes::quick_stop() { return state_->speed ? state_->no_drive() : state_->quick_stop(); }
+std::expected<double, Obstacle> Axes::signal(const std::string& name) {
+  return state_->signal(name);
+}
+Done Axes::set(const std::string& name, double value) { return state_->set(name, value); }
 Done Axes::stop() { return state_->speed ? state_->stop_speed() : state_->stop(); }
 Done Axes::set_mode(DriveMode mode) {
   return state_->speed ? state_->no_position() : state_->set_mode(mode);

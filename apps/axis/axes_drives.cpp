@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <functional>
 
 #include "apps/axis/axes_state.hpp"
 #include "apps/axis/not_ready.hpp"
@@ -14,21 +15,40 @@ constexpr std::int8_t motion_not_enabled = 0;
 
 }  // namespace
 
-/// taktd also looks at the mode of operation before it reports a drive as enabled.
+/// taktd also looks at the mode of operation before it reports a drive as enabled. It reports none
+/// in other modes than cyclic synchronous position mode.
 bool Axes::State::is_ready(Index axis) const {
+  if (!group.axes().drive(axis).enabled()) return false;
+  if (group.axes().mode(axis) != DriveMode::cyclic_position) return group.axes().in_mode(axis);
   const auto motion = group.motion(axis);
-  return group.axes().drive(axis).enabled() && motion && motion->state != motion_not_enabled;
+  return motion && motion->state != motion_not_enabled;
 }
 
 bool Axes::State::all_ready() const {
   return all([this](Index axis) { return is_ready(axis); });
 }
 
+bool Axes::State::all_enabled() const {
+  return all([this](Index axis) { return group.axes().drive(axis).enabled(); });
+}
+
+bool Axes::State::all_in_cyclic_position() const {
+  return all([this](Index axis) { return group.axes().mode(axis) == DriveMode::cyclic_position; });
+}
+
+void Axes::State::send_as_modes_need() {
+  sending_ = all_in_cyclic_position() ? Sending::alive : Sending::controls;
+}
+
+Done Axes::State::not_enabled() const {
+  return obstacle(Obstacle::Kind::blocked, "the axes are not enabled: call enable() first");
+}
+
 std::string Axes::State::why_not_ready_text() const {
   std::string text;
   for (const Index axis : axes) {
     const std::string& name = group.axes().name(axis);
-    std::vector<std::string> lines = why_not_ready(group, axis, mode_);
+    std::vector<std::string> lines = why_not_ready(group, axis, group.axes().mode(axis));
     if (group.axes().drive(axis).enabled() && !group.motion(axis)) {
       lines = {name +
                ": taktd reports no motion of it: was taktd started with --no-motions, and are "
@@ -45,9 +65,11 @@ std::string Axes::State::why_not_ready_text() const {
 Done Axes::State::enable() {
   if (!is_current()) return restarted();
   AxisControl& known = group.axes();
-  mode_ = DriveMode::cyclic_position;
-  known.set_mode(mode_);
-  for (const Index axis : axes) known.set_goal(axis, DriveGoal::enabled);
+  end_halt(Readiness::not_enabled);
+  for (const Index axis : axes) {
+    known.set_mode(axis, DriveMode::cyclic_position);
+    known.set_goal(axis, DriveGoal::enabled);
+  }
   sending_ = Sending::controls;
   const auto blocked = [&](Index axis) {
     return known.drive(axis).in_fault() || group.holder(axis).is_other(held_statuses);
@@ -58,6 +80,7 @@ Done Axes::State::enable() {
   if (waited && !*waited) return *waited;
   if (all_ready()) {
     sending_ = Sending::alive;
+    readiness_ = Readiness::enabled;
     return {};
   }
   const std::string why = no_motions().empty() ? why_not_ready_text() : no_motions();
@@ -66,10 +89,13 @@ Done Axes::State::enable() {
 }
 
 Done Axes::State::disable() {
-  if (sending_ == Sending::nothing || !is_current()) return {};
+  if (!is_current()) return {};
+  if (!std::exchange(held_, {}).empty() && sending_ == Sending::nothing) group.release();
+  if (sending_ == Sending::nothing) return {};
   const Done stood = stop();
   if (!is_current()) return stood;
   AxisControl& known = group.axes();
+  end_halt(Readiness::not_enabled);
   for (const Index axis : axes) known.set_goal(axis, DriveGoal::disabled);
   sending_ = Sending::controls;
   const auto over = [&](Index axis) {
@@ -95,21 +121,30 @@ Done Axes::State::reset() {
   const auto in_fault = [&](Index axis) { return known.drive(axis).in_fault(); };
   if (!any(in_fault)) return {};
   for (const Index axis : axes) known.reset_fault(axis);
+  const bool only_resets = sending_ == Sending::nothing;
+  if (only_resets) std::erase_if(commanded_, std::not_fn(in_fault));
   sending_ = Sending::controls;
   const auto waited = wait_until([&] { return !any(in_fault); }, options.longest);
-  if (waited) return *waited;
-  return obstacle(Obstacle::Kind::blocked, why_not_ready_text());
+  const std::string why = waited ? "" : why_not_ready_text();
+  if (only_resets && is_current()) {
+    commanded_ = axes;
+    sending_ = Sending::nothing;
+    group.release();
+  }
+  return waited ? *waited : obstacle(Obstacle::Kind::blocked, why);
 }
 
 Done Axes::State::set_mode(DriveMode wanted) {
   if (!is_current()) return restarted();
   const Done stood = stop();
   if (!stood) return stood;
-  mode_ = wanted;
-  group.axes().set_mode(wanted);
+  for (const Index axis : axes) group.axes().set_mode(axis, wanted);
   sending_ = Sending::controls;
-  const auto waited = wait_until(
-      [this] { return all([this](Index i) { return group.axes().in_mode(i); }); }, options.longest);
+  const auto is_there = [this](Index axis) {
+    return group.axes().in_mode(axis) && (readiness_ != Readiness::enabled || is_ready(axis));
+  };
+  const auto waited = wait_until([&] { return all(is_there); }, options.longest);
+  if (waited && *waited && readiness_ == Readiness::enabled) send_as_modes_need();
   if (waited) return *waited;
   return obstacle(Obstacle::Kind::blocked, why_not_ready_text());
 }

@@ -11,23 +11,16 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-constexpr std::uint16_t start_bit = 0x0010;       // of the controlword, CiA 402-2, homing mode
-constexpr std::uint16_t target_reached = 0x0400;  // of the statusword, as the next one
-constexpr std::uint16_t homing_result = 0x3000;
+constexpr std::uint16_t start_bit = 0x0010;      // of the controlword, CiA 402-2, homing mode
+constexpr std::uint16_t homing_result = 0x3000;  // of the statusword
 /// If the statusword shows no homing for this time, the drive has not begun the run, or has
 /// interrupted it.
 constexpr std::chrono::seconds start_patience{1};
-/// Cycles in which a drive may show words from before a command.
-constexpr std::int64_t settled_cycles = 10;
 /// The longest homing run if taktd names none.
 constexpr std::chrono::seconds usual_time{60};
 /// Values of axis_motion_t::homing.
 constexpr std::int8_t is_homed = 2;
 constexpr std::int8_t has_failed = 3;
-
-std::uint32_t cycles_in(nanoseconds time, nanoseconds period) {
-  return static_cast<std::uint32_t>(time / std::max<nanoseconds>(period, nanoseconds{1000}));
-}
 
 }  // namespace
 
@@ -51,7 +44,8 @@ bool Axes::State::needs_homing(Index axis) const {
 
 Done Axes::State::home(const HomingOptions& wanted) {
   if (!is_current()) return restarted();
-  if (!all_ready()) {
+  if (Done halted = check_halt(); !halted) return halted;
+  if (readiness_ == Readiness::not_enabled || !all_ready()) {
     if (Done enabled = enable(); !enabled) return enabled;
   }
   if (Done stood = stop(); !stood) return stood;
@@ -62,14 +56,10 @@ Done Axes::State::home(const HomingOptions& wanted) {
   return {};
 }
 
-/// While the drives are in homing mode, taktd knows this program only by its commands, so they live
-/// as long as its motions would.
 Done Axes::State::home(std::span<const Index> chosen, nanoseconds longest) {
-  group.set_time_to_live(static_cast<std::int32_t>(cycles_in(options.timeout, group.period())));
   Done homed = enter_homing(chosen);
   if (homed) homed = run_homing(chosen, longest);
   const Done left = is_current() ? leave_homing(chosen) : Done{};
-  group.set_time_to_live(AxisGroupOptions{}.time_to_live);
   return homed ? left : homed;
 }
 
@@ -167,29 +157,15 @@ std::string Axes::State::trouble_of(HomingRun& run) {
       name, word);
 }
 
-/// Ends the runs, waits until the axes are at rest, and goes back to cyclic synchronous position
-/// mode. taktd lets the target positions follow the actual ones until the drives obey them.
+/// Ends the runs, waits until the axes are at rest, and sets cyclic synchronous position mode.
+/// taktd lets the target positions follow the actual ones until the drives obey them.
 Done Axes::State::leave_homing(std::span<const Index> chosen) {
   AxisControl& known = group.axes();
   for (const Index axis : chosen) known.end_homing(axis);
-  const std::int64_t begin = group.input().cycle();
-  std::int64_t moved = begin;  // the newest cycle in which an axis has moved
-  Eigen::VectorXd before = known.positions();
-  const auto may_move = [&](Index axis) {
-    const bool moves = known.positions()(axis) != before(axis);
-    const bool reached = (known.statusword(axis) & target_reached) != 0;
-    return known.drive(axis).enabled() && moves && !reached;
-  };
-  const auto at_rest = [&] {
-    const std::int64_t cycle = group.input().cycle();
-    if (std::ranges::any_of(chosen, may_move)) moved = cycle;
-    before = known.positions();
-    return cycle >= std::max(begin, moved) + settled_cycles;
-  };
-  const auto rested = wait_until(at_rest, options.longest, Interruption::ignored);
+  const auto rested = wait_for_rest(chosen, Interruption::ignored);
   if (rested && !*rested) return *rested;
   if (!rested) return obstacle(Obstacle::Kind::time_over, "the axes still move");
-  for (const Index axis : chosen) known.set_mode(axis, mode_);
+  for (const Index axis : chosen) known.set_mode(axis, DriveMode::cyclic_position);
   const auto is_over = [this](Index axis) {
     return is_ready(axis) || !group.axes().drive(axis).enabled();
   };
@@ -197,7 +173,7 @@ Done Axes::State::leave_homing(std::span<const Index> chosen) {
                                options.longest, Interruption::ignored);
   if (back && !*back) return *back;
   if (!all_ready()) return obstacle(Obstacle::Kind::blocked, why_not_ready_text());
-  sending_ = Sending::alive;
+  send_as_modes_need();
   return {};
 }
 

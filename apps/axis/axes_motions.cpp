@@ -71,8 +71,12 @@ Done Axes::State::wait_for_begin(const MotionBounds& bounds) {
                     fmt::format("{} bounds for {} axes", bound->size(), size()));
   }
   if (!is_current()) return restarted();
-  if (sending_ == Sending::nothing) {
-    return obstacle(Obstacle::Kind::blocked, "the axes are not enabled: call enable() first");
+  if (readiness_ == Readiness::not_enabled) return not_enabled();
+  if (Done halted = check_halt(); !halted) return halted;
+  if (!all_in_cyclic_position()) {
+    return obstacle(Obstacle::Kind::blocked,
+                    "a motion needs cyclic synchronous position mode (8) on all axes: call "
+                    "set_mode() first");
   }
   // taktd refuses a motion that comes from the image of a stop, or from an earlier one.
   const auto newer =

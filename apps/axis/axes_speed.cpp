@@ -120,7 +120,9 @@ Done Axes::State::enable_speed() {
 }
 
 Done Axes::State::disable_speed() {
-  if (sending_ == Sending::nothing || !is_current()) return {};
+  if (!is_current()) return {};
+  if (!std::exchange(held_, {}).empty() && sending_ == Sending::nothing) group.release();
+  if (sending_ == Sending::nothing) return {};
   const Done stood = stop_speed();
   if (!is_current()) return stood;
   speed->set_goal(SpeedGoal::off);
@@ -226,6 +228,11 @@ Done Axes::State::stop_speed() {
   if (waited && !*waited) return *waited;
   if (waited) return {};
   return obstacle(Obstacle::Kind::time_over, "the drives have not come to standstill");
+}
+
+Done Axes::State::no_drive() const {
+  return obstacle(Obstacle::Kind::wrong_use,
+                  fmt::format("{} is a speed axis: use jog() and stop()", names.front()));
 }
 
 Done Axes::State::no_position() const {

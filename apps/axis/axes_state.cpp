@@ -31,6 +31,7 @@ constexpr std::chrono::seconds longest_timeout{10};
 Axes::State::State(std::unique_ptr<Transport> lcm, AxesOptions given)
     : group{std::move(lcm), {.bus = given.bus, .sender = given.sender}},
       options{std::move(given)},
+      request_id_{random_number()},
       id_{static_cast<std::int32_t>(random_number() & 0x3FFF'FFFF)} {}
 
 bool Axes::State::all(const AxisCondition& is) const { return std::ranges::all_of(axes, is); }
@@ -94,6 +95,7 @@ Done Axes::State::find_position_axes() {
     names.push_back(known.name(axis));
     units.push_back(group.input().signals()[signals.position.value_or(*signals.controlword)].unit);
   }
+  commanded_ = axes;
   if (!axes.empty()) return {};
   return obstacle(
       Obstacle::Kind::wrong_use,
@@ -136,11 +138,7 @@ Done Axes::State::step(Interruption interruption) {
   const auto now = Clock::now();
   if (input == Input::fresh) {
     last_image_ = now;
-    if (speed) {
-      send_speeds();
-    } else if (sending_ == Sending::controls) {
-      group.send_controls(axes);
-    }
+    send_outputs();
     if (stream_) serve_stream();
   }
   keep_alive();
@@ -156,11 +154,39 @@ Done Axes::State::step(Interruption interruption) {
   return {};
 }
 
+/// taktd knows a program that commands other outputs than those of its motions only by its
+/// commands, so these live as long as its motions would.
+void Axes::State::send_outputs() {
+  give_up_after_silence();
+  if (speed) {
+    send_speeds();
+  } else {
+    const bool lasts = !held_.empty() || any([this](Index axis) {
+      return group.axes().mode(axis) != DriveMode::cyclic_position || !group.axes().in_mode(axis);
+    });
+    const auto cycles = options.timeout / std::max<nanoseconds>(group.period(), nanoseconds{1000});
+    group.set_time_to_live(lasts ? static_cast<std::int32_t>(cycles)
+                                 : AxisGroupOptions{}.time_to_live);
+    if (sending_ == Sending::controls) group.send_controls(commanded_);
+  }
+  send_held();
+}
+
+void Axes::State::give_up_after_silence() {
+  const auto now = Clock::now();
+  const auto silence = now - std::exchange(last_values_, now);
+  if (held_.empty() || silence <= options.timeout) return;
+  held_.clear();
+  lost_text_ = fmt::format("this program was silent for {} ms, so its set-points were given up",
+                           silence / std::chrono::milliseconds{1});
+}
+
 /// The axes may have other places in the layout of the new run, so that this object can't command
 /// them any more.
 Done Axes::State::restarted() {
   session_ = 0;
   sending_ = Sending::nothing;
+  held_.clear();
   return obstacle(Obstacle::Kind::restarted, "taktd has restarted");
 }
 
@@ -191,7 +217,9 @@ std::optional<Done> Axes::State::wait_until(const Condition& reached, nanosecond
 }
 
 Done Axes::State::run(nanoseconds time) {
-  return wait_until([] { return false; }, time).value_or(Done{});
+  if (const Done done = wait_until([] { return false; }, time).value_or(Done{}); !done) return done;
+  const std::string lost = std::exchange(lost_text_, {});
+  return lost.empty() ? Done{} : obstacle(Obstacle::Kind::stopped, lost);
 }
 
 std::string Axes::State::event_text(std::string_view kind, std::string_view part) const {

@@ -1,7 +1,9 @@
 #pragma once
 #include <chrono>
 #include <cstdint>
+#include <fmt/format.h>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,9 +22,14 @@ inline std::unexpected<Obstacle> obstacle(Obstacle::Kind kind, std::string text)
   return std::unexpected{Obstacle{.kind = kind, .text = std::move(text)}};
 }
 
-/// What an Axes knows and does. Its code is in seven files: waiting (axes_state.cpp), the states of
-/// the drives (axes_drives.cpp), homing (axes_homing.cpp), motions (axes_motions.cpp), streams
-/// (axes_stream.cpp), gears (axes_gear.cpp) and speed axes (axes_speed.cpp).
+/// Bit 10 of the statusword. CiA 402-2.
+inline constexpr std::uint16_t target_reached = 0x0400;
+/// Cycles in which a drive may show words from before a command.
+inline constexpr std::int64_t settled_cycles = 10;
+
+/// What an Axes knows and does. Waiting is in axes_state.cpp; each other file has the code of the
+/// calls that it names: drives, halt, homing, motions, stream, gear, speed, set_points, objects,
+/// signals and probe.
 class Axes::State {
  public:
   using Clock = std::chrono::steady_clock;
@@ -42,6 +49,21 @@ class Axes::State {
   Done disable();
   Done reset();
   Done set_mode(DriveMode wanted);
+  Done halt();
+  Done resume();
+  Done quick_stop();
+
+  using Data = std::vector<std::uint8_t>;
+  /// An object of a node.
+  struct Object {
+    std::string node;
+    std::uint16_t index;
+    std::uint8_t sub = 0;
+  };
+  std::expected<Data, Obstacle> transfer(const std::string& service, const Object& object,
+                                         std::span<const std::uint8_t> data);
+  std::expected<double, Obstacle> signal(const std::string& name);
+  Done set(const std::string& name, double value);
 
   Done home(const HomingOptions& wanted);
   /// What taktd has reported last about the axis with this index in the group.
@@ -67,6 +89,8 @@ class Axes::State {
   Done run_speed(const Values& velocities, const MotionBounds& bounds);
   Done wait_speed(std::chrono::nanoseconds longest);
   Done stop_speed();
+  /// Returns the obstacle of a call for drives of CiA 402.
+  Done no_drive() const;
   /// Returns the obstacle of a call that needs positions.
   Done no_position() const;
 
@@ -88,6 +112,12 @@ class Axes::State {
     controls,  ///< Controlwords with each image and signs of life: the drives change their states.
     alive,     ///< Signs of life: the drives are enabled.
   };
+  /// What this program has made of the drives, and so whether it may move them.
+  enum class Readiness : std::uint8_t {
+    not_enabled,
+    enabled,  ///< by enable()
+    halted,   ///< bit 8 of their controlwords is set
+  };
   /// Whether AxesOptions::interrupted can end a wait.
   enum class Interruption : std::uint8_t { obeyed, ignored };
   /// How the newest motion stands.
@@ -100,6 +130,21 @@ class Axes::State {
   };
   using Condition = std::function<bool()>;
   using AxisCondition = std::function<bool(Index)>;
+
+  enum class Signals : std::uint8_t { all, outputs };
+  /// Returns the place in the image of "io.name" or "io.0x6000:1".
+  std::expected<std::size_t, Obstacle> find_signal(const std::string& name, Signals among) const;
+  std::expected<std::int16_t, Obstacle> node_id(const std::string& name) const;
+  double value_at(std::size_t place) const;
+  /// Returns true if the output at this place leads an axis.
+  bool leads(std::size_t place) const;
+  Done set_raw(std::size_t place, std::int64_t raw);
+  std::string refusal_of(const std::string& node) const;
+  void send_held();
+  /// Sends the values that follow from a new image.
+  void send_outputs();
+  /// Gives up all set-points if this program was silent for longer than its timeout.
+  void give_up_after_silence();
 
   /// Takes the messages that have come, and sends what is due.
   Done step(Interruption interruption);
@@ -136,6 +181,24 @@ class Axes::State {
 
   bool is_ready(Index axis) const;
   bool all_ready() const;
+  bool all_enabled() const;
+  /// Returns true if taktd runs the motions of all axes: none has another mode than cyclic
+  /// synchronous position mode.
+  bool all_in_cyclic_position() const;
+  /// Drives in other modes need the commands of this program all the time.
+  void send_as_modes_need();
+  /// Returns the obstacle of a call before enable().
+  Done not_enabled() const;
+  Done check_halt() const;
+  void end_halt(Readiness next);
+  /// Returns true if the newest image shows that the controlword was sent with the Halt bit.
+  bool shows_halt(Index axis) const;
+  /// Waits until the actual positions of these axes stand, or their drives say so, and taktd moves
+  /// none of them.
+  std::optional<Done> wait_for_rest(std::span<const Index> chosen, Interruption interruption);
+  /// Puts the name and the statusword of each of these axes into `words`.
+  std::string text_of_each(std::span<const Index> chosen,
+                           fmt::format_string<const std::string&, std::uint16_t> words) const;
   std::string why_not_ready_text() const;
 
   /// Waits until a motion may begin, or returns why none may.
@@ -162,9 +225,14 @@ class Axes::State {
   Done stop_now();
 
   Sending sending_ = Sending::nothing;
-  DriveMode mode_ = DriveMode::cyclic_position;
-  std::int32_t id_ = 0;           // of the newest motion
-  bool has_motion_ = false;       // false before the first motion, and after a stop
+  std::vector<Index> commanded_;  // of the axes: those whose controlwords are sent
+  Readiness readiness_ = Readiness::not_enabled;
+  std::map<std::size_t, std::int64_t> held_;  // raw values of outputs, by their place in the image
+  Clock::time_point last_values_{};           // the newest image from which outputs were sent
+  std::string lost_text_;                     // why set-points were given up, until a call tells it
+  std::int64_t request_id_ = 0;               // of the newest request
+  std::int32_t id_ = 0;                       // of the newest motion
+  bool has_motion_ = false;                   // false before the first motion, and after a stop
   bool jog_goes_on_ = false;      // the newest motion is a jog, and no call has ended it
   std::optional<Stream> stream_;  // until it has ended
   std::int64_t session_ = 0;      // of the layout in which the axes were found

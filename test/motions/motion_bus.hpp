@@ -62,7 +62,9 @@ class WorldClocks final : public Clocks {
  public:
   explicit WorldClocks(const sim::World& world) : world_{world} {}
   Time now() const noexcept override { return world_.now(); }
-  Time wall_offset() const noexcept override { return {}; }
+  Time wall_offset() const noexcept override { return offset; }
+
+  Time offset{};  ///< clock of the day minus the time of the world
 
  private:
   const sim::World& world_;

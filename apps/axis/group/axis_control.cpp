@@ -109,12 +109,18 @@ void AxisControl::set_mode(Index axis, DriveMode mode) noexcept {
   if (mode != DriveMode::homing) of.homes = false;
 }
 
+DriveMode AxisControl::mode(Index axis) const { return state_->at(axis).commanded_mode; }
+
 void AxisControl::start_homing(Index axis) {
   State::Axis& of = state_->at(axis);
   of.homes = of.drive.enabled() && of.commanded_mode == DriveMode::homing;
 }
 
 void AxisControl::end_homing(Index axis) { state_->at(axis).homes = false; }
+
+void AxisControl::halt(Index axis) { state_->at(axis).halts = true; }
+
+void AxisControl::end_halt(Index axis) { state_->at(axis).halts = false; }
 
 void AxisControl::begin_set_points() {
   for (State::Axis& axis : state_->axes) {

@@ -85,6 +85,20 @@ bool AxisGroup::send_stream(motion_stream_t& stream) {
   return state_->send_goals(state_->motion_stream_channel, stream);
 }
 
+bool AxisGroup::send_request(request_t& request) {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  if (request.utime == 0) {
+    request.utime = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+  }
+  request.schema = message_schema;
+  request.session = state_->input.session();
+  request.sender = state_->sender;
+  request.size = static_cast<std::int32_t>(request.data.size());
+  return state_->seal_and_publish(state_->request_channel, request, now);
+}
+
+std::vector<reply_t> AxisGroup::take_replies() { return std::exchange(state_->replies, {}); }
+
 bool AxisGroup::release() {
   if (!std::exchange(state_->commands, false)) return true;
   command_t command{};

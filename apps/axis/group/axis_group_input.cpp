@@ -49,6 +49,8 @@ void AxisGroup::State::listen_to(std::string_view name) {
   speed_axes_channel = channel_name(bus, "SPEED_AXES");
   command_channel = channel_name(bus, "COMMAND");
   secured_channel = channel_name(bus, "SECURED");
+  request_channel = channel_name(bus, "REQUEST");
+  reply_channel = channel_name(bus, "REPLY");
   event_channel = channel_name(bus, "EVENT");
   status_channel = channel_name(bus, "STATUS");
   motion_channel = channel_name(bus, "MOTION");
@@ -56,6 +58,7 @@ void AxisGroup::State::listen_to(std::string_view name) {
   motion_gear_channel = channel_name(bus, "MOTION_GEAR");
   motion_stream_channel = channel_name(bus, "MOTION_STREAM");
   lcm->subscribe(motion_channel);
+  lcm->subscribe(reply_channel);
   lcm->subscribe(image_channel);
   lcm->subscribe(event_channel);
   lcm->subscribe(status_channel);
@@ -74,9 +77,18 @@ void AxisGroup::State::take(std::string_view channel, std::span<const std::byte>
     take_speed_axes(data);
   } else if (channel == motion_channel) {
     take_motion(data);
+  } else if (channel == reply_channel) {
+    take_reply(data);
   } else if (channel == event_channel && events.size() < most_events) {
     if (auto event = decode<event_t>(data)) events.push_back(std::move(*event));
   }
+}
+
+/// Other programs ask on the same channel.
+void AxisGroup::State::take_reply(std::span<const std::byte> data) {
+  auto reply = decode<reply_t>(data);
+  const bool own = reply && reply->schema == message_schema && reply->sender == sender;
+  if (own && replies.size() < most_events) replies.push_back(std::move(*reply));
 }
 
 void AxisGroup::State::take_image(std::span<const std::byte> data) {

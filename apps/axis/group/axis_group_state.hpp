@@ -9,6 +9,7 @@
 #include <string_view>
 #include <takt/axis.hpp>
 #include <takt/motion_t.hpp>
+#include <takt/reply_t.hpp>
 #include <takt/speed_axes_t.hpp>
 #include <utility>
 #include <vector>
@@ -36,14 +37,20 @@ class AxisGroup::State {
   void listen_to(std::string_view name);
   void take_image(std::span<const std::byte> data);
   void take_layout(std::span<const std::byte> data);
+  void take_reply(std::span<const std::byte> data);
   void take_status(std::span<const std::byte> data);
   void take_speed_axes(std::span<const std::byte> data);
   void use_speed_axes();
   void take_motion(std::span<const std::byte> data);
   void report_schema(std::int16_t schema);
   bool publish(command_t& command);
+  /// Sends a message about outputs, in the name of this group.
   template <class Message>
   bool send(const std::string& channel, Message& message);
+  /// Sends a message of any kind, in an envelope if there is a key.
+  template <class Message>
+  bool seal_and_publish(const std::string& channel, const Message& message,
+                        std::chrono::nanoseconds now);
   /// The same for a message about motions, from the newest image.
   template <class Message>
   bool send_goals(const std::string& channel, Message& message);
@@ -67,6 +74,8 @@ class AxisGroup::State {
   std::string motion_command_channel;
   std::string motion_gear_channel;
   std::string motion_stream_channel;
+  std::string request_channel;
+  std::string reply_channel;
   std::string event_channel;
   std::string status_channel;
   ImageInput input;
@@ -84,6 +93,7 @@ class AxisGroup::State {
   Clock::time_point arrival{};
   std::optional<EnvelopeSeal> seal;  // empty if there is no key
   std::vector<event_t> events;
+  std::vector<reply_t> replies;
   std::vector<std::byte> buffer;
 };
 
@@ -94,6 +104,12 @@ bool AxisGroup::State::send(const std::string& channel, Message& message) {
   message.utime = std::chrono::duration_cast<microseconds>(now).count();
   message.instance = instance;
   message.sender = sender;
+  return seal_and_publish(channel, message, now);
+}
+
+template <class Message>
+bool AxisGroup::State::seal_and_publish(const std::string& channel, const Message& message,
+                                        std::chrono::nanoseconds now) {
   const Bytes bytes = encode(message, buffer);
   if (!seal) return lcm->publish(channel, bytes);
   return lcm->publish(secured_channel, seal->seal(channel, bytes, message.session, now));

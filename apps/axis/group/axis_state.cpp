@@ -4,22 +4,14 @@
 #include <utility>
 
 #include "apps/axis/group/find_axes.hpp"
+#include "apps/axis/group/signal_format.hpp"
 #include "master/lcm/messages.hpp"
 
 namespace takt {
 namespace {
 
-constexpr std::uint16_t homing_start = 0x10;  // of the controlword in homing mode
-
-ValueFormat format_of(const signal_t& signal) {
-  const bool usable = std::isfinite(signal.scale) && signal.scale != 0.0 &&
-                      std::isfinite(signal.offset) && signal.bits >= 1 && signal.bits <= 64;
-  if (!usable) return {};
-  return {.type = static_cast<DataType>(signal.data_type),
-          .bits = static_cast<std::uint8_t>(signal.bits),
-          .scale = signal.scale,
-          .offset = signal.offset};
-}
+constexpr std::uint16_t homing_start = 0x10;   // of the controlword in homing mode
+constexpr std::uint16_t stays_halted = 0x100;  // of the controlword in all modes
 
 /// Returns true if drives obey the target position 0x607A in this mode.
 bool is_position_mode(std::int8_t mode) noexcept {
@@ -102,6 +94,7 @@ void AxisControl::State::step(Axis& axis, const ImageInput& input) {
     axis.controlword |= axis.handshake.step(axis.statusword);
   }
   if (axis.homes) axis.controlword |= homing_start;
+  if (axis.halts && axis.drive.enabled()) axis.controlword |= stays_halted;
 }
 
 /// Returns true if the axis is in Operation enabled and in a position mode, both as commanded and

@@ -26,6 +26,7 @@ struct AxisControl::State {
     bool stale = false;
     bool seeded = false;  // true if the target position has been set from a valid value
     DriveMode commanded_mode = DriveMode::cyclic_position;
+    bool halts = false;  // bit 8 of the controlword is set
     bool homes = false;  // bit 4 of the controlword is set in homing mode
   };
 

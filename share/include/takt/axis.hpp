@@ -17,6 +17,8 @@
 #include <takt/motion_gear_t.hpp>
 #include <takt/motion_stream_t.hpp>
 #include <takt/node_status_t.hpp>
+#include <takt/reply_t.hpp>
+#include <takt/request_t.hpp>
 #include <takt/speed_axis_t.hpp>
 #include <vector>
 
@@ -108,6 +110,14 @@ class AxisGroup {
   /// fills in `signals` and `values`. Returns false if LCM did not take the message. Axes
   /// (`<takt/motion.hpp>`) calls this function for speed axes.
   bool send_values(command_t& command);
+
+  /// Sends a request for a service of taktd, for example "sdo_upload", in the name of this group.
+  /// The caller fills in `id`, `service` and what the service needs; the call fills in the rest. A
+  /// request that is sent again with the same `utime` is served once. Returns false if LCM did not
+  /// take the message.
+  bool send_request(request_t& request);
+  /// Returns the answers to requests of this group that have come since the last call.
+  std::vector<reply_t> take_replies();
 
   /// Returns the axes, which wait() keeps up to date. There are none before the first layout.
   AxisControl& axes() noexcept;

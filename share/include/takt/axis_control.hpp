@@ -129,6 +129,8 @@ class AxisControl {
   void set_mode(DriveMode mode) noexcept;
   /// Sets the mode of operation of one axis.
   void set_mode(Index axis, DriveMode mode) noexcept;
+  /// Returns the mode of operation that was set for this axis.
+  DriveMode mode(Index axis) const;
   /// Sets bit 4 of the controlword of an axis that is in Operation enabled and whose commanded mode
   /// is DriveMode::homing; for other axes the call has no effect. The bit stays set until
   /// end_homing(), until another mode is set, or until the drive leaves Operation enabled. CiA
@@ -136,6 +138,11 @@ class AxisControl {
   void start_homing(Index axis);
   /// Clears that bit, which ends a homing run that has not ended.
   void end_homing(Index axis);
+  /// Sets bit 8 (Halt) of the controlword of this axis while its drive is in Operation enabled,
+  /// until end_halt(). CiA 402-2, controlword.
+  void halt(Index axis);
+  /// Clears that bit.
+  void end_halt(Index axis);
   /// Returns true if every axis shows the commanded mode (0x6061). If 0x6061 of an axis is not
   /// mapped, it is enough that the commands carry the mode (0x6060 is mapped). Returns false if
   /// neither object of an axis is mapped, for then its mode is unknown.

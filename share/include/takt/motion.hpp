@@ -5,6 +5,8 @@
 /// calls, as axes with a speed and without a position.
 #include <Eigen/Core>
 #include <chrono>
+#include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <expected>
 #include <functional>
@@ -159,6 +161,48 @@ class Axes {
   /// cyclic synchronous position mode, which enable() sets again.
   Done set_mode(DriveMode mode);
 
+  /// Sets the Halt bit (bit 8 of 0x6040) of all axes, and waits until they stand. taktd ends their
+  /// motions along their limits, too, so that they also stand if a drive ignores the bit, as many
+  /// do in cyclic synchronous modes. No motion begins before resume() or enable(). CiA 402-2,
+  /// controlword.
+  Done halt();
+  /// Ends the Halt. The axes stand until the next motion.
+  Done resume();
+  /// Commands a quick stop (bit 2 of 0x6040 is 0): the drives brake by themselves, along 0x6085.
+  /// Waits until they show it and stand. Then they are not enabled: see enable().
+  Done quick_stop();
+
+  /// Reads an object of a node by SDO, as little-endian bytes; up to 1024. taktd makes the
+  /// transfer, and motions go on. An obstacle has the abort code in words. CiA 301, SDO.
+  std::expected<std::vector<std::uint8_t>, Obstacle> read(const std::string& node,
+                                                          std::uint16_t index,
+                                                          std::uint8_t sub = 0);
+  /// Writes an object of a node by SDO. The number of bytes has to be that of the object.
+  Done write(const std::string& node, std::uint16_t index, std::uint8_t sub,
+             std::span<const std::uint8_t> data);
+  /// Reads an object that is an integer of this type.
+  template <std::integral Number>
+  std::expected<Number, Obstacle> read_number(const std::string& node, std::uint16_t index,
+                                              std::uint8_t sub = 0) {
+    const auto bits = read_bits(node, index, sub, sizeof(Number));
+    if (!bits) return std::unexpected{bits.error()};
+    return static_cast<Number>(*bits);
+  }
+  /// Writes an object that is an integer of this type.
+  template <std::integral Number>
+  Done write_number(const std::string& node, std::uint16_t index, std::uint8_t sub, Number value) {
+    return write_bits(node, index, sub, static_cast<std::uint64_t>(value), sizeof(Number));
+  }
+  /// Returns a value of the newest image in its unit: "io.NAME" is the input or output NAME of node
+  /// "io", as in layout_t, and "io.0x6000:1" is the value of this object.
+  std::expected<double, Obstacle> signal(const std::string& name);
+  /// Sets an output of a node in its unit, for all outputs that lead no axis. Returns when an image
+  /// shows that it was sent. The value is held until the next set(), until disable(), or until this
+  /// program is silent for AxesOptions::timeout or for the time in `on_timeout`; then the output
+  /// takes its fallback, and run() returns an obstacle. A device gets an RPDO only when each of
+  /// its outputs has a value.
+  Done set(const std::string& name, double value);
+
   /// Homes the axes: enables them if they are not enabled, sets homing mode (0x6060 = 6), starts
   /// the method that the drive has (0x6098, `homing:` of the network file), and waits for the
   /// result. Then, also after an obstacle, it ends the run, waits for standstill, and sets cyclic
@@ -246,6 +290,10 @@ class Axes {
  private:
   class State;
   explicit Axes(std::unique_ptr<State> state);
+  std::expected<std::uint64_t, Obstacle> read_bits(const std::string& node, std::uint16_t index,
+                                                   std::uint8_t sub, std::size_t bytes);
+  Done write_bits(const std::string& node, std::uint16_t index, std::uint8_t sub,
+                  std::uint64_t bits, std::size_t bytes);
   std::unique_ptr<State> state_;
 };
 

@@ -221,6 +221,16 @@ TEST_F(AxesOnABus, AreNotEnabledInAFaultBeforeItsReset) {
   EXPECT_TRUE(axes.enable());
 }
 
+TEST_F(AxesOnABus, ResetAFaultAndLeaveTheOtherDrivesAsTheyAre) {
+  daemon_.drives[0] = {.statusword = 0x0237, .controlword = 0x0F};
+  daemon_.drives[1].statusword = 0x0218;
+  Axes axes = open();
+  ASSERT_TRUE(axes.reset());
+  EXPECT_EQ(daemon_.drives[1].statusword, 0x0250);
+  EXPECT_EQ(daemon_.drives[0].controlword, 0x0F);
+  EXPECT_EQ(daemon_.releases, 1) << "the nodes are free again";
+}
+
 TEST_F(AxesOnABus, NameTheBitThatKeepsADriveFromBeingEnabled) {
   daemon_.each_cycle = [](MotionDaemon& daemon) { daemon.drives[0].statusword = 0x0240; };
   Axes axes = open({"shoulder"}, short_time);

@@ -1,0 +1,134 @@
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "apps/axis/axes_state.hpp"
+
+// Halt and quick stop: the drives stop by themselves.
+
+namespace takt {
+namespace {
+
+constexpr std::int64_t halt_bit = 0x0100;  // of the controlword
+
+}  // namespace
+
+Done Axes::State::check_halt() const {
+  if (readiness_ != Readiness::halted) return {};
+  return obstacle(Obstacle::Kind::blocked, "the axes are halted: call resume() first");
+}
+
+Done Axes::State::halt() {
+  if (!is_current()) return restarted();
+  if (readiness_ == Readiness::not_enabled) return not_enabled();
+  jog_goes_on_ = false;
+  stream_.reset();
+  readiness_ = Readiness::halted;
+  for (const Index axis : axes) group.axes().halt(axis);
+  sending_ = Sending::controls;
+  const auto is_sent = [this](Index axis) {
+    return shows_halt(axis) || !group.axes().drive(axis).enabled();
+  };
+  auto rested = wait_until([&] { return all(is_sent); }, options.longest);
+  if (rested && *rested) rested = wait_for_rest(axes, Interruption::obeyed);
+  if (rested && !*rested) return *rested;
+  if (!rested) {
+    return obstacle(
+        Obstacle::Kind::time_over,
+        text_of_each(
+            axes,
+            "{} does not obey the Halt, or does not come to rest: its statusword is 0x{:04X}"));
+  }
+  if (all_enabled()) return {};
+  return obstacle(Obstacle::Kind::blocked, why_not_ready_text());
+}
+
+Done Axes::State::resume() {
+  if (!is_current()) return restarted();
+  if (readiness_ != Readiness::halted) return {};
+  end_halt(Readiness::enabled);
+  sending_ = Sending::controls;
+  std::int64_t halted = group.input().cycle();  // the newest cycle in which an axis was
+  const auto over = [&] {
+    const std::int64_t cycle = group.input().cycle();
+    if (any([this](Index axis) { return shows_halt(axis); })) halted = cycle;
+    return cycle >= halted + settled_cycles && all_ready();
+  };
+  const auto waited = wait_until(over, options.longest);
+  if (waited && !*waited) return *waited;
+  if (!waited) return obstacle(Obstacle::Kind::blocked, why_not_ready_text());
+  send_as_modes_need();
+  return {};
+}
+
+bool Axes::State::shows_halt(Index axis) const {
+  const auto place = *group.axes().signals(axis).controlword;
+  return (group.input().values()[place] & halt_bit) != 0;
+}
+
+void Axes::State::end_halt(Readiness next) {
+  readiness_ = next;
+  for (const Index axis : axes) group.axes().end_halt(axis);
+}
+
+Done Axes::State::quick_stop() {
+  if (!is_current()) return restarted();
+  if (sending_ == Sending::nothing) return not_enabled();
+  jog_goes_on_ = false;
+  stream_.reset();
+  end_halt(Readiness::not_enabled);
+  AxisControl& known = group.axes();
+  for (const Index axis : axes) known.set_goal(axis, DriveGoal::quick_stopped);
+  sending_ = Sending::controls;
+  const auto obeys = [&](Index axis) { return !known.drive(axis).enabled(); };
+  const auto waited =
+      wait_until([&] { return all(obeys); }, options.longest, Interruption::ignored);
+  if (waited && !*waited) return *waited;
+  if (!waited) {
+    std::vector<Index> ignoring;
+    for (const Index axis : axes) {
+      if (!obeys(axis)) ignoring.push_back(axis);
+    }
+    return obstacle(
+        Obstacle::Kind::blocked,
+        text_of_each(
+            ignoring,
+            "{} ignores the quick stop: it is in operation enabled, its statusword is 0x{:04X}"));
+  }
+  const auto rested = wait_for_rest(axes, Interruption::ignored);
+  if (!rested) return obstacle(Obstacle::Kind::time_over, "the axes still move");
+  return *rested;
+}
+
+std::optional<Done> Axes::State::wait_for_rest(std::span<const Index> chosen,
+                                               Interruption interruption) {
+  const AxisControl& known = group.axes();
+  std::optional<std::int64_t> moved;  // the newest cycle in which an axis has moved
+  Eigen::VectorXd before = known.positions();
+  const auto may_move = [&](Index axis) {
+    const State402 state = known.drive(axis).state();
+    const bool brakes = known.drive(axis).enabled() || state == State402::quick_stop_active;
+    const bool moves = known.positions()(axis) != before(axis);
+    const bool reached = (known.statusword(axis) & target_reached) != 0;
+    return brakes && moves && !reached;
+  };
+  const auto at_rest = [&] {
+    const std::int64_t cycle = group.input().cycle();
+    if (!moved || moving() || std::ranges::any_of(chosen, may_move)) moved = cycle;
+    before = known.positions();
+    return cycle >= *moved + settled_cycles;
+  };
+  return wait_until(at_rest, options.longest, interruption);
+}
+
+std::string Axes::State::text_of_each(
+    std::span<const Index> chosen,
+    fmt::format_string<const std::string&, std::uint16_t> words) const {
+  std::string text;
+  for (const Index axis : chosen) {
+    text += text.empty() ? "" : "; ";
+    text += fmt::format(words, group.axes().name(axis), group.axes().statusword(axis));
+  }
+  return text;
+}
+
+}  // namespace takt
