@@ -32,20 +32,22 @@ module, because it sends no envelopes.
 """
 from __future__ import annotations
 
-from takt_cia402 import POSITION, VELOCITY
-from takt_drives import IDLE, Drives, release
+from takt_cia402 import TARGET_TORQUE, TARGET_VELOCITY, Axis
+from takt_drives import HALTED, IDLE, Drives, release
 from takt_find import find_axes
-from takt_homing import HOMED, home
+from takt_homing import home
 from takt_link import Link, Obstacle
 from takt_motions import Motions
 from takt_outputs import Outputs
+from takt_profiles import Profiles
 from takt_services import Services
 from takt_speed_axes import SpeedAxes
+from takt_view import View
 
 __all__ = ["Axes", "Obstacle"]
 
 
-class Axes:
+class Axes(View):
     """Axes of one bus. All positions, velocities and limits are in the unit of each axis (rad, m;
     raw counts without one)."""
 
@@ -61,6 +63,8 @@ class Axes:
         self._drives = None if words else Drives(self._link)
         self._motions = None if words else Motions(self._link, self._drives)
         self._services, self._outputs = Services(self._link), Outputs(self._link)
+        self._profiles = None if words else Profiles(self._link, self._drives, self._services,
+                                                     self._outputs)
 
     def __enter__(self) -> Axes:
         return self
@@ -68,66 +72,14 @@ class Axes:
     def __exit__(self, *_) -> None:
         self.disable()
 
-    # What the newest messages say.
-
-    @property
-    def sender(self) -> str:
-        """The name of this object in events and in status_t."""
-        return self._link.sender
-
-    @property
-    def names(self) -> list[str]:
-        return [axis.name for axis in self._link.axes]
-
-    @property
-    def units(self) -> list[str]:
-        """Units of the positions, or of the speeds of speed axes ("rpm", "Hz"). Empty: raw
-        counts."""
-        if self._speed:
-            return self._speed.units
-        return [axis.signals[POSITION].unit if POSITION in axis.signals else ""
-                for axis in self._link.axes]
-
-    @property
-    def positions(self) -> list[float]:
-        """Actual positions; 0 for speed axes."""
-        return [self._link.value(axis, POSITION) for axis in self._link.axes]
-
-    @property
-    def velocities(self) -> list[float]:
-        """Actual velocities; 0 where no PDO carries them."""
-        if self._speed:
-            return self._speed.speeds
-        return [self._link.value(axis, VELOCITY) for axis in self._link.axes]
-
-    @property
-    def commanded_positions(self) -> list[float]:
-        """Commanded positions; the actual ones before taktd reports motions."""
-        return [axis.motion.position if axis.motion else self._link.value(axis, POSITION)
-                for axis in self._link.axes]
-
-    @property
-    def following_errors(self) -> list[float]:
-        """Commanded minus actual positions, as taktd has reported last."""
-        return [axis.motion.following_error if axis.motion else 0.0 for axis in self._link.axes]
-
-    @property
-    def moving(self) -> bool:
-        """At least one axis moves or stops, as taktd has reported last."""
-        return (self._speed or self._motions).moving
-
-    @property
-    def homed(self) -> list[bool]:
-        """True: taktd has seen a homing run of this axis end well since its node began to exchange
-        PDOs."""
-        return [axis.motion is not None and axis.motion.homing == HOMED
-                for axis in self._link.axes]
-
     # What the drives do.
 
     def enable(self) -> None:
         """Leads all axes to Operation enabled, or makes speed axes ready to run. A fault is an
         obstacle: see reset()."""
+        if self._profiles:
+            self._profiles.stop()
+            self._profiles.hold_zeros()
         why = (self._speed or self._drives).enable()
         if why:
             self.disable()
@@ -135,19 +87,15 @@ class Axes:
 
     def disable(self) -> None:
         """Stops the axes, leads them to Switch on disabled, and releases their nodes."""
-        if self._drives:
-            self._motions.abandon()
-        sent = self._outputs.drop()
         if not self._link.commanding:
-            if sent:
+            if self._outputs.drop():
                 release(self._link)
             return
-        if self._speed:
-            return self._speed.disable()
         try:
-            self._motions.stop()
+            self.stop()
         finally:
-            self._drives.disable()
+            self._outputs.drop()
+            (self._speed or self._drives).disable()
 
     def halt(self) -> None:
         """Sets the Halt bit (bit 8 of 0x6040) of all axes, and waits until they stand. taktd ends
@@ -155,18 +103,24 @@ class Axes:
         as many do in cyclic synchronous modes. No motion begins before resume() or enable()."""
         self._needs_position()
         self._motions.abandon()
+        self._profiles.rest()
         self._drives.halt()
+        self._drives.check_follow()
 
     def resume(self) -> None:
         """Ends the Halt. The axes stand until the next motion."""
         self._needs_position()
-        self._drives.resume()
+        if self._drives.readiness == HALTED:
+            self._profiles.discard()
+            self._drives.end_halt()
+            self._drives.check_follow()
 
     def quick_stop(self) -> None:
         """Commands a quick stop (bit 2 of 0x6040 is 0): the drives brake by themselves, along
         0x6085. Waits until they show it and stand. Then they are not enabled: see enable()."""
         self._needs_position()
         self._motions.abandon()
+        self._profiles.rest()
         self._drives.quick_stop()
 
     def reset(self) -> None:
@@ -175,15 +129,17 @@ class Axes:
         if self._speed:
             return self._speed.reset()
         if self._drives.in_fault():
-            self._motions.stop()
+            self.stop()
             self._drives.reset()
 
-    def set_mode(self, mode: int) -> None:
-        """Stops the axes, sets another mode of operation (0x6060), and waits until the drives show
-        it. The drives keep their states. enable() sets cyclic synchronous position again."""
+    def set_mode(self, mode: int, axis: str | int | None = None) -> None:
+        """Stops the axes, sets another mode of operation (0x6060) of all axes, or of one by its
+        name or place, and waits until the drives show it. The drives keep their states. Velocities
+        and torques begin with 0. enable() sets cyclic synchronous position again."""
         self._needs_position()
-        self._motions.stop()
-        self._drives.set_mode(mode)
+        axes = self._link.axes if axis is None else [self._axis(axis)]
+        self.stop()
+        self._drives.set_mode(mode, axes)
 
     def home(self, together: bool = False, seconds: float = 0.0) -> None:
         """Homes the axes: enables them if they are not enabled, starts the homing method that each
@@ -196,7 +152,7 @@ class Axes:
         self._drives.check_not_halted()
         if self._drives.readiness == IDLE or not self._drives.ready():
             self.enable()
-        self._motions.stop()
+        self.stop()
         axes = self._link.axes
         for chosen in [axes] if together else [[axis] for axis in axes]:
             home(self._link, self._drives, chosen, seconds)
@@ -247,16 +203,6 @@ class Axes:
                    "max_phase_error": max_phase_error}
         self._motions.gear(leader, signal, numbers, limits)
 
-    @property
-    def locked(self) -> bool:
-        """True if all axes have the positions that their gears prescribe."""
-        return self._motions is not None and self._motions.locked
-
-    @property
-    def phase_errors(self) -> list[float]:
-        """Of gears: how far each axis is ahead of the position that its gear prescribes."""
-        return [axis.motion.phase_error if axis.motion else 0.0 for axis in self._link.axes]
-
     def wait_locked(self, seconds: float) -> None:
         """Waits until the gears of all axes are locked."""
         self._needs_position()
@@ -284,16 +230,12 @@ class Axes:
         self._needs_position()
         self._motions.stream(points)
 
-    @property
-    def stream_left(self) -> float:
-        """Seconds until the axes reach the newest point that the bus thread of taktd has, as taktd
-        has reported last. 0 if no stream runs."""
-        return self._motions.stream_left if self._motions else 0.0
-
     def wait(self, seconds: float = float("inf")) -> None:
         """Waits until the newest motion has ended: a move, when the commanded positions are at its
-        target. Does not stop it when `seconds` are over. Speed axes run until something stops
-        them."""
+        target, and a profile_move(), when the drives have reached it. Does not stop it when
+        `seconds` are over. Speed axes run until something stops them."""
+        if self._profiles and self._profiles.moving:
+            return self._profiles.wait(seconds)
         (self._speed or self._motions).wait(seconds)
 
     def run(self, seconds: float) -> None:
@@ -302,8 +244,42 @@ class Axes:
 
     def stop(self) -> None:
         """Stops the axes along their limits, and returns when taktd reports that their commanded
-        positions stand."""
+        positions stand. Target velocities and torques become 0. A profile_move() is ended by Halt
+        and forgotten."""
         (self._speed or self._motions).stop()
+        if self._profiles and self._link.commanding:
+            self._profiles.stop()
+
+    # What the drives make of a target in other modes.
+
+    def profile_move(self, *positions: float, velocity: float | list[float] = 0.0,
+                     acceleration: float | list[float] = 0.0,
+                     deceleration: float | list[float] = 0.0, relative: bool = False,
+                     at_once: bool = True, wait: bool = True) -> None:
+        """Moves the axes in profile position mode, which set_mode(1) sets: the drives compute the
+        motions along 0x6081, 0x6083 and 0x6084, which are written if they are given, in the unit
+        of the velocity. `relative`: distances. Without `at_once`, a set-point waits in the buffer
+        of the drive until the one before is reached. Returns when the drives have reached their
+        set-points, or with wait=False, when they have taken them: see wait() and stop()."""
+        self._needs_position()
+        bounds = {"velocity": velocity, "acceleration": acceleration, "deceleration": deceleration}
+        self._profiles.move(positions, bounds, relative, at_once)
+        if wait:
+            self.wait()
+
+    def command_velocities(self, *velocities: float) -> None:
+        """Commands target velocities (0x60FF) in modes 3 or 9 (profile, cyclic synchronous
+        velocity), and returns when taktd sends them. They stay while this program is alive, until
+        stop(). Each step has to keep the limit of acceleration of the network file, and in mode 9
+        drives follow it at once: command small ones."""
+        self._needs_position()
+        self._profiles.command(TARGET_VELOCITY, velocities)
+
+    def command_torques(self, *torques: float) -> None:
+        """The same for target torques (0x6071) in modes 4 or 10. stop() commands a torque of 0,
+        which does not brake."""
+        self._needs_position()
+        self._profiles.command(TARGET_TORQUE, torques)
 
     # Objects of the devices, and the inputs and outputs of all nodes.
 
@@ -338,6 +314,14 @@ class Axes:
         program is alive: calls that wait repeat it. After a silence of `timeout` the node takes
         the fallback of `on_timeout`, and the value is not sent again. disable() ends it, too."""
         self._outputs.set(name, value)
+
+    def _axis(self, axis: str | int) -> Axis:
+        names = self.names
+        if axis in names:
+            return self._link.axes[names.index(axis)]
+        if isinstance(axis, int) and 0 <= axis < len(names):
+            return self._link.axes[axis]
+        raise Obstacle("wrong use", f"'{axis}' is none of the axes {', '.join(names)}")
 
     def _needs_position(self) -> None:
         if self._speed:

@@ -1,9 +1,11 @@
 """One axis of a CiA 402 drive: its objects, its state, and its controlwords. Used by takt_axes."""
 
 CONTROLWORD, STATUSWORD, MODE, MODE_DISPLAY = 0x6040, 0x6041, 0x6060, 0x6061
-POSITION, VELOCITY, TARGET = 0x6064, 0x606C, 0x607A  # actual position and velocity, target position
+POSITION, VELOCITY = 0x6064, 0x606C  # actual position and velocity
+TARGET, TARGET_VELOCITY, TARGET_TORQUE = 0x607A, 0x60FF, 0x6071
 # The objects that an axis has in its PDOs, and whether the master sends them.
-OBJECTS = ({(index, True) for index in (CONTROLWORD, MODE, TARGET)} |
+OBJECTS = ({(index, True)
+            for index in (CONTROLWORD, MODE, TARGET, TARGET_VELOCITY, TARGET_TORQUE)} |
            {(index, False) for index in (STATUSWORD, MODE_DISPLAY, POSITION, VELOCITY)})
 # The objects of each further axis of a device are 0x800 higher.
 FIRST_OBJECT, LAST_OBJECT, AXIS_STEP = 0x6000, 0x9FFF, 0x800
@@ -47,6 +49,8 @@ class Axis:
         self.held = 0  # status_t in sequence in which another program holds the node
         self.mode = CYCLIC_SYNCHRONOUS_POSITION  # commanded mode of operation
         self.mode_bits = 0  # of the controlword in Operation enabled: what the mode defines
+        self.target = None  # raw target position of a set-point in profile position mode
+        self.has_own_target = False  # this program has commanded one, and not taktd
 
     @property
     def state(self) -> str:
@@ -58,6 +62,9 @@ class Axis:
     @property
     def enabled(self) -> bool:
         return self.state == ENABLED
+
+    def change_mode(self, mode: int) -> None:
+        self.mode, self.mode_bits, self.target = mode, 0, None
 
     def controlword(self, words: dict) -> int:
         return words.get(self.state, 0) | (self.mode_bits if self.enabled else 0)

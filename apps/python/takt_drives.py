@@ -6,7 +6,7 @@ from takt import command_t
 
 from takt_cia402 import (CONTROLWORD, CYCLIC_SYNCHRONOUS_POSITION, DISABLED, DISABLING, ENABLED,
                          ENABLING, FAULTS, HALT, KEEPING, MODE, MODE_DISPLAY, POSITION, QUICK_STOP,
-                         QUICK_STOPPING, RESETTING, TARGET_REACHED, Axis)
+                         QUICK_STOPPING, RESETTING, TARGET, TARGET_REACHED, Axis)
 from takt_link import Link, Obstacle
 
 NOT_ENABLED, MOVES, STOPS = 0, 2, 3  # axis_motion_t::state
@@ -21,8 +21,9 @@ LOW_TIME = 0.1  # seconds for which bit 7 of the controlword is low before its r
 
 
 class Drives:
-    """Sends controlwords and modes while a state or a mode changes. The values stay valid after
-    that as long as this program gives signs of life."""
+    """Sends controlwords and modes while a state or a mode changes. In cyclic synchronous position
+    mode, the values stay valid after that as long as this program gives signs of life; in other
+    modes they are sent from each image."""
 
     def __init__(self, link: Link):
         self._link = link
@@ -34,7 +35,7 @@ class Drives:
         """Returns why the axes are not enabled, or an empty text."""
         link = self._link
         for axis in link.axes:
-            axis.mode, axis.mode_bits = CYCLIC_SYNCHRONOUS_POSITION, 0
+            axis.change_mode(CYCLIC_SYNCHRONOUS_POSITION)
         self.words, self.readiness, link.commanding = ENABLING, IDLE, True
 
         def no_motions() -> str:
@@ -65,6 +66,11 @@ class Drives:
                 f"{axis.name} does not confirm that it is disabled: {axis.bits()}"
                 for axis in link.axes if not over(axis)))
 
+    def keep(self) -> None:
+        """The axes keep their states and modes from now on."""
+        cyclic = all(axis.mode == CYCLIC_SYNCHRONOUS_POSITION for axis in self._link.axes)
+        self.words = None if cyclic else KEEPING
+
     def in_fault(self) -> bool:
         return any(axis.state in FAULTS for axis in self._link.axes)
 
@@ -77,23 +83,24 @@ class Drives:
         link.wait(lambda: False, LOW_TIME)
         self.words = RESETTING
         good = link.wait(lambda: not self.in_fault(), link.longest)
-        self.words = None
+        self.keep()
         if not good:
             raise Obstacle("blocked", self.why_not_ready())
 
-    def set_mode(self, mode: int) -> None:
+    def set_mode(self, mode: int, axes: list[Axis]) -> None:
+        """The other axes keep their modes."""
         link = self._link
-        for axis in link.axes:
-            axis.mode = mode
+        for axis in axes:
+            axis.change_mode(mode)
         self.words, link.commanding = KEEPING, True
 
         def shown(axis: Axis) -> bool:
             return self.shown_mode(axis) == mode
-        good = link.wait(lambda: all(map(shown, link.axes)), link.longest)
-        self.words = None
+        good = link.wait(lambda: all(map(shown, axes)), link.longest)
+        self.keep()
         if not good:
             raise Obstacle("blocked", "; ".join(f"{axis.name}: 0x6061 does not show mode {mode}"
-                                                for axis in link.axes if not shown(axis)))
+                                                for axis in axes if not shown(axis)))
 
     def halt(self) -> None:
         link = self._link
@@ -103,18 +110,15 @@ class Drives:
             raise Obstacle("time over", "; ".join(
                 f"{axis.name} does not obey the Halt, or does not come to rest: its statusword is "
                 f"0x{axis.statusword:04X}" for axis in link.axes))
-        if not all(axis.enabled for axis in link.axes):
-            raise Obstacle("blocked", self.why_not_ready())
 
-    def resume(self) -> None:
-        if self.readiness != HALTED:
-            return
+    def end_halt(self) -> None:
         link = self._link
         self.words, self.readiness, begin = KEEPING, READY, link.cycle
-        good = link.wait(lambda: link.cycle >= begin + WORD_CYCLES and self.ready(), link.longest)
-        self.words = None
-        if not good:
-            raise Obstacle("blocked", self.why_not_ready())
+
+        def over() -> bool:
+            return self.follow() or any(not axis.enabled for axis in link.axes)
+        link.wait(lambda: link.cycle >= begin + WORD_CYCLES and over(), link.longest)
+        self.keep()
 
     def quick_stop(self) -> None:
         link = self._link
@@ -170,7 +174,15 @@ class Drives:
 
     def ready(self) -> bool:
         """True if taktd can move all axes."""
-        return all(axis.enabled and axis.motion and axis.motion.state != NOT_ENABLED
+        return all(axis.enabled and can_move(axis) for axis in self._link.axes)
+
+    def check_follow(self) -> None:
+        if not self.follow():
+            raise Obstacle("blocked", self.why_not_ready())
+
+    def follow(self) -> bool:
+        """True if all axes are enabled, and taktd can move those whose mode is for its motions."""
+        return all(axis.enabled and (axis.mode != CYCLIC_SYNCHRONOUS_POSITION or can_move(axis))
                    for axis in self._link.axes)
 
     def why_not_ready(self) -> str:
@@ -197,6 +209,14 @@ class Drives:
             f"{axis.name}: taktd does not count it as enabled: is its mode of operation 8, and is "
             "its target position sent?")
 
+    def _target(self, axis: Axis) -> int | None:
+        """The target position to send. An axis whose target was commanded by this program must not
+        jump there in cyclic synchronous position mode, so its target follows its actual position
+        until taktd moves it. None: taktd commands it."""
+        if not axis.has_own_target or axis.mode == CYCLIC_SYNCHRONOUS_POSITION and can_move(axis):
+            return None
+        return self._link.raw(axis, POSITION) if axis.target is None else axis.target
+
     def _newest_error(self, node) -> str:
         told = next((event.text for event in reversed(self._link.events)
                      if event.kind == "emcy" and event.node_id == node.node_id), "")
@@ -209,10 +229,16 @@ class Drives:
         for axis in self._link.axes:
             halt = HALT if self.readiness == HALTED and axis.enabled else 0
             word = axis.controlword(self.words) | halt
-            for index, value in ((CONTROLWORD, word), (MODE, axis.mode)):
-                if index in axis.places:
+            for index, value in ((CONTROLWORD, word), (MODE, axis.mode),
+                                 (TARGET, self._target(axis))):
+                if index in axis.places and value is not None:
                     values[axis.places[index]] = value
         command(self._link, values)
+
+
+def can_move(axis: Axis) -> bool:
+    """True if taktd counts the axis as enabled."""
+    return axis.motion is not None and axis.motion.state != NOT_ENABLED
 
 
 def moves(axis: Axis) -> bool:

@@ -27,7 +27,7 @@ def home(link: Link, drives: Drives, axes: list[Axis], seconds: float) -> None:
 
 def _enter(link: Link, drives: Drives, axes: list[Axis]) -> None:
     for axis in axes:
-        axis.mode = HOMING
+        axis.change_mode(HOMING)
     drives.words, begin = KEEPING, link.cycle
 
     def there() -> bool:
@@ -85,10 +85,10 @@ def _leave(link: Link, drives: Drives, axes: list[Axis]) -> None:
     if not drives.wait_for_rest(axes):
         raise Obstacle("time over", "the axes still move")
     for axis in axes:
-        axis.mode = CYCLIC_SYNCHRONOUS_POSITION
+        axis.change_mode(CYCLIC_SYNCHRONOUS_POSITION)
     drives.words = KEEPING
     link.wait(lambda: all(not axis.enabled or axis.motion.state != NOT_ENABLED for axis in axes),
               link.longest)
-    drives.words = None
+    drives.keep()
     if not drives.ready():
         raise Obstacle("blocked", drives.why_not_ready())

@@ -37,22 +37,30 @@ class Outputs:
         raw = encode(signal, value)
         if raw is None:
             raise Obstacle("wrong use", f"{name} can't hold {value} {signal.unit}".rstrip())
+        self.confirm({place: raw})
+
+    def confirm(self, values: dict[int, int]) -> None:
+        """Holds these values, and waits until taktd sends them. If it refuses one, none is held."""
+        link = self._link
+        nodes = {link.signals[place].node_id for place in values}
         link.events.clear()
-        self.hold({place: raw})
+        self.hold(values)
 
-        mask = (1 << signal.bits) - 1
-
-        def taken() -> bool:
-            return (link.values.get(place, ~raw) ^ raw) & mask == 0
+        def taken(place: int) -> bool:
+            mask = (1 << link.signals[place].bits) - 1
+            return (link.values.get(place, ~values[place]) ^ values[place]) & mask == 0
 
         def refused() -> str:
             limited = (event.text for event in link.events
-                       if (event.kind, event.node_id) == ("limit_exceeded", signal.node_id))
+                       if event.kind == "limit_exceeded" and event.node_id in nodes)
             return link.event("command_refused", link.sender) or next(limited, "")
-        link.wait(lambda: taken() or refused(), ANSWER_TIME)
-        if refused() or not taken():
-            self._values.pop(place, None)
-            raise Obstacle("refused", refused() or f"{name}: taktd has not taken the value")
+        link.wait(lambda: all(map(taken, values)) or refused(), ANSWER_TIME)
+        late = [f"{link.signals[place].node}.{link.signals[place].name}" for place in values
+                if not taken(place)]
+        if late or refused():
+            for place in values:
+                self._values.pop(place, None)
+            raise Obstacle("refused", refused() or f"taktd has not taken {', '.join(late)}")
 
     def hold(self, values: dict[int, int]) -> None:
         """Sends these values now and from each image."""

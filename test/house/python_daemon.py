@@ -13,7 +13,9 @@ NEXT = {(0x250, 0x06): 0x231, (0x231, 0x07): 0x233, (0x233, 0x0F): 0x237, (0x237
 IO = 10  # node-ID of the I/O node
 # Node, object, is an output, name, data type, bits, scale.
 LAYOUT = [(node, *words) for words in ((0x6041, False, "statusword", 6, 16, 1.0), (0x6064, False, "position", 4, 32, 1e-3),
-                                       (0x6040, True, "controlword", 6, 16, 1.0), (0x6060, True, "mode", 2, 8, 1.0))
+                                       (0x6040, True, "controlword", 6, 16, 1.0), (0x6060, True, "mode", 2, 8, 1.0),
+                                       (0x607A, True, "target", 4, 32, 1e-3), (0x60FF, True, "target_velocity", 4, 32, 1e-2),
+                                       (0x6071, True, "target_torque", 3, 16, 1e-3))
           for node in (5, 6)] + [(IO, 0x6000, False, "switches", 5, 8, 1.0), (IO, 0x6411, True, "valve", 3, 16, 1e-3)]
 NAMES = {5: "shoulder", 6: "elbow", IO: "io"}
 STEP = 0.5  # of a move in a cycle
@@ -27,6 +29,7 @@ class Drive:
         self.node, self.statusword, self.controlword, self.position, self.target, self.velocity = node, 0x250, 0, 0.0, 0.0, 0.0
         self.motion, self.mode = takt.axis_motion_t(), 0
         self.motion.node_id, self.motion.axis = node, 1
+        self.targets, self.way = {0x607A: 0, 0x60FF: 0, 0x6071: 0}, []  # way: set-points of profile position
         self.pending = None  # a motion that is about to begin: its first cycle, command and goal
         self.slowing, self.renewed, self.patience, self.stopped, self.newest = 0, 0, 0, -1, (-1, 0)
 
@@ -49,8 +52,35 @@ class Drive:
         self.renewed, self.patience = cycle, command.timeout_ms / 1000 / PERIOD
 
     def shows(self, index):
-        return {0x6041: self.statusword, 0x6064: round(self.position * 1000), 0x6040: self.controlword,
-                0x6060: self.mode}[index]
+        return {0x6041: self.statusword | self.bits(), 0x6064: round(self.position * 1000), 0x6040: self.controlword,
+                0x6060: self.mode, **self.targets}[index]
+
+    def take_word(self, index, value):
+        """A rising edge of bit 4 hands over a set-point in profile position mode."""
+        before, self.controlword = self.controlword, value if index == 0x6040 else self.controlword
+        self.mode = value if index == 0x6060 else self.mode
+        if self.mode != 1 or self.controlword & ~before & 0x10 == 0 or len(self.way) > 1:
+            return
+        target = self.targets[0x607A] / 1000 + (self.position if self.controlword & 0x40 else 0.0)
+        self.way = [target] if self.controlword & 0x20 else [*self.way, target]
+
+    def bits(self):
+        """What the modes show in the statusword while the drive is enabled."""
+        if self.statusword != 0x237 or self.mode != 1:
+            return 0
+        return (0 if self.way else 0x400) | (0x1000 if self.controlword & 0x10 or len(self.way) > 1 else 0)
+
+    def drive_itself(self):
+        """One cycle in a mode in which the drive makes its motions."""
+        self.way = self.way if self.statusword == 0x237 else []
+        if self.statusword != 0x237 or self.controlword & 0x100:
+            return
+        if self.mode in (3, 9):
+            self.position += self.targets[0x60FF] / 100 * PERIOD
+        if self.mode == 1 and self.way:
+            left = self.way[0] - self.position
+            self.position += math.copysign(min(abs(left), 0.01), left)
+            self.way = self.way[self.position == self.way[0]:]
 
     def objection(self, command):
         if command.cycle <= self.stopped:
@@ -154,8 +184,10 @@ class Daemon:
             return self.say("command_refused", f"command of '{command.sender}' refused: {why}", node)
         if node == IO:
             self.io[index], self.io_life = value, self.cycle + command.time_to_live
+        elif index in self.drives[node - 5].targets:
+            self.drives[node - 5].targets[index] = value
         else:
-            setattr(self.drives[node - 5], "controlword" if index == 0x6040 else "mode", value)
+            self.drives[node - 5].take_word(index, value)
 
     def answer(self, request):
         reply, key = takt.reply_t(), (request.node_id, request.index, request.sub)
@@ -242,6 +274,7 @@ class Daemon:
     def advance(self, drive):
         if not self.stubborn:
             drive.statusword = NEXT.get((drive.statusword, drive.controlword & 0xFF), drive.statusword)
+        drive.drive_itself()
         if drive.controlword & 0x100 and drive.motion.id and not drive.slowing:
             drive.slowing = SLOWING
         enabled, motion = drive.statusword == 0x237 and drive.mode == 8, drive.motion

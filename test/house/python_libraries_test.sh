@@ -6,4 +6,4 @@ python=$1
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 lcm-gen -p --ppath "$tmp" "$here"/../../share/lcm/*.lcm
-for test in python_speed_test python_motions_test python_verbs_test python_axes_faults; do "$python" "$here/$test.py" "$tmp"; done
+for test in speed_test motions_test verbs_test profiles_test axes_faults; do "$python" "$here/python_$test.py" "$tmp"; done

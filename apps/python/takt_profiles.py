@@ -1,0 +1,196 @@
+"""Profile position mode, and the modes of velocities and torques, CiA 402-2. Used by takt_axes."""
+from __future__ import annotations
+
+from takt_cia402 import (AXIS_STEP, CONTROLWORD, KEEPING, POSITION, TARGET, TARGET_REACHED,
+                         TARGET_TORQUE, TARGET_VELOCITY, VELOCITY, Axis)
+from takt_drives import HALTED, READY, WORD_CYCLES, Drives
+from takt_link import Link, Obstacle
+from takt_outputs import Outputs
+from takt_services import Services
+from takt_signals import encode
+
+# Modes of operation (0x6060): profile position; profile and cyclic synchronous velocity, torque.
+PROFILE_POSITION = 1
+MODES_OF = {TARGET_VELOCITY: (3, 9), TARGET_TORQUE: (4, 10)}
+# Bits of the controlword and of the statusword in profile position mode.
+NEW_SET_POINT, CHANGE_AT_ONCE, RELATIVE = 0x10, 0x20, 0x40
+ACKNOWLEDGED = 0x1000
+BOUNDS = {"velocity": 0x6081, "acceleration": 0x6083, "deceleration": 0x6084}
+
+
+class Profiles:
+    """What the drives themselves make of a target in modes other than cyclic synchronous
+    position."""
+
+    def __init__(self, link: Link, drives: Drives, services: Services, outputs: Outputs):
+        self._link, self._drives = link, drives
+        self._services, self._outputs = services, outputs
+        self._given = None  # the cycle of the newest set-point in profile position mode
+        link.when_abandoned.append(self.rest)
+
+    @property
+    def moving(self) -> bool:
+        """A set-point in profile position mode is not reached, as far as this program knows."""
+        return self._given is not None
+
+    def rest(self) -> None:
+        """Ends the velocities and torques that are commanded."""
+        if self._link.commanding:
+            self.hold_zeros()
+
+    def hold_zeros(self) -> None:
+        """Commands velocities and torques of 0, where they are in RPDOs."""
+        self._outputs.hold({axis.places[index]: 0 for axis in self._link.axes
+                            for index in MODES_OF if index in axis.places})
+
+    def command(self, index: int, values) -> None:
+        """Commands the target velocities or torques of all axes."""
+        link = self._link
+        self._check(MODES_OF[index], values)
+        for axis in link.axes:
+            if index not in axis.places:
+                raise Obstacle("blocked", f"{axis.name}: 0x{index:04X} is in no RPDO: map it in "
+                                          "`rpdo:` of the network file")
+        raws = [self._raw(axis, axis.signals[index], value)
+                for axis, value in zip(link.axes, values)]
+        self._outputs.confirm({axis.places[index]: raw for axis, raw in zip(link.axes, raws)})
+
+    def move(self, positions, bounds: dict, relative: bool, at_once: bool) -> None:
+        """Hands over a set-point in profile position mode."""
+        axes = self._link.axes
+        self._check((PROFILE_POSITION,), positions)
+        targets = {axis: self._raw(axis, self._signal(axis, POSITION), float(position), relative)
+                   for axis, position in zip(axes, positions)}
+        for name, bound in bounds.items():
+            many = isinstance(bound, (list, tuple))
+            for axis, value in zip(axes, bound if many else [bound] * len(axes)):
+                if value:
+                    self._set_bound(axis, BOUNDS[name], float(value))
+        self._hand_over(targets, (CHANGE_AT_ONCE if at_once else 0) | (RELATIVE if relative else 0))
+
+    def wait(self, seconds: float) -> None:
+        """Waits until the drives have reached their set-points, and have none in their buffers."""
+        link, axes = self._link, self._link.axes
+
+        def reached() -> bool:
+            self._check_enabled("stopped", axes)
+            there = all(axis.statusword & (TARGET_REACHED | ACKNOWLEDGED) == TARGET_REACHED
+                        for axis in axes)
+            return there and link.cycle >= self._given + WORD_CYCLES
+        if not link.wait(reached, seconds):
+            raise Obstacle("time over", "; ".join(
+                f"{axis.name} has not reached its set-point: bit 10 of its statusword "
+                f"0x{axis.statusword:04X} is 0" for axis in axes
+                if not axis.statusword & TARGET_REACHED) or "the set-points are not reached")
+        self._given = None
+
+    def stop(self) -> None:
+        """Brings the axes to rest in their modes."""
+        axes = self._link.axes
+        self.rest()
+        turning = [axis for axis in axes if axis.mode in MODES_OF[TARGET_VELOCITY]]
+        if turning and not self._drives.wait_for_rest(turning):
+            raise Obstacle("time over", "the axes still move")
+        if self._given is None:
+            return
+        if self._drives.readiness == HALTED:
+            self.discard()
+        elif self._drives.readiness == READY:
+            self._drives.halt()
+            self.discard()
+            self._drives.end_halt()
+        self._given = None
+
+    def discard(self) -> None:
+        """Makes halted axes forget their set-points: the actual positions become the set-points, so
+        that they stand when the Halt ends."""
+        axes = [axis for axis in self._link.axes
+                if axis.mode == PROFILE_POSITION and axis.enabled]
+        if self._given is not None and axes:
+            self._hand_over({axis: self._link.raw(axis, POSITION) for axis in axes}, CHANGE_AT_ONCE)
+        self._given = None
+
+    def _check(self, modes: tuple[int, ...], values) -> None:
+        link = self._link
+        if len(values) != len(link.axes):
+            raise Obstacle("wrong use", f"{len(values)} values for {len(link.axes)} axes")
+        self._drives.check_may_move()
+        link.step()  # after a long silence, the messages that wait tell that the drives stopped
+        self._check_enabled("blocked", link.axes)
+        wrong = [axis for axis in link.axes if axis.mode not in modes]
+        if wrong:
+            names = " or ".join(f"set_mode({mode})" for mode in modes)
+            raise Obstacle("blocked", "; ".join(f"{axis.name} is in mode {axis.mode}: call {names} "
+                                                "first" for axis in wrong))
+
+    def _check_enabled(self, kind: str, axes) -> None:
+        off = [self._drives.why(axis) for axis in axes if not axis.enabled]
+        if off:
+            raise Obstacle(kind, "; ".join(off))
+
+    def _signal(self, axis: Axis, index: int):
+        if index not in axis.signals:
+            raise Obstacle("blocked", f"{axis.name}: 0x{index:04X} is in no PDO, so its unit is "
+                                      "not known")
+        return axis.signals[index]
+
+    def _raw(self, axis: Axis, signal, value: float, distance: bool = False) -> int:
+        offset = signal.offset if distance else 0.0
+        raw = encode(signal, float(value) + offset)
+        if raw is None:
+            raise Obstacle("wrong use", f"{axis.name} can't be commanded {value} {signal.unit}")
+        return raw
+
+    def _set_bound(self, axis: Axis, index: int, value: float) -> None:
+        """In the unit of the velocity, per second for accelerations."""
+        signal = axis.signals.get(TARGET_VELOCITY) or axis.signals.get(VELOCITY)
+        raw = round(value / (signal or self._signal(axis, POSITION)).scale)
+        if not 0 < raw < 1 << 32:
+            raise Obstacle("wrong use", f"{axis.name}: 0x{index:04X} can't be {value}")
+        index += AXIS_STEP * (axis.number - 1)
+        place = next((place for place, signal in self._link.signals.items() if signal.output and
+                      (signal.node_id, signal.index) == (axis.node_id, index)), None)
+        if place is None:
+            self._services.write(axis.node, index, 0, raw.to_bytes(4, "little"))
+        else:
+            self._outputs.confirm({place: raw})
+
+    def _hand_over(self, targets: dict[Axis, int], bits: int) -> None:
+        """The handshake of the set-point: bit 4 of the controlword rises while bit 12 of the
+        statusword is 0, and falls when it is 1."""
+        link, drives = self._link, self._drives
+        for axis, target in targets.items():
+            if TARGET not in axis.places:
+                data = target.to_bytes(4, "little", signed=True)
+                self._services.write(axis.node, TARGET + AXIS_STEP * (axis.number - 1), 0, data)
+            axis.target, axis.mode_bits = target, bits
+            axis.has_own_target = True
+        drives.words = KEEPING
+
+        def sent(axis: Axis, bit: int) -> bool:
+            word = link.raw(axis, CONTROLWORD) & (NEW_SET_POINT | CHANGE_AT_ONCE | RELATIVE)
+            return word == bits | bit and link.raw(axis, TARGET) in (None, axis.target)
+
+        def phase(reached, words: str) -> None:
+            def over() -> bool:
+                self._check_enabled("stopped", targets)
+                return all(map(reached, targets))
+            if not link.wait(over, link.longest):
+                raise Obstacle("time over", "; ".join(f"{axis.name} {words} of its statusword "
+                                                      f"0x{axis.statusword:04X}"
+                                                      for axis in targets if not reached(axis)))
+        try:
+            phase(lambda axis: sent(axis, 0) and not axis.statusword & ACKNOWLEDGED,
+                  "has no room for a set-point, or its set-point was not sent: see bit 12")
+            for axis in targets:
+                axis.mode_bits = bits | NEW_SET_POINT
+            self._given = link.cycle
+            phase(lambda axis: axis.statusword & ACKNOWLEDGED,
+                  "does not acknowledge its set-point: see bit 12")
+        finally:
+            self._given = self._given and link.cycle
+            for axis in targets:
+                axis.mode_bits = bits
+            link.wait(lambda: all(sent(axis, 0) for axis in targets), link.longest)
+            if drives.readiness != HALTED:
+                drives.keep()
