@@ -1,5 +1,9 @@
 #include "master/sim/mechanics/travel_sensors.hpp"
 
+#include <algorithm>
+#include <initializer_list>
+#include <limits>
+
 namespace takt::sim {
 namespace {
 
@@ -17,6 +21,7 @@ TravelSensors::TravelSensors(const TravelParameters& table, double turn, double 
   add(TravelSwitch::home, table.home);
   add(TravelSwitch::probe_1, table.probe_1);
   add(TravelSwitch::probe_2, table.probe_2);
+  find_next_edges();
 }
 
 void TravelSensors::add(TravelSwitch which, const std::optional<ZoneParameters>& zone) {
@@ -27,6 +32,16 @@ void TravelSensors::add(TravelSwitch which, const std::optional<ZoneParameters>&
 }
 
 void TravelSensors::look(double motor, double load) noexcept {
+  const bool crosses = load < edge_below_ || load >= edge_above_;
+  if (crosses || has_edges_) look_at_switches(motor, load);
+  has_edges_ = crosses;
+  motor_ = motor;
+  load_ = load;
+  if (crosses) find_next_edges();
+  crossed_ = index_.move_to(motor);
+}
+
+void TravelSensors::look_at_switches(double motor, double load) noexcept {
   const Stretch way{load_, load};
   for (One& one : switches_) {
     if (!one.zone) continue;
@@ -35,9 +50,18 @@ void TravelSensors::look(double motor, double load) noexcept {
     one.edge = edge.kind;
     one.edge_at = motor_ + edge.part * (motor - motor_);
   }
-  crossed_ = index_.crossed({motor_, motor});
-  motor_ = motor;
-  load_ = load;
+}
+
+void TravelSensors::find_next_edges() noexcept {
+  edge_below_ = -std::numeric_limits<double>::infinity();
+  edge_above_ = std::numeric_limits<double>::infinity();
+  for (const One& one : switches_) {
+    if (!one.zone) continue;
+    for (const double edge : {one.zone->low(), one.zone->high()}) {
+      if (load_ < edge) edge_above_ = std::min(edge_above_, edge);
+      if (load_ >= edge) edge_below_ = std::max(edge_below_, edge);
+    }
+  }
 }
 
 std::uint32_t TravelSensors::inputs() const noexcept {

@@ -25,7 +25,8 @@ class TravelSensors {
 
   bool has(TravelSwitch which) const noexcept { return at(which).zone.has_value(); }
   bool active(TravelSwitch which) const noexcept { return at(which).active; }
-  /// The edge of a switch since the last look but one, and the position of the motor there.
+  /// The edge of a switch since the last look but one. If there was one, edge_at() is the position
+  /// of the motor there.
   EdgeKind edge(TravelSwitch which) const noexcept { return at(which).edge; }
   double edge_at(TravelSwitch which) const noexcept { return at(which).edge_at; }
   /// The position of the index pulse that the motor has crossed since the last look but one.
@@ -45,12 +46,17 @@ class TravelSensors {
     return switches_[static_cast<std::size_t>(which)];
   }
   void add(TravelSwitch which, const std::optional<ZoneParameters>& zone);
+  void look_at_switches(double motor, double load) noexcept;
+  void find_next_edges() noexcept;
 
   std::array<One, travel_switches> switches_;
   IndexPulse index_;
   std::optional<double> crossed_{};
   double motor_ = 0;
   double load_ = 0;
+  bool has_edges_ = false;  ///< the load has crossed an edge since the last look but one
+  double edge_below_ = 0;   ///< the nearest edge of a switch that is not above the load
+  double edge_above_ = 0;   ///< the nearest one above the load
 };
 
 }  // namespace takt::sim

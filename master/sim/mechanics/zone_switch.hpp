@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "eds_parser/table/mechanics.hpp"
 
@@ -34,6 +35,8 @@ class ZoneSwitch {
  public:
   explicit ZoneSwitch(const ZoneParameters& zone) noexcept : zone_{zone} {}
 
+  double low() const noexcept { return zone_.low; }
+  double high() const noexcept { return zone_.high; }
   bool active(double position) const noexcept {
     return position >= zone_.low && position < zone_.high;
   }
@@ -56,19 +59,25 @@ class ZoneSwitch {
 class IndexPulse {
  public:
   /// `offset` is the position of one pulse.
-  IndexPulse(double turn, double offset) noexcept : turn_{turn}, offset_{offset} {}
+  IndexPulse(double turn, double offset) noexcept
+      : turn_{turn}, offset_{offset}, turns_{turns_at(0)} {}
 
-  /// Returns the position of the first pulse that the stretch crosses.
-  std::optional<double> crossed(const Stretch& way) const noexcept {
-    const double low = std::floor((way.from - offset_) / turn_);
-    const double high = std::floor((way.to - offset_) / turn_);
-    if (low == high) return std::nullopt;
-    return offset_ + turn_ * (way.forward() ? low + 1 : low);
+  /// Moves to a position, the first time from position 0. Returns the position of the first pulse
+  /// that is crossed.
+  std::optional<double> move_to(double position) noexcept {
+    const double before = std::exchange(turns_, turns_at(position));
+    if (before == turns_) return std::nullopt;
+    return offset_ + turn_ * (before < turns_ ? before + 1 : before);
   }
 
  private:
+  double turns_at(double position) const noexcept {
+    return std::floor((position - offset_) / turn_);
+  }
+
   double turn_;
   double offset_;
+  double turns_;  ///< whole turns from `offset_` to the present position
 };
 
 }  // namespace takt::sim

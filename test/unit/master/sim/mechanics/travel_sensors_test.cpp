@@ -40,6 +40,11 @@ TEST(TravelSensors, SeeTheEdgesWhereTheLoadCrossesThem) {
   sensors.look(110, 110);
   EXPECT_EQ(sensors.edge(home), EdgeKind::rising);
   EXPECT_NEAR(sensors.edge_at(home), 120, 1e-9);
+  sensors.look(111, 111);
+  EXPECT_EQ(sensors.edge(home), EdgeKind::none) << "an edge is seen once";
+  sensors.look(99, 99);
+  EXPECT_EQ(sensors.edge(home), EdgeKind::falling) << "the edge below";
+  EXPECT_FALSE(sensors.active(home));
 }
 
 TEST(TravelSensors, SeeTheIndexPulseOnceInATurn) {
