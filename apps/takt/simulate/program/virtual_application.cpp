@@ -99,6 +99,7 @@ void VirtualApplication::act(Time now) {
     axes_.set_layout(input_);
     axes_.set_goal(DriveGoal::enabled);
     courses_.assign(static_cast<std::size_t>(axes_.size()), {});
+    find_offsets();
     fresh_ = false;
   }
   judge_hearing(now);
@@ -196,20 +197,26 @@ std::int64_t VirtualApplication::next_position(AxisControl::Index axis, std::int
   const std::int64_t step = (from & -stride) / stride + (course.down ? -1 : 1);
   const std::int64_t jump = has_push(axis) ? 0 : jump_;
   course.position = step * stride + options_.number + (course.down ? downwards : 0);
-  (position_offset(axis) ? course.shift : *course.position) += jump;
+  (offsets_[static_cast<std::size_t>(axis)] ? course.shift : *course.position) += jump;
   return *course.position;
 }
 
-/// Returns the output 60B0 of an axis.
-std::optional<SignalIndex> VirtualApplication::position_offset(AxisControl::Index axis) const {
-  const Signal& target = plan_.layout.signals[*axes_.signals(axis).target_position];
-  const auto index = static_cast<std::uint16_t>(target.object.index + from_target_to_offset);
-  return plan_.layout.find(target.node_index, {index, 0}, true);
+/// Finds the output 60B0 of each axis that has a target position.
+void VirtualApplication::find_offsets() {
+  offsets_.clear();
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    auto& offset = offsets_.emplace_back();
+    const auto target_position = axes_.signals(i).target_position;
+    if (!target_position) continue;
+    const Signal& target = plan_.layout.signals[*target_position];
+    const auto index = static_cast<std::uint16_t>(target.object.index + from_target_to_offset);
+    offset = plan_.layout.find(target.node_index, {index, 0}, true);
+  }
 }
 
 /// Adds the position offset, which the axis library does not command.
 void VirtualApplication::shift(AxisControl::Index axis, command_t& command) const {
-  const auto offset = position_offset(axis);
+  const auto offset = offsets_[static_cast<std::size_t>(axis)];
   if (!offset) return;
   command.signals.push_back(static_cast<std::int32_t>(*offset));
   command.values.push_back(courses_[static_cast<std::size_t>(axis)].shift);

@@ -94,7 +94,7 @@ class VirtualApplication final : public Actor {
   void keep_own_outputs(command_t& command) const;
   void count_on(command_t& command);
   std::int64_t next_position(AxisControl::Index axis, std::int64_t from);
-  std::optional<SignalIndex> position_offset(AxisControl::Index axis) const;
+  void find_offsets();
   void shift(AxisControl::Index axis, command_t& command) const;
   void push(AxisControl::Index axis, command_t& command);
   static void put_shared(AxisSignals::Position target, AxisSignals::Position offset,
@@ -130,11 +130,12 @@ class VirtualApplication final : public Actor {
     std::int64_t apart = 0;  // counts by which target velocity and torque have jumped
     std::int64_t shift = 0;  // position offset
   };
-  std::vector<Course> courses_;  // one for each axis
-  std::int64_t jump_ = 0;        // jump of the next command, in counts
-  std::uint64_t images_ = 0;     // images used
-  bool hears_ = false;           // an image came in this round
-  std::uint64_t heard_ = 0;      // rounds with images since the last usable image
+  std::vector<Course> courses_;                      // one for each axis
+  std::vector<std::optional<SignalIndex>> offsets_;  // position offset of each axis, if it has one
+  std::int64_t jump_ = 0;                            // jump of the next command, in counts
+  std::uint64_t images_ = 0;                         // images used
+  bool hears_ = false;                               // an image came in this round
+  std::uint64_t heard_ = 0;  // rounds with images since the last usable image
   Time heard_since_{};
   std::uint64_t sent_ = 0;
 

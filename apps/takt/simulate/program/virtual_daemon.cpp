@@ -11,8 +11,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t daemon_room = 400;  // messages: 200 kB, the default of a Linux socket
-constexpr Time longest_step = 60us;       // longest step of the front thread's round
+constexpr std::size_t daemon_room = 400;   // messages: 200 kB, the default of a Linux socket
+constexpr Time longest_round_step = 60us;  // longest step of the front thread's round
 constexpr Time longest_wake_up = 80us;
 
 /// Discards waiting frames: a process receives no frame that came before it opened its socket.
@@ -56,7 +56,7 @@ void VirtualDaemon::start() {
                 },
             .wait = [this](Time next, Time latest) { wait(next, latest); }};
   if (round_hook_) round_hook_(round_);
-  wake_ = port_.now() + random_.up_to(longest_step);
+  wake_ = port_.now() + random_.up_to(longest_round_step);
   waits_ = false;
   stalled_until_ = {};
 }
@@ -79,7 +79,7 @@ void VirtualDaemon::act(Time now) {
     wake_ = now + random_.up_to(longest_wake_up);
     return;
   }
-  wake_ = now + random_.up_to(longest_step);
+  wake_ = now + random_.up_to(longest_round_step);
   round_.step();
 }
 

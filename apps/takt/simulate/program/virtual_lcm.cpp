@@ -10,6 +10,10 @@ bool VirtualEndpoint::publish(const std::string& channel, std::span<const std::b
   return true;
 }
 
+bool VirtualEndpoint::wanted(std::string_view channel) const {
+  return lcm_.has_subscriber(channel);
+}
+
 bool VirtualEndpoint::hears(std::string_view channel) const noexcept {
   return std::ranges::find(channels_, channel) != channels_.end();
 }
@@ -25,6 +29,11 @@ void VirtualEndpoint::serve(const MessageHandler& handler) {
 
 VirtualEndpoint& VirtualLcm::join(std::size_t room, Echo echo) {
   return *endpoints_.emplace_back(std::make_unique<VirtualEndpoint>(*this, room, echo));
+}
+
+bool VirtualLcm::has_subscriber(std::string_view channel) const noexcept {
+  return std::ranges::any_of(endpoints_,
+                             [&](const auto& endpoint) { return endpoint->hears(channel); });
 }
 
 Time VirtualLcm::delay() noexcept {

@@ -25,6 +25,8 @@ class VirtualEndpoint final : public Transport {
       : lcm_{lcm}, room_{room}, echo_{echo} {}
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override;
+  /// True if a program has subscribed to the channel, as the broker of LCM tells it.
+  bool wanted(std::string_view channel) const override;
   /// Accepts whole names only, no patterns.
   void subscribe(const std::string& channel) override { channels_.push_back(channel); }
   void serve(const MessageHandler& handler) override;
@@ -73,6 +75,8 @@ class VirtualLcm {
   /// Sets the longest delay of the messages that are sent from now on.
   void set_delay(Time longest) noexcept { delay_ = longest; }
   Time now() const noexcept { return world_.now(); }
+  /// Returns true if a program has subscribed to the channel.
+  bool has_subscriber(std::string_view channel) const noexcept;
   std::uint64_t messages() const noexcept { return messages_; }
 
  private:
