@@ -39,6 +39,7 @@ from takt_homing import home
 from takt_link import Link, Obstacle
 from takt_motions import Motions
 from takt_outputs import Outputs
+from takt_probe import Probe
 from takt_profiles import Profiles
 from takt_services import Services
 from takt_speed_axes import SpeedAxes
@@ -280,6 +281,16 @@ class Axes(View):
         which does not brake."""
         self._needs_position()
         self._profiles.command(TARGET_TORQUE, torques)
+
+    def touch_probe(self, axis: str | int, *, input: int = 1, edge: str = "rising",
+                    index_pulse: bool = False, seconds: float = 10.0) -> float:
+        """Arms a touch probe of an axis (0x60B8), waits for the edge (0x60B9), and returns the
+        position that the drive has stored with it (0x60BA to 0x60BD), in the unit of the axis.
+        Motions go on: begin one before, and stop it afterwards. `index_pulse`: the index pulse of
+        the encoder instead of the input."""
+        self._needs_position()
+        probe = Probe(self._link, self._services, self._outputs, self._axis(axis))
+        return probe.wait(input, edge, index_pulse, seconds)
 
     # Objects of the devices, and the inputs and outputs of all nodes.
 

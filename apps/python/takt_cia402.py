@@ -3,10 +3,15 @@
 CONTROLWORD, STATUSWORD, MODE, MODE_DISPLAY = 0x6040, 0x6041, 0x6060, 0x6061
 POSITION, VELOCITY = 0x6064, 0x606C  # actual position and velocity
 TARGET, TARGET_VELOCITY, TARGET_TORQUE = 0x607A, 0x60FF, 0x6071
+# Touch probe: function, status, and positions at the rising and the falling edge of inputs 1 and 2.
+PROBE_FUNCTION, PROBE_STATUS, PROBE_POSITION = 0x60B8, 0x60B9, 0x60BA
+PROBE_POSITIONS = range(PROBE_POSITION, PROBE_POSITION + 4)
 # The objects that an axis has in its PDOs, and whether the master sends them.
 OBJECTS = ({(index, True)
-            for index in (CONTROLWORD, MODE, TARGET, TARGET_VELOCITY, TARGET_TORQUE)} |
-           {(index, False) for index in (STATUSWORD, MODE_DISPLAY, POSITION, VELOCITY)})
+            for index in (CONTROLWORD, MODE, TARGET, TARGET_VELOCITY, TARGET_TORQUE,
+                          PROBE_FUNCTION)} |
+           {(index, False) for index in (STATUSWORD, MODE_DISPLAY, POSITION, VELOCITY,
+                                         PROBE_STATUS, *PROBE_POSITIONS)})
 # The objects of each further axis of a device are 0x800 higher.
 FIRST_OBJECT, LAST_OBJECT, AXIS_STEP = 0x6000, 0x9FFF, 0x800
 HOMING, CYCLIC_SYNCHRONOUS_POSITION = 6, 8  # modes of operation (0x6060)

@@ -1,8 +1,8 @@
 """Profile position mode, and the modes of velocities and torques, CiA 402-2. Used by takt_axes."""
 from __future__ import annotations
 
-from takt_cia402 import (AXIS_STEP, CONTROLWORD, KEEPING, POSITION, TARGET, TARGET_REACHED,
-                         TARGET_TORQUE, TARGET_VELOCITY, VELOCITY, Axis)
+from takt_cia402 import (AXIS_STEP, CONTROLWORD, KEEPING, POSITION, PROBE_FUNCTION, TARGET,
+                         TARGET_REACHED, TARGET_TORQUE, TARGET_VELOCITY, VELOCITY, Axis)
 from takt_drives import HALTED, READY, WORD_CYCLES, Drives
 from takt_link import Link, Obstacle
 from takt_outputs import Outputs
@@ -34,14 +34,14 @@ class Profiles:
         return self._given is not None
 
     def rest(self) -> None:
-        """Ends the velocities and torques that are commanded."""
+        """Ends the velocities and torques that are commanded, and disarms touch probes."""
         if self._link.commanding:
             self.hold_zeros()
 
     def hold_zeros(self) -> None:
-        """Commands velocities and torques of 0, where they are in RPDOs."""
+        """Commands 0 to all of them that are in RPDOs."""
         self._outputs.hold({axis.places[index]: 0 for axis in self._link.axes
-                            for index in MODES_OF if index in axis.places})
+                            for index in (*MODES_OF, PROBE_FUNCTION) if index in axis.places})
 
     def command(self, index: int, values) -> None:
         """Commands the target velocities or torques of all axes."""
@@ -53,7 +53,11 @@ class Profiles:
                                           "`rpdo:` of the network file")
         raws = [self._raw(axis, axis.signals[index], value)
                 for axis, value in zip(link.axes, values)]
-        self._outputs.confirm({axis.places[index]: raw for axis, raw in zip(link.axes, raws)})
+        try:
+            self._outputs.confirm({axis.places[index]: raw for axis, raw in zip(link.axes, raws)})
+        except Obstacle:
+            self.rest()
+            raise
 
     def move(self, positions, bounds: dict, relative: bool, at_once: bool) -> None:
         """Hands over a set-point in profile position mode."""

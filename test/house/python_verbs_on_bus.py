@@ -34,6 +34,14 @@ with Axes("verbs", "slide", longest=30) as axes:
     axes.move(0.0, velocity=0.5, acceleration=5)
     check("resume", near(axes, 0.0), axes.positions)
 
+    axes.move(0.0, velocity=0.5, acceleration=5)
+    axes.begin_move(0.3, velocity=0.2, acceleration=5)
+    position = axes.touch_probe("slide", edge="rising")
+    check("touch_probe", abs(position - 0.2) < 0.002, position)
+    position = axes.touch_probe("slide", edge="falling")
+    check("touch_probe at the other edge", abs(position - 0.25) < 0.002, position)
+    axes.wait()
+
     axes.write_number("slide", 0x6083, 0, 1_000_000, 4)
     check("read and write", axes.read_number("slide", 0x6083) == 1_000_000)
     check("an abort in words", "slide 0x5FFF:00" in refused(axes.read, "slide", 0x5FFF))

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """python_verbs_test.py TYPES - what apps/python/takt_axes.py does beside motions, on the bus of python_daemon.py: Halt,
-quick stop, SDO, inputs and outputs."""
+quick stop, touch probe, SDO, inputs and outputs."""
 import sys
 
 from python_daemon import PERIOD, SHORT, check, failures, jogs, obstacle, on_a_bus
@@ -97,4 +97,35 @@ check("a refused value is named", kind == "refused" and "'another' holds the nod
 daemon.holder = ""
 axes.run(10 * PERIOD)
 check("and not sent again", daemon.io[0x6411] == 500)
+
+
+def probes(come=40):
+    """A jogging axis whose drive sees a rising edge of input 1 some cycles after its probe was armed."""
+    daemon, axes = jogs()
+    daemon.objects = {(5, 0x60B8, 0): b"\0\x11", (5, 0x60B9, 0): b"\0\0", (5, 0x60BA, 0): b"\0\0\0\0"}
+    daemon.armed = 0
+
+    def each(daemon):
+        armed = daemon.objects[5, 0x60B8, 0] == b"\x11\x11"
+        daemon.armed = daemon.armed + 1 if armed else 0
+        if daemon.armed == come:
+            daemon.objects[5, 0x60BA, 0] = (-1500).to_bytes(4, "little", signed=True)
+            daemon.objects[5, 0x60B9, 0] = b"\x03\0"
+        if not armed:
+            daemon.objects[5, 0x60B9, 0] = b"\0\0"
+    daemon.each_cycle = each
+    return daemon, axes
+
+
+daemon, axes = probes()
+check("a probe returns the position of its edge", axes.touch_probe("shoulder") == -1.5)
+check("it is armed and disarmed while the axis moves", daemon.objects[5, 0x60B8, 0] == b"\0\x11" and axes.moving)
+daemon, axes = probes(come=10**6)
+kind, text = obstacle(lambda: axes.touch_probe(0, seconds=SHORT))
+check("an edge that does not come is named", kind == "time over" and
+      text == "shoulder: no rising edge of touch probe 1 has come in 0.3 s", (kind, text))
+check("then the probe is disarmed", daemon.objects[5, 0x60B8, 0] == b"\0\x11")
+daemon.each_cycle, daemon.objects[5, 0x60B9, 0] = lambda daemon: None, b"\x02\0"  # the drive does not clear it
+check("an old edge is no edge", "still shows an edge from before" in obstacle(axes.touch_probe, "shoulder")[1])
+check("a wrong input is named", obstacle(lambda: axes.touch_probe("shoulder", input=3))[0] == "wrong use")
 sys.exit(1 if failures else 0)
