@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "master/core/machine.hpp"
 #include "master/core/network/network.hpp"
 #include "master/rt/machines/services.hpp"
 #include "master/rt/port.hpp"
@@ -104,13 +105,13 @@ class FakeNetwork {
   void start(Time) noexcept {}
   void on_frame(const Frame& frame, Time, Outbox&) noexcept { heard.push_back(frame); }
   void on_time(Time, Outbox& out) noexcept {
-    for (; !to_send.empty() && out.push(to_send.front()); to_send.erase(to_send.begin())) {
+    for (; !to_send.empty() && out.push(to_send.front(), answer); to_send.erase(to_send.begin())) {
     }
   }
   Time deadline() const noexcept { return never; }
   void on_absence(Time away) noexcept { absences.push_back(away); }
   bool streams() const noexcept { return false; }
-  std::size_t awaited_sub_blocks() const noexcept { return 0; }
+  std::size_t awaited_sub_blocks() const noexcept { return sub_blocks; }
   std::size_t awaited_answers() const noexcept { return awaited; }
   bool submit(const Request& request, Time) noexcept {
     if (refuse) return false;
@@ -159,6 +160,8 @@ class FakeNetwork {
 
   std::vector<Frame> heard;
   std::vector<Frame> to_send;
+  takt::Answer answer = takt::Answer::comes;  ///< that these frames expect
+  std::size_t sub_blocks = 0;                 ///< that devices are sending
   std::vector<Request> submitted;
   std::vector<std::uint64_t> withdrawn;
   std::vector<Reply> replies;

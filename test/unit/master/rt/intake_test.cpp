@@ -50,8 +50,7 @@ TEST_F(IntakeTest, GivesTpdosToTheImageAndOtherFramesToTheServices) {
 
 TEST_F(IntakeTest, WaitsForTheWholeWindowUntilItHasLearnedTheArrival) {
   cycle(300us, 400us);
-  EXPECT_EQ(cycle(300us, 400us), 1200us);
-  for (int i = 0; i < 16; ++i) cycle(300us, 400us);
+  for (int i = 0; i < 16; ++i) EXPECT_EQ(cycle(300us, 400us), 1200us);
   EXPECT_EQ(cycle(300us, 400us), 405us);
   EXPECT_EQ(parts.intake.predicted(), 405us);
 }
@@ -68,6 +67,14 @@ TEST_F(IntakeTest, TakesNothingWhileNobodyExchangesPdos) {
     parts.bus.pdos.inputs().set_reception(node, Reception::off);
   }
   EXPECT_EQ(cycle(300us, 400us), 0us) << "the services get the whole slack";
+}
+
+struct EventDrivenIntake : IntakeTest {
+  EventDrivenIntake() : IntakeTest{test::axes({.tpdo_type = 255})} {}
+};
+
+TEST_F(EventDrivenIntake, WaitsForHalfTheWindow) {
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(cycle(300us, 400us), 600us);
 }
 
 struct FollowingIntake : IntakeTest {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "master/core/machine.hpp"
 #include "test/unit/master/rt/parts_rig.hpp"
 
 namespace takt {
@@ -61,6 +62,29 @@ TEST_F(SlackTest, ForcesOneFrameOutBehindSyncAfterTwoCyclesWithoutRoom) {
   EXPECT_EQ(parts.port.sent.size(), 1U);
   parts.slack.relieve_services();
   EXPECT_EQ(parts.port.sent.size(), 1U) << "and then waits again";
+}
+
+/// The device sends a sub-block for at most 40 ms.
+TEST_F(SlackTest, SendsNothingBehindASubBlockUntilItsLatestEnd) {
+  waiting().assign(1, request);
+  parts.bus.services.answer = Answer::stream;
+  EXPECT_EQ(round(0us), 1U);
+  parts.bus.services.sub_blocks = 1;
+
+  waiting().assign(1, request);
+  parts.bus.services.answer = Answer::comes;
+  for (next_cycle(); parts.beat.sync_at() < 10'042ms; next_cycle()) EXPECT_EQ(round(0us), 0U);
+  EXPECT_EQ(parts.beat.sync_at(), 10'042ms);
+  EXPECT_EQ(round(0us), 1U);
+}
+
+TEST_F(SlackTest, SendsBehindASubBlockThatHasEnded) {
+  waiting().assign(1, request);
+  parts.bus.services.answer = Answer::stream;
+  EXPECT_EQ(round(0us), 1U);
+  waiting().assign(1, request);
+  next_cycle();
+  EXPECT_EQ(round(0us), 1U);
 }
 
 TEST_F(SlackTest, DoesNothingAfterAStallUntilTheAbsenceIsExcused) {

@@ -32,6 +32,8 @@ TEST(DrivenAxis, TheTargetFollowsTheActualPositionWhileADriveObeysAHalt) {
   EXPECT_EQ(bench.target(), 75);
   bench.command(0, 0x000F);
   beat(0x0027, 75, AxisState::standing);
+  beat(0x0027, 74, AxisState::standing);
+  EXPECT_EQ(bench.target(), 75) << "the Halt has ended";
   beat(0x1027, 74, AxisState::standing);
   EXPECT_EQ(bench.target(), 75);
 }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "master/core/kept_state.hpp"
 #include "test/unit/master/core/pdo/small_plan.hpp"
 #include "test/unit/master/rt/fake_port.hpp"
 
@@ -98,6 +99,14 @@ TEST_F(StopControlTest, KeepsADriveDisabledThatWasDisabledWhenAnotherNodeWasLost
   EXPECT_EQ(controlword(0), disable_voltage);
 }
 
+TEST_F(StopControlTest, QuickStopsADisabledDriveThatIsCommandedToEnableWhenAnotherNodeIsLost) {
+  statusword = 0x40;
+  for (int i = 0; i < 10; ++i) cycle();
+  bus.services.lost_group = true;
+  cycle();
+  EXPECT_EQ(controlword(0), quick_stop);
+}
+
 TEST_F(StopControlTest, HaltsTheAxesOfANodeBeforeItsNmtCommandLeaves) {
   bus.services.awaiting = std::uint8_t{2};  // node-ID
   cycle();
@@ -156,6 +165,22 @@ TEST_F(SyncLossTest, HoldsTheOutputsUntilSyncIsBack) {
   EXPECT_EQ(bus.status.sync_losses, 1U);
   stop.follow_sync(false);
   EXPECT_FALSE(stop.withholds_outputs());
+}
+
+TEST_F(SyncLossTest, IsKnownToAMasterThatContinuesFromACheckpoint) {
+  stop.follow_sync(true);
+  StateSize size;
+  stop.keep(size);
+  std::vector<std::uint64_t> words(size.count());
+  StateWriter writer{words.data()};
+  stop.keep(writer);
+
+  const auto fresh = std::make_unique<BusMachines<FakeNetwork>>(plan, false);
+  StopControl<FakeNetwork> other{*fresh};
+  EXPECT_FALSE(other.withholds_outputs());
+  StateReader reader{words};
+  other.keep(reader);
+  EXPECT_TRUE(other.withholds_outputs());
 }
 
 TEST_F(SyncLossTest, HoldsNoOutputsOfAnOrderedStop) {
