@@ -55,6 +55,23 @@ Done Axes::home(const HomingOptions& options) {
 Done Axes::halt() { return state_->speed ? state_->no_drive() : state_->halt(); }
 Done Axes::resume() { return state_->speed ? state_->no_drive() : state_->resume(); }
 Done Axes::quick_stop() { return state_->speed ? state_->no_drive() : state_->quick_stop(); }
+Done Axes::set_mode(Eigen::Index axis, DriveMode mode) {
+  return state_->speed ? state_->no_drive() : state_->set_mode(axis, mode);
+}
+Done Axes::profile_move(const Eigen::Ref<const Eigen::VectorXd>& positions,
+                        const ProfileBounds& bounds, const ProfileMove& how) {
+  return state_->speed ? state_->no_position() : state_->profile_move(positions, bounds, how);
+}
+Done Axes::command_velocities(const Eigen::Ref<const Eigen::VectorXd>& velocities) {
+  return state_->speed ? state_->no_drive() : state_->command_velocities(velocities);
+}
+Done Axes::command_torques(const Eigen::Ref<const Eigen::VectorXd>& torques) {
+  return state_->speed ? state_->no_drive() : state_->command_torques(torques);
+}
+std::expected<double, Obstacle> Axes::touch_probe(Eigen::Index axis, const ProbeOptions& options) {
+  if (state_->speed) return std::unexpected{state_->no_position().error()};
+  return state_->touch_probe(axis, options);
+}
 std::expected<double, Obstacle> Axes::signal(const std::string& name) {
   return state_->signal(name);
 }

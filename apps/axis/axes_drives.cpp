@@ -64,6 +64,11 @@ std::string Axes::State::why_not_ready_text() const {
 
 Done Axes::State::enable() {
   if (!is_current()) return restarted();
+  // A drive that moves in another mode must stand before its mode changes.
+  if (readiness_ != Readiness::not_enabled && !all_in_cyclic_position()) {
+    if (Done stood = stop(); !stood) return stood;
+  }
+  profile_targets_.reset();
   AxisControl& known = group.axes();
   end_halt(Readiness::not_enabled);
   for (const Index axis : axes) {
@@ -134,11 +139,18 @@ Done Axes::State::reset() {
   return waited ? *waited : obstacle(Obstacle::Kind::blocked, why);
 }
 
-Done Axes::State::set_mode(DriveMode wanted) {
+Done Axes::State::set_mode(Index number, DriveMode wanted) {
+  if (number >= 0 && number < size()) return set_mode(std::span{&axes[at(number)], 1}, wanted);
+  return obstacle(Obstacle::Kind::wrong_use, fmt::format("axis {} of {}", number, size()));
+}
+
+Done Axes::State::set_mode(DriveMode wanted) { return set_mode(axes, wanted); }
+
+Done Axes::State::set_mode(std::span<const Index> chosen, DriveMode wanted) {
   if (!is_current()) return restarted();
   const Done stood = stop();
   if (!stood) return stood;
-  for (const Index axis : axes) group.axes().set_mode(axis, wanted);
+  for (const Index axis : chosen) group.axes().set_mode(axis, wanted);
   sending_ = Sending::controls;
   const auto is_there = [this](Index axis) {
     return group.axes().in_mode(axis) && (readiness_ != Readiness::enabled || is_ready(axis));

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 #include "apps/axis/axes_state.hpp"
@@ -9,6 +10,13 @@ namespace takt {
 namespace {
 
 constexpr std::int64_t halt_bit = 0x0100;  // of the controlword
+
+/// Returns true if bit 10 of the statusword does not say that an axis stands in this mode.
+bool has_own_set_points(DriveMode mode) noexcept {
+  using enum DriveMode;
+  return mode == profile_velocity || mode == cyclic_velocity || mode == profile_torque ||
+         mode == cyclic_torque;
+}
 
 }  // namespace
 
@@ -23,6 +31,7 @@ Done Axes::State::halt() {
   jog_goes_on_ = false;
   stream_.reset();
   readiness_ = Readiness::halted;
+  end_set_points();
   for (const Index axis : axes) group.axes().halt(axis);
   sending_ = Sending::controls;
   const auto is_sent = [this](Index axis) {
@@ -101,20 +110,28 @@ Done Axes::State::quick_stop() {
 
 std::optional<Done> Axes::State::wait_for_rest(std::span<const Index> chosen,
                                                Interruption interruption) {
+  constexpr double standing = 2.5;  // counts by which the position of an axis may vary
   const AxisControl& known = group.axes();
   std::optional<std::int64_t> moved;  // the newest cycle in which an axis has moved
   Eigen::VectorXd before = known.positions();
   const auto may_move = [&](Index axis) {
     const State402 state = known.drive(axis).state();
     const bool brakes = known.drive(axis).enabled() || state == State402::quick_stop_active;
-    const bool moves = known.positions()(axis) != before(axis);
+    const double distance = std::abs(known.positions()(axis) - before(axis));
+    if (has_own_set_points(known.mode(axis))) {
+      const auto position = known.signals(axis).position;
+      const double count = position ? std::abs(group.input().signals()[*position].scale) : 0.0;
+      return brakes && distance > standing * count;
+    }
     const bool reached = (known.statusword(axis) & target_reached) != 0;
-    return brakes && moves && !reached;
+    return brakes && distance > 0.0 && !reached;
   };
   const auto at_rest = [&] {
     const std::int64_t cycle = group.input().cycle();
-    if (!moved || moving() || std::ranges::any_of(chosen, may_move)) moved = cycle;
-    before = known.positions();
+    if (!moved || moving() || std::ranges::any_of(chosen, may_move)) {
+      moved = cycle;
+      before = known.positions();
+    }
     return cycle >= *moved + settled_cycles;
   };
   return wait_until(at_rest, options.longest, interruption);

@@ -136,6 +136,7 @@ Done Axes::State::jog(const Values& velocities, const MotionBounds& bounds) {
 }
 
 Done Axes::State::wait(nanoseconds longest) {
+  if (profile_targets_ && !all_in_cyclic_position()) return wait_for_profiles(longest);
   finish_stream();
   const auto waited = wait_until([this] { return !is_under_way(course()); }, longest);
   if (!waited) return obstacle(Obstacle::Kind::time_over, "the axes still move");
@@ -229,7 +230,8 @@ void Axes::State::send_stop() {
 Done Axes::State::stop() {
   jog_goes_on_ = false;
   stream_.reset();
-  if (sending_ == Sending::nothing || (!has_motion_ && !moving())) return {};
+  if (sending_ == Sending::nothing) return {};
+  if (!has_motion_ && !moving()) return stop_set_points();
   // taktd refuses a stop from an old image, so the messages that wait come first.
   const Done heard = step(Interruption::ignored);
   if (!is_current()) return heard;

@@ -175,8 +175,9 @@ void Axes::State::send_outputs() {
 void Axes::State::give_up_after_silence() {
   const auto now = Clock::now();
   const auto silence = now - std::exchange(last_values_, now);
-  if (held_.empty() || silence <= options.timeout) return;
+  if ((held_.empty() && !has_set_points_) || silence <= options.timeout) return;
   held_.clear();
+  end_set_points();
   lost_text_ = fmt::format("this program was silent for {} ms, so its set-points were given up",
                            silence / std::chrono::milliseconds{1});
 }
@@ -187,6 +188,8 @@ Done Axes::State::restarted() {
   session_ = 0;
   sending_ = Sending::nothing;
   held_.clear();
+  has_set_points_ = false;
+  profile_targets_.reset();
   return obstacle(Obstacle::Kind::restarted, "taktd has restarted");
 }
 

@@ -49,6 +49,7 @@ class Axes::State {
   Done disable();
   Done reset();
   Done set_mode(DriveMode wanted);
+  Done set_mode(Index number, DriveMode wanted);
   Done halt();
   Done resume();
   Done quick_stop();
@@ -64,6 +65,11 @@ class Axes::State {
                                          std::span<const std::uint8_t> data);
   std::expected<double, Obstacle> signal(const std::string& name);
   Done set(const std::string& name, double value);
+
+  Done command_velocities(const Values& values);
+  Done command_torques(const Values& values);
+  Done profile_move(const Values& positions, const ProfileBounds& bounds, const ProfileMove& how);
+  std::expected<double, Obstacle> touch_probe(Index number, const ProbeOptions& wanted);
 
   Done home(const HomingOptions& wanted);
   /// What taktd has reported last about the axis with this index in the group.
@@ -96,7 +102,8 @@ class Axes::State {
 
   Index size() const noexcept { return static_cast<Index>(names.size()); }
   /// Returns the index in the group of the axis with this index in an Axes.
-  Index in_group(Index axis) const { return axes[static_cast<std::size_t>(axis)]; }
+  Index in_group(Index axis) const { return axes[at(axis)]; }
+  static std::size_t at(Index axis) noexcept { return static_cast<std::size_t>(axis); }
 
   AxisGroup group;
   AxesOptions options;
@@ -131,7 +138,28 @@ class Axes::State {
   using Condition = std::function<bool()>;
   using AxisCondition = std::function<bool(Index)>;
 
+  struct SetPoints;
+  Done set_mode(std::span<const Index> chosen, DriveMode wanted);
+  Done check_set_points(const Values& values, const SetPoints& kind);
+  Done send_set_points(const Values& values, const SetPoints& kind);
+  /// Sets the target velocities and target torques to 0.
+  void end_set_points();
+  Eigen::VectorXd in_group(const Values& values, double otherwise) const;
+  std::string refusal() const;
+  Done write_profile(std::uint16_t index, const Eigen::VectorXd& values);
+  Done hand_over(std::span<const Index> chosen, const Values& positions, SetPointTiming timing);
+  Done wait_for_profiles(std::chrono::nanoseconds longest);
+  Done stop_set_points();
+  Eigen::VectorXd actual_positions() const;
+
+  /// Returns the object of this axis that has this index for the first axis of a device.
+  Object object_of_axis(Index axis, std::uint16_t index) const;
+  Done write_of_axis(Index axis, std::uint16_t index, std::int64_t raw, std::size_t bytes);
+  std::expected<std::int64_t, Obstacle> read_of_axis(Index axis, std::uint16_t index);
+  Done wait_for_probe(Index axis, unsigned bits, unsigned wanted, std::chrono::nanoseconds longest);
+
   enum class Signals : std::uint8_t { all, outputs };
+  std::optional<std::size_t> place_of(const Object& object, Signals among) const;
   /// Returns the place in the image of "io.name" or "io.0x6000:1".
   std::expected<std::size_t, Obstacle> find_signal(const std::string& name, Signals among) const;
   std::expected<std::int16_t, Obstacle> node_id(const std::string& name) const;
@@ -228,11 +256,13 @@ class Axes::State {
   std::vector<Index> commanded_;  // of the axes: those whose controlwords are sent
   Readiness readiness_ = Readiness::not_enabled;
   std::map<std::size_t, std::int64_t> held_;  // raw values of outputs, by their place in the image
-  Clock::time_point last_values_{};           // the newest image from which outputs were sent
-  std::string lost_text_;                     // why set-points were given up, until a call tells it
-  std::int64_t request_id_ = 0;               // of the newest request
-  std::int32_t id_ = 0;                       // of the newest motion
-  bool has_motion_ = false;                   // false before the first motion, and after a stop
+  bool has_set_points_ = false;               // velocities or torques were commanded, and not ended
+  std::optional<Eigen::VectorXd> profile_targets_;  // the newest since the axes were stopped
+  Clock::time_point last_values_{};                 // the newest image from which outputs were sent
+  std::string lost_text_;         // why set-points were given up, until a call tells it
+  std::int64_t request_id_ = 0;   // of the newest request
+  std::int32_t id_ = 0;           // of the newest motion
+  bool has_motion_ = false;       // false before the first motion, and after a stop
   bool jog_goes_on_ = false;      // the newest motion is a jog, and no call has ended it
   std::optional<Stream> stream_;  // until it has ended
   std::int64_t session_ = 0;      // of the layout in which the axes were found

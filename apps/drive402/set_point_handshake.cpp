@@ -9,9 +9,11 @@ constexpr std::uint16_t acknowledged = 0x1000;
 
 }  // namespace
 
-void SetPointHandshake::begin() noexcept {
+void SetPointHandshake::begin(SetPointTiming timing) noexcept {
+  next_timing_ = timing;
   if (phase_ == Phase::idle) {
     phase_ = Phase::before;
+    timing_ = timing;
   } else {
     again_ = true;
   }
@@ -21,6 +23,7 @@ std::uint16_t SetPointHandshake::step(std::uint16_t statusword) noexcept {
   const bool seen = (statusword & acknowledged) != 0;
   if (phase_ == Phase::lowered && !seen) {
     phase_ = again_ ? Phase::before : Phase::idle;
+    timing_ = next_timing_;
     again_ = false;
   }
   if (phase_ == Phase::before && !seen) {
@@ -28,7 +31,8 @@ std::uint16_t SetPointHandshake::step(std::uint16_t statusword) noexcept {
   } else if (phase_ == Phase::raised && seen) {
     phase_ = Phase::lowered;
   }
-  return phase_ == Phase::raised ? new_set_point | at_once : at_once;
+  const std::uint16_t change = timing_ == SetPointTiming::at_once ? at_once : 0;
+  return phase_ == Phase::raised ? new_set_point | change : change;
 }
 
 }  // namespace takt

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <takt/drive402.hpp>
 
 namespace takt {
 
@@ -11,17 +12,23 @@ class SetPointHandshake {
  public:
   /// Starts a handshake for a new target in 0x607A. If a handshake is running, another one follows
   /// it.
-  void begin() noexcept;
+  void begin(SetPointTiming timing = SetPointTiming::at_once) noexcept;
   /// Returns bits 4 and 5 of the controlword (new set-point, change at once) that answer this
-  /// statusword. Bit 5 is always set.
+  /// statusword. Bit 5 is set unless the set-point waits for the one before it.
   std::uint16_t step(std::uint16_t statusword) noexcept;
   /// Returns true if no handshake is running and none is to follow.
   bool done() const noexcept { return phase_ == Phase::idle && !again_; }
+  /// Returns true if the drive has taken all set-points. Its acknowledgement may still be there.
+  bool taken() const noexcept {
+    return (phase_ == Phase::idle || phase_ == Phase::lowered) && !again_;
+  }
 
  private:
   enum class Phase : std::uint8_t { idle, before, raised, lowered };
   Phase phase_ = Phase::idle;
   bool again_ = false;
+  SetPointTiming timing_ = SetPointTiming::at_once;
+  SetPointTiming next_timing_ = SetPointTiming::at_once;  // of the handshake that follows
 };
 
 }  // namespace takt

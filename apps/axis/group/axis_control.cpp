@@ -104,6 +104,10 @@ void AxisControl::set_mode(DriveMode mode) noexcept {
 
 void AxisControl::set_mode(Index axis, DriveMode mode) noexcept {
   State::Axis& of = state_->at(axis);
+  if (mode != of.commanded_mode) {
+    state_->target_velocities(axis) = 0.0;
+    state_->target_torques(axis) = 0.0;
+  }
   of.commanded_mode = mode;
   if (mode != DriveMode::profile_position) of.handshake = {};
   if (mode != DriveMode::homing) of.homes = false;
@@ -127,6 +131,13 @@ void AxisControl::begin_set_points() {
     if (axis.commanded_mode == DriveMode::profile_position) axis.handshake.begin();
   }
 }
+
+void AxisControl::begin_set_point(Index axis, SetPointTiming timing) {
+  State::Axis& of = state_->at(axis);
+  if (of.commanded_mode == DriveMode::profile_position) of.handshake.begin(timing);
+}
+
+bool AxisControl::set_point_taken(Index axis) const { return state_->at(axis).handshake.taken(); }
 
 bool AxisControl::set_points_taken() const noexcept {
   return std::ranges::all_of(state_->axes,

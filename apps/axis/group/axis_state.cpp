@@ -130,8 +130,23 @@ void AxisControl::State::make_controls(std::span<const Index> chosen) {
     const Axis& axis = at(i);
     put(axis.signals.controlword, axis.controlword);
     put(axis.signals.mode, std::to_underlying(axis.commanded_mode));
+    put_si(axis.signals.target_velocity, target_velocities(i));
+    put_si(axis.signals.target_torque, target_torques(i));
+    put_position(i);
   }
   command.num_values = static_cast<std::int32_t>(command.values.size());
+}
+
+/// taktd leads the target position again as soon as the drive is in cyclic synchronous position
+/// mode. Drives read a set-point of profile position mode only when the handshake begins.
+void AxisControl::State::put_position(Index index) {
+  Axis& axis = at(index);
+  axis.sends_position |= axis.commanded_mode == DriveMode::profile_position;
+  if (!axis.sends_position || !axis.seeded) return;
+  const bool waits = !axis.handshake.taken() || !axis.signals.position;
+  put_si(axis.signals.target_position, waits ? target_positions(index) : positions(index));
+  const bool is_cyclic = axis.commanded_mode == DriveMode::cyclic_position;
+  if (is_cyclic && takes_positions(axis) && in_mode(axis)) axis.sends_position = false;
 }
 
 bool AxisControl::State::in_mode(const Axis& axis) const noexcept {

@@ -26,8 +26,9 @@ struct AxisControl::State {
     bool stale = false;
     bool seeded = false;  // true if the target position has been set from a valid value
     DriveMode commanded_mode = DriveMode::cyclic_position;
-    bool halts = false;  // bit 8 of the controlword is set
-    bool homes = false;  // bit 4 of the controlword is set in homing mode
+    bool sends_position = false;  // controls() sends target positions: taktd does not lead them
+    bool halts = false;           // bit 8 of the controlword is set
+    bool homes = false;           // bit 4 of the controlword is set in homing mode
   };
 
   Axis& at(Index axis) { return axes[static_cast<std::size_t>(axis)]; }
@@ -37,7 +38,7 @@ struct AxisControl::State {
   void on_image(const ImageInput& input);
   /// Writes the set-points of all axes to `command`.
   void make_command();
-  /// Writes the controlwords and modes of these axes to `command`.
+  /// Writes what AxisControl::controls() describes to `command`.
   void make_controls(std::span<const Index> chosen);
   bool in_mode(const Axis& axis) const noexcept;
   Eigen::VectorXd target_positions_in_counts() const;
@@ -48,6 +49,7 @@ struct AxisControl::State {
   void step(Axis& axis, const ImageInput& input);
   bool takes_positions(const Axis& axis) const noexcept;
   void rest(Index axis, const ImageInput& input);
+  void put_position(Index axis);
   void put(AxisSignals::Position signal, std::int64_t raw);
   void put_si(AxisSignals::Position signal, double si);
 

@@ -74,8 +74,10 @@ class AxisControl {
   /// Returns the set-points of all axes, computed from the last image. The caller fills in `utime`,
   /// `instance`, `sender`, `time_to_live` and `release`. The next call overwrites the message.
   command_t& command();
-  /// Returns the controlwords and modes of these axes, without set-points, for axes whose motions
-  /// taktd runs. The caller fills in the same fields as for command(). The next call of this
+  /// Returns the controlwords, modes, target velocities and target torques of these axes, for axes
+  /// whose target positions taktd leads. An axis in profile position mode has a target position,
+  /// too: the new one until its drive has taken it, and else the actual one, so that no mode begins
+  /// with a jump. The caller fills in the same fields as for command(). The next call of this
   /// function or of command() overwrites the message.
   command_t& controls(std::span<const Index> axes);
 
@@ -127,7 +129,8 @@ class AxisControl {
   /// carry it for each axis whose 0x6060 is mapped. Another mode than profile position ends the
   /// handshakes of begin_set_points().
   void set_mode(DriveMode mode) noexcept;
-  /// Sets the mode of operation of one axis.
+  /// Sets the mode of operation of one axis. Another one than before sets its target velocity and
+  /// its target torque to 0.
   void set_mode(Index axis, DriveMode mode) noexcept;
   /// Returns the mode of operation that was set for this axis.
   DriveMode mode(Index axis) const;
@@ -168,6 +171,11 @@ class AxisControl {
   /// in Operation enabled. Does nothing if the mode is not profile position, because the drives
   /// then take target positions without a handshake, or none.
   void begin_set_points();
+  /// Starts such a handshake for one axis.
+  void begin_set_point(Index axis, SetPointTiming timing);
+  /// Returns true if the drive of this axis has taken each set-point that begin_set_point() or
+  /// begin_set_points() has announced: bit 12 of the statusword has answered bit 4.
+  bool set_point_taken(Index axis) const;
   /// Returns true if no axis has a handshake left that begin_set_points() started.
   bool set_points_taken() const noexcept;
 

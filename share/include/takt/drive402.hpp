@@ -39,6 +39,13 @@ enum class DriveMode : std::int8_t {
   cyclic_torque = 10,    ///< cst: a target torque for each SYNC
 };
 
+/// When a drive in profile position mode begins to move to a new set-point. CiA 402-2, bit 5 of the
+/// controlword.
+enum class SetPointTiming : std::uint8_t {
+  at_once,        ///< It replaces the set-points before it.
+  after_the_last  ///< The drive first reaches the set-point before it.
+};
+
 /// State to which a DriveSequence leads its drive.
 enum class DriveGoal : std::uint8_t {
   disabled,      ///< Switch on disabled

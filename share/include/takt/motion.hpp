@@ -103,6 +103,42 @@ struct Gear {
   Eigen::VectorXd max_phase_error = {};
 };
 
+/// Limits of Axes::profile_move(), which the drives keep, in the unit of each axis and in seconds.
+/// Each vector has one value for each axis, or one for all axes, or none, with which the drive
+/// keeps what it has.
+struct ProfileBounds {
+  Eigen::VectorXd velocity = {};      ///< unit/s, 0x6081
+  Eigen::VectorXd acceleration = {};  ///< unit/s^2, 0x6083
+  Eigen::VectorXd deceleration = {};  ///< unit/s^2, 0x6084. None: as the acceleration
+};
+
+/// How Axes::profile_move() moves.
+struct ProfileMove {
+  /// True: by distances from the newest targets, or from the actual positions after a stop. The
+  /// drives get absolute positions, so that taktd can check them.
+  bool relative = false;
+  SetPointTiming timing = SetPointTiming::at_once;  ///< when the drives begin
+  bool wait = true;  ///< false: the call returns when the drives have taken the targets
+};
+
+/// Options of Axes::touch_probe().
+struct ProbeOptions {
+  /// Which change of the input is looked for.
+  enum class Edge : std::uint8_t {
+    rising,   ///< from inactive to active
+    falling,  ///< from active to inactive
+  };
+  /// What the probe looks at.
+  enum class Source : std::uint8_t {
+    input,        ///< the input of the probe
+    index_pulse,  ///< the index pulse of the encoder
+  };
+  int input = 1;                  ///< number of the touch probe, 1 or 2
+  Edge edge = Edge::rising;       ///< which edge stores the position
+  Source source = Source::input;  ///< where the edge comes from
+  std::chrono::nanoseconds longest = std::chrono::seconds{10};  ///< longest wait for the edge
+};
+
 /// Options of Axes::home().
 struct HomingOptions {
   /// In which order the axes are homed.
@@ -158,19 +194,45 @@ class Axes {
   /// Resets the faults of all axes.
   Done reset();
   /// Sets another mode of operation for all axes, and waits until the drives show it. Motions need
-  /// cyclic synchronous position mode, which enable() sets again.
+  /// cyclic synchronous position mode, which enable() sets again. Stops the axes before. No mode
+  /// begins with a jump: target positions follow the actual ones, and target velocities and torques
+  /// begin at 0.
   Done set_mode(DriveMode mode);
+  /// The same for one axis, 0..size()-1. All axes are stopped before.
+  Done set_mode(Eigen::Index axis, DriveMode mode);
 
   /// Sets the Halt bit (bit 8 of 0x6040) of all axes, and waits until they stand. taktd ends their
   /// motions along their limits, too, so that they also stand if a drive ignores the bit, as many
   /// do in cyclic synchronous modes. No motion begins before resume() or enable(). CiA 402-2,
   /// controlword.
   Done halt();
-  /// Ends the Halt. The axes stand until the next motion.
+  /// Ends the Halt. The axes stand until the next motion or set-point, but a drive in profile
+  /// position mode goes on to its target.
   Done resume();
   /// Commands a quick stop (bit 2 of 0x6040 is 0): the drives brake by themselves, along 0x6085.
   /// Waits until they show it and stand. Then they are not enabled: see enable().
   Done quick_stop();
+
+  /// Lets the drives move to these positions by themselves, in profile position mode: see
+  /// set_mode(). Waits until bit 10 of their statuswords says that they are there. The drives know
+  /// the bounds, which are written to 0x6081, 0x6083 and 0x6084; taktd checks the range of
+  /// positions, but no velocity. If this program is silent for AxesOptions::timeout, or for the
+  /// time in `on_timeout`, the drives take their fallback. CiA 402-2, profile position mode.
+  Done profile_move(const Eigen::Ref<const Eigen::VectorXd>& positions,
+                    const ProfileBounds& bounds = {}, const ProfileMove& how = {});
+  /// Sets the target velocities (0x60FF), in profile or cyclic synchronous velocity mode. Returns
+  /// when an image shows that they were sent. They are held until the next call, until stop(), or
+  /// until this program is silent, as with set(); then they do not begin again by themselves.
+  Done command_velocities(const Eigen::Ref<const Eigen::VectorXd>& velocities);
+  /// Sets the target torques (0x6071), in profile or cyclic torque mode, in the same way. With the
+  /// torque 0, which stop() sets, an axis coasts, and a load may move it.
+  Done command_torques(const Eigen::Ref<const Eigen::VectorXd>& torques);
+
+  /// Arms a touch probe of an axis (0..size()-1), waits for its edge, and returns the position that
+  /// the drive has stored with it, in the unit of the axis. Motions go on: begin one before, and
+  /// stop it afterwards. Objects in PDOs are used there, others by SDO. CiA 402-2, 0x60B8 to
+  /// 0x60BD.
+  std::expected<double, Obstacle> touch_probe(Eigen::Index axis, const ProbeOptions& options = {});
 
   /// Reads an object of a node by SDO, as little-endian bytes; up to 1024. taktd makes the
   /// transfer, and motions go on. An obstacle has the abort code in words. CiA 301, SDO.
@@ -269,7 +331,8 @@ class Axes {
   /// Returns true if taktd refuses to move this axis to positions until it is homed: `homing:` of
   /// the network file requires it.
   bool needs_homing(Eigen::Index axis) const;
-  /// Returns true if at least one axis moves or stops, as taktd has reported last.
+  /// Returns true if at least one axis moves or stops, as taktd has reported last. taktd reports
+  /// this in cyclic synchronous position mode alone.
   bool moving() const;
   /// Returns the actual positions (0x6064) of the newest image. All values of this object are 0
   /// once taktd has restarted.

@@ -21,6 +21,20 @@ TEST(SetPointHandshake, HoldsBit4UntilBit12AnswersAndEndsWhenBit12Falls) {
   EXPECT_TRUE(handshake.done());
 }
 
+TEST(SetPointHandshake, ASetPointAfterTheLastOneHasNoBit5) {
+  SetPointHandshake handshake;
+  handshake.begin(SetPointTiming::after_the_last);
+
+  EXPECT_EQ(handshake.step(free_buffer), 0x0010);
+  EXPECT_FALSE(handshake.taken());
+  EXPECT_EQ(handshake.step(acknowledged), 0x0000);
+  EXPECT_TRUE(handshake.taken());
+  handshake.begin();
+  EXPECT_FALSE(handshake.taken()) << "bit 12 is of the set-point before";
+  EXPECT_EQ(handshake.step(acknowledged), 0x0000);
+  EXPECT_EQ(handshake.step(free_buffer), 0x0030);
+}
+
 TEST(SetPointHandshake, WaitsUntilTheDriveHasRoom) {
   SetPointHandshake handshake;
   handshake.begin();
