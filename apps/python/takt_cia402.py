@@ -6,19 +6,23 @@ TARGET, TARGET_VELOCITY, TARGET_TORQUE = 0x607A, 0x60FF, 0x6071
 # Touch probe: function, status, and positions at the rising and the falling edge of inputs 1 and 2.
 PROBE_FUNCTION, PROBE_STATUS, PROBE_POSITION = 0x60B8, 0x60B9, 0x60BA
 PROBE_POSITIONS = range(PROBE_POSITION, PROBE_POSITION + 4)
+INTERPOLATION_TARGET = 0x60C1  # sub-index 1
 # The objects that an axis has in its PDOs, and whether the master sends them.
 OBJECTS = ({(index, True)
             for index in (CONTROLWORD, MODE, TARGET, TARGET_VELOCITY, TARGET_TORQUE,
-                          PROBE_FUNCTION)} |
+                          PROBE_FUNCTION, INTERPOLATION_TARGET)} |
            {(index, False) for index in (STATUSWORD, MODE_DISPLAY, POSITION, VELOCITY,
                                          PROBE_STATUS, *PROBE_POSITIONS)})
 # The objects of each further axis of a device are 0x800 higher.
 FIRST_OBJECT, LAST_OBJECT, AXIS_STEP = 0x6000, 0x9FFF, 0x800
-HOMING, CYCLIC_SYNCHRONOUS_POSITION = 6, 8  # modes of operation (0x6060)
+# Modes of operation (0x6060).
+PROFILE_POSITION, PROFILE_VELOCITY, HOMING = 1, 3, 6
+INTERPOLATED_POSITION, CYCLIC_SYNCHRONOUS_POSITION = 7, 8
+INTERPOLATE = 0x10  # bit 4 of the controlword in interpolated position mode
 START_HOMING = 0x10  # bit 4 of the controlword in homing mode
 HALT = 0x100  # bit 8 of the controlword
-# Bit 10, and bits 12 and 13, of the statusword.
-TARGET_REACHED, HOMING_RESULT = 0x0400, 0x3000
+# Bit 10, and bits 12 and 13, of the statusword; bit 12 in profile velocity mode.
+TARGET_REACHED, HOMING_RESULT, SPEED_IS_0 = 0x0400, 0x3000, 0x1000
 ENABLED, QUICK_STOP = "operation enabled", "quick stop active"
 FAULTS = ("fault", "fault reaction active")
 DISABLED = ("switch on disabled", "not ready to switch on", "fault")
@@ -68,8 +72,36 @@ class Axis:
     def enabled(self) -> bool:
         return self.state == ENABLED
 
+    @property
+    def has_target(self) -> bool:
+        """taktd can give it positions."""
+        return TARGET in self.places or INTERPOLATION_TARGET in self.places
+
+    @property
+    def motion_mode(self) -> int:
+        """The mode in which taktd moves it: cyclic synchronous position, or interpolated position
+        if 0x60C1:01 is in its RPDOs and 0x607A is not."""
+        interpolates = INTERPOLATION_TARGET in self.places and TARGET not in self.places
+        return INTERPOLATED_POSITION if interpolates else CYCLIC_SYNCHRONOUS_POSITION
+
+    @property
+    def obeys_motions(self) -> bool:
+        return self.mode == self.motion_mode
+
     def change_mode(self, mode: int) -> None:
-        self.mode, self.mode_bits, self.target = mode, 0, None
+        """Cyclic synchronous position stands for the mode in which taktd moves the axis."""
+        self.mode = self.motion_mode if mode == CYCLIC_SYNCHRONOUS_POSITION else mode
+        self.mode_bits = INTERPOLATE if self.mode == INTERPOLATED_POSITION else 0
+        self.target = None
+
+    def says_rest(self, halted: bool) -> bool:
+        """The drive says that it stands. In other modes bit 10 has another meaning, or none."""
+        if not self.enabled:
+            return False
+        if self.mode == PROFILE_VELOCITY:
+            return self.statusword & SPEED_IS_0 != 0
+        return (halted or self.mode in (PROFILE_POSITION, HOMING)) and (
+            self.statusword & TARGET_REACHED != 0)
 
     def controlword(self, words: dict) -> int:
         return words.get(self.state, 0) | (self.mode_bits if self.enabled else 0)

@@ -6,7 +6,7 @@ from takt import command_t
 
 from takt_cia402 import (CONTROLWORD, CYCLIC_SYNCHRONOUS_POSITION, DISABLED, DISABLING, ENABLED,
                          ENABLING, FAULTS, HALT, KEEPING, MODE, MODE_DISPLAY, POSITION, QUICK_STOP,
-                         QUICK_STOPPING, RESETTING, TARGET, TARGET_REACHED, Axis)
+                         QUICK_STOPPING, RESETTING, TARGET, Axis)
 from takt_link import Link, Obstacle
 
 NOT_ENABLED, MOVES, STOPS = 0, 2, 3  # axis_motion_t::state
@@ -21,12 +21,14 @@ LOW_TIME = 0.1  # seconds for which bit 7 of the controlword is low before its r
 
 
 class Drives:
-    """Sends controlwords and modes while a state or a mode changes. In cyclic synchronous position
-    mode, the values stay valid after that as long as this program gives signs of life; in other
-    modes they are sent from each image."""
+    """Sends controlwords and modes while a state or a mode changes. In the modes in which taktd
+    moves axes, the values stay valid after that as long as this program gives signs of life; in
+    other modes they are sent from each image."""
 
     def __init__(self, link: Link):
         self._link = link
+        for axis in link.axes:
+            axis.change_mode(CYCLIC_SYNCHRONOUS_POSITION)
         self.words = None  # the controlword for each state, while it is sent
         self.readiness = IDLE
         link.in_each_cycle.append(self._send)
@@ -68,8 +70,8 @@ class Drives:
 
     def keep(self) -> None:
         """The axes keep their states and modes from now on."""
-        cyclic = all(axis.mode == CYCLIC_SYNCHRONOUS_POSITION for axis in self._link.axes)
-        self.words = None if cyclic else KEEPING
+        obey = all(axis.obeys_motions for axis in self._link.axes)
+        self.words = None if obey else KEEPING
 
     def in_fault(self) -> bool:
         return any(axis.state in FAULTS for axis in self._link.axes)
@@ -95,12 +97,13 @@ class Drives:
         self.words, link.commanding = KEEPING, True
 
         def shown(axis: Axis) -> bool:
-            return self.shown_mode(axis) == mode
+            return self.shown_mode(axis) == axis.mode
         good = link.wait(lambda: all(map(shown, axes)), link.longest)
         self.keep()
         if not good:
-            raise Obstacle("blocked", "; ".join(f"{axis.name}: 0x6061 does not show mode {mode}"
-                                                for axis in axes if not shown(axis)))
+            raise Obstacle("blocked", "; ".join(
+                f"{axis.name}: 0x6061 does not show mode {axis.mode}"
+                for axis in axes if not shown(axis)))
 
     def halt(self) -> None:
         link = self._link
@@ -143,8 +146,7 @@ class Drives:
 
         def may_move(axis: Axis, position: int | None, old: int | None) -> bool:
             turns = position != old and axis.state in (ENABLED, QUICK_STOP)
-            reached = axis.statusword & TARGET_REACHED
-            return moves(axis) or turns and not reached
+            return moves(axis) or turns and not axis.says_rest(self.readiness == HALTED)
 
         def at_rest() -> bool:
             nonlocal moved, before
@@ -182,7 +184,7 @@ class Drives:
 
     def follow(self) -> bool:
         """True if all axes are enabled, and taktd can move those whose mode is for its motions."""
-        return all(axis.enabled and (axis.mode != CYCLIC_SYNCHRONOUS_POSITION or can_move(axis))
+        return all(axis.enabled and (not axis.obeys_motions or can_move(axis))
                    for axis in self._link.axes)
 
     def why_not_ready(self) -> str:
@@ -206,14 +208,14 @@ class Drives:
                     "--no-motions, and are 6041 and 6064 in TPDOs and 607A in an RPDO of the "
                     "drive?")
         return "" if axis.motion.state != NOT_ENABLED else (
-            f"{axis.name}: taktd does not count it as enabled: is its mode of operation 8, and is "
-            "its target position sent?")
+            f"{axis.name}: taktd does not count it as enabled: is its mode of operation "
+            f"{axis.motion_mode}, and is its target position sent?")
 
     def _target(self, axis: Axis) -> int | None:
         """The target position to send. An axis whose target was commanded by this program must not
         jump there in cyclic synchronous position mode, so its target follows its actual position
         until taktd moves it. None: taktd commands it."""
-        if not axis.has_own_target or axis.mode == CYCLIC_SYNCHRONOUS_POSITION and can_move(axis):
+        if not axis.has_own_target or axis.obeys_motions and can_move(axis):
             return None
         return self._link.raw(axis, POSITION) if axis.target is None else axis.target
 

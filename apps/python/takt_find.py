@@ -1,7 +1,6 @@
 """Which axes of a bus a program commands. Used by takt_axes."""
 from __future__ import annotations
 
-from takt_cia402 import TARGET
 from takt_link import Link, Obstacle
 
 LAYOUT_TIME = 1.5  # seconds for the speed axes of a layout, which come once a second
@@ -36,7 +35,7 @@ def find_axes(link: Link, names: tuple[str, ...]) -> list:
 
 def _inverters(link: Link, names: tuple[str, ...]) -> dict:
     """The speed axes of the bus. Waits for them if they may be meant."""
-    with_position = {axis.name for axis in link.axes if TARGET in axis.places}
+    with_position = {axis.name for axis in link.axes if axis.has_target}
     wanted, begin = set(names) - with_position if names else not with_position, link.now()
     while wanted and not link.speed_words() and link.now() < begin + LAYOUT_TIME:
         link.serve(0.05)

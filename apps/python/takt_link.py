@@ -10,7 +10,8 @@ from collections.abc import Callable
 import lcm
 from takt import event_t, image_t, layout_t, motion_t, speed_axes_t, status_t
 
-from takt_cia402 import AXIS_STEP, CONTROLWORD, FIRST_OBJECT, LAST_OBJECT, OBJECTS, STATUSWORD, Axis
+from takt_cia402 import (AXIS_STEP, CONTROLWORD, FIRST_OBJECT, INTERPOLATION_TARGET, LAST_OBJECT,
+                         OBJECTS, STATUSWORD, Axis)
 
 SCHEMA = 2  # of the LCM messages that this module knows
 IMAGE_TIME = 2.0  # seconds without an image after which the bus is gone
@@ -174,8 +175,9 @@ class Link:
     def _add(self, place: int, signal) -> None:
         self.signals[place] = signal
         index = FIRST_OBJECT + signal.index % AXIS_STEP
-        if (not FIRST_OBJECT <= signal.index <= LAST_OBJECT or signal.sub or
-                (index, bool(signal.output)) not in OBJECTS):
+        if (not FIRST_OBJECT <= signal.index <= LAST_OBJECT or
+                (index, bool(signal.output)) not in OBJECTS or
+                signal.sub != (1 if index == INTERPOLATION_TARGET else 0)):
             return
         number = (signal.index - FIRST_OBJECT) // AXIS_STEP + 1
         name = signal.node if number == 1 else f"{signal.node}.{number}"

@@ -18,6 +18,7 @@ LAYOUT = [(node, *words) for words in ((0x6041, False, "statusword", 6, 16, 1.0)
                                        (0x6071, True, "target_torque", 3, 16, 1e-3))
           for node in (5, 6)] + [(IO, 0x6000, False, "switches", 5, 8, 1.0), (IO, 0x6411, True, "valve", 3, 16, 1e-3)]
 NAMES = {5: "shoulder", 6: "elbow", IO: "io"}
+MOTION_MODES = (7, 8)  # interpolated and cyclic synchronous position
 STEP = 0.5  # of a move in a cycle
 PERIOD, LEAD, SLOWING = 0.002, 3, 4  # s; cycles before the begin of a motion, and those of a stop
 SHORT, LONG = 0.3, 100.0  # seconds of calls that end by an obstacle, and of the others; the clock is that of the daemon
@@ -29,7 +30,7 @@ class Drive:
         self.node, self.statusword, self.controlword, self.position, self.target, self.velocity = node, 0x250, 0, 0.0, 0.0, 0.0
         self.motion, self.mode = takt.axis_motion_t(), 0
         self.motion.node_id, self.motion.axis = node, 1
-        self.targets, self.way = {0x607A: 0, 0x60FF: 0, 0x6071: 0}, []  # way: set-points of profile position
+        self.targets, self.way = {0x607A: 0, 0x60C1: 0, 0x60FF: 0, 0x6071: 0}, []  # way: set-points of profile position
         self.pending = None  # a motion that is about to begin: its first cycle, command and goal
         self.slowing, self.renewed, self.patience, self.stopped, self.newest = 0, 0, 0, -1, (-1, 0)
 
@@ -273,11 +274,11 @@ class Daemon:
 
     def advance(self, drive):
         if not self.stubborn:
-            drive.statusword = NEXT.get((drive.statusword, drive.controlword & 0xFF), drive.statusword)
+            drive.statusword = NEXT.get((drive.statusword, drive.controlword & 0x8F), drive.statusword)
         drive.drive_itself()
         if drive.controlword & 0x100 and drive.motion.id and not drive.slowing:
             drive.slowing = SLOWING
-        enabled, motion = drive.statusword == 0x237 and drive.mode == 8, drive.motion
+        enabled, motion = drive.statusword == 0x237 and drive.mode in MOTION_MODES, drive.motion
         if drive.pending and self.cycle >= drive.pending[0]:
             drive.begin(*drive.pending[1:], self.cycle)
             drive.pending = None
@@ -341,7 +342,8 @@ def layout():
     for node, index, output, name, data_type, bits, scale in LAYOUT:
         signal = takt.signal_t()
         signal.node, signal.node_id, signal.index, signal.output, signal.name = NAMES[node], node, index, output, name
-        signal.data_type, signal.bits, signal.scale, signal.sub = data_type, bits, scale, int(node == IO)
+        signal.data_type, signal.bits, signal.scale = data_type, bits, scale
+        signal.sub = int(node == IO or index == 0x60C1)
         made.signals.append(signal)
     made.num_signals = made.total_signals = len(made.signals)
     return made

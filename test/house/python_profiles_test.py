@@ -3,7 +3,7 @@
 of python_daemon.py."""
 import sys
 
-from python_daemon import SHORT, check, failures, obstacle, on_a_bus
+from python_daemon import LAYOUT, SHORT, check, failures, obstacle, on_a_bus
 
 OBJECTS = {(5, index, 0): bytes(4) for index in (0x6081, 0x6083, 0x6084)}
 
@@ -97,6 +97,12 @@ kind, text = obstacle(axes.command_velocities, 1.0)
 check("velocities have their modes", text == "shoulder is in mode 4: call set_mode(3) or set_mode(9) first", text)
 axes.disable()
 check("disable() ends a torque first", drive.targets[0x6071] == 0 and drive.statusword == 0x250)
+daemon, axes, drive = in_mode(3)
+axes.command_velocities(1.0)
+drive.bits, coasting = lambda: 0x400, iter(range(100))  # "target velocity reached" is not "at rest"
+drive.drive_itself = lambda: setattr(drive, "position", drive.position + 0.01 * (next(coasting, None) is not None))
+axes.stop()
+check("a stop waits until the drive stands", stands(axes) and next(coasting, None) is None)
 daemon, axes, drive = in_mode(9)
 axes.command_velocities(1.0)
 for _ in range(300):
@@ -136,4 +142,19 @@ axes.set_mode(8, 1)
 axes.move(1.0, 1.0)
 check("and come back", axes.positions == [1.0, 1.0])
 check("a wrong axis is named", "'wrist' is none of the axes" in obstacle(axes.set_mode, 3, "wrist")[1])
+
+for place, (node, index, *words) in enumerate(LAYOUT):
+    LAYOUT[place] = (node, 0x60C1 if index == 0x607A else index, *words)
+daemon, axes = on_a_bus("shoulder")
+drive = daemon.drives[0]
+axes.enable()
+check("an axis without 607A moves in interpolated position", drive.mode == 7 and drive.controlword == 0x1F)
+axes.move(1.0)
+axes.set_mode(3)
+check("it can have another mode", drive.mode == 3 and drive.controlword == 0x0F, drive.controlword)
+axes.set_mode(8)
+axes.move(2.0)
+check("and comes back", axes.positions == [2.0] and drive.mode == 7 and drive.controlword == 0x1F)
+axes.disable()
+check("bit 4 is for enabled drives", not drive.controlword & 0x10)
 sys.exit(1 if failures else 0)
