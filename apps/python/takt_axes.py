@@ -109,10 +109,10 @@ class Axes(View):
         self._drives.check_follow()
 
     def resume(self) -> None:
-        """Ends the Halt. The axes stand until the next motion."""
+        """Ends the Halt. The axes stand until the next motion; in profile position mode they go on
+        to their set-points, unless stop() has given these up."""
         self._needs_position()
         if self._drives.readiness == HALTED:
-            self._profiles.discard()
             self._drives.end_halt()
             self._drives.check_follow()
 
@@ -240,8 +240,12 @@ class Axes(View):
         (self._speed or self._motions).wait(seconds)
 
     def run(self, seconds: float) -> None:
-        """Waits for this time, in which motions go on."""
+        """Waits for this time, in which motions go on. Says if set-points of set(),
+        command_velocities() or command_torques() were given up because this program was silent."""
         self._link.wait(lambda: False, seconds)
+        lost = self._outputs.take_loss()
+        if lost:
+            raise Obstacle("stopped", lost)
 
     def stop(self) -> None:
         """Stops the axes along their limits, and returns when taktd reports that their commanded
@@ -259,11 +263,14 @@ class Axes(View):
                      at_once: bool = True, wait: bool = True) -> None:
         """Moves the axes in profile position mode, which set_mode(1) sets: the drives compute the
         motions along 0x6081, 0x6083 and 0x6084, which are written if they are given, in the unit
-        of the velocity. `relative`: distances. Without `at_once`, a set-point waits in the buffer
+        of the velocity; the deceleration is that of the acceleration unless it is given.
+        `relative`: distances from the set-points before. They are sent as positions, because taktd
+        can check only those against the range. Without `at_once`, a set-point waits in the buffer
         of the drive until the one before is reached. Returns when the drives have reached their
         set-points, or with wait=False, when they have taken them: see wait() and stop()."""
         self._needs_position()
-        bounds = {"velocity": velocity, "acceleration": acceleration, "deceleration": deceleration}
+        bounds = {"velocity": velocity, "acceleration": acceleration,
+                  "deceleration": deceleration or acceleration}
         self._profiles.move(positions, bounds, relative, at_once)
         if wait:
             self.wait()

@@ -15,7 +15,7 @@ class Outputs:
     is the timeout of the program. After a longer silence they are not sent again."""
 
     def __init__(self, link: Link):
-        self._link, self._values, self._sent = link, {}, 0.0
+        self._link, self._values, self._sent, self._lost = link, {}, 0.0, ""
         link.in_each_cycle.append(self._send)
 
     def signal(self, name: str) -> float:
@@ -50,17 +50,20 @@ class Outputs:
             mask = (1 << link.signals[place].bits) - 1
             return (link.values.get(place, ~values[place]) ^ values[place]) & mask == 0
 
-        def refused() -> str:
-            limited = (event.text for event in link.events
-                       if event.kind == "limit_exceeded" and event.node_id in nodes)
-            return link.event("command_refused", link.sender) or next(limited, "")
-        link.wait(lambda: all(map(taken, values)) or refused(), ANSWER_TIME)
+        link.wait(lambda: all(map(taken, values)) or self.refusal(nodes), ANSWER_TIME)
         late = [f"{link.signals[place].node}.{link.signals[place].name}" for place in values
                 if not taken(place)]
-        if late or refused():
+        if late or self.refusal(nodes):
             for place in values:
                 self._values.pop(place, None)
-            raise Obstacle("refused", refused() or f"taktd has not taken {', '.join(late)}")
+            raise Obstacle("refused", self.refusal(nodes) or
+                           f"taktd has not taken {', '.join(late)}")
+
+    def refusal(self, nodes: set[int]) -> str:
+        """What taktd has said against the newest values for these nodes, or an empty text."""
+        limited = (event.text for event in self._link.events
+                   if event.kind == "limit_exceeded" and event.node_id in nodes)
+        return self._link.event("command_refused", self._link.sender) or next(limited, "")
 
     def hold(self, values: dict[int, int]) -> None:
         """Sends these values now and from each image."""
@@ -88,8 +91,17 @@ class Outputs:
         raise Obstacle("wrong use", f"'{name}' {what} of bus {self._link.bus}; there are: "
                                     f"{', '.join(known) or 'none of this node'}")
 
+    def take_loss(self) -> str:
+        """Says, once, that values were given up after a silence. Empty: none were."""
+        lost, self._lost = self._lost, ""
+        return lost
+
     def _drop_after_silence(self) -> None:
-        if self._values and self._link.now() - self._sent > self._link.timeout:
+        silence = self._link.now() - self._sent
+        if any(self._values.values()) and silence > self._link.timeout:
+            self._lost = (f"this program was silent for {silence * 1000:.0f} ms, so its set-points "
+                          "were given up")
+        if silence > self._link.timeout:
             self._values = {}
 
     def _send(self) -> None:

@@ -13,7 +13,7 @@ from takt_signals import encode
 # Modes of operation (0x6060): profile and cyclic synchronous velocity, and torque.
 MODES_OF = {TARGET_VELOCITY: (3, 9), TARGET_TORQUE: (4, 10)}
 # Bits of the controlword and of the statusword in profile position mode.
-NEW_SET_POINT, CHANGE_AT_ONCE, RELATIVE = 0x10, 0x20, 0x40
+NEW_SET_POINT, CHANGE_AT_ONCE = 0x10, 0x20
 ACKNOWLEDGED = 0x1000
 BOUNDS = {"velocity": 0x6081, "acceleration": 0x6083, "deceleration": 0x6084}
 
@@ -25,7 +25,9 @@ class Profiles:
     def __init__(self, link: Link, drives: Drives, services: Services, outputs: Outputs):
         self._link, self._drives = link, drives
         self._services, self._outputs = services, outputs
-        self._given = None  # the cycle of the newest set-point in profile position mode
+        # Of profile position mode: the cycle of the newest set-points until they are reached, and
+        # the set-points since the last stop.
+        self._given, self._targets = None, None
         link.when_abandoned.append(self.rest)
 
     @property
@@ -47,12 +49,8 @@ class Profiles:
         """Commands the target velocities or torques of all axes."""
         link = self._link
         self._check(MODES_OF[index], values)
-        for axis in link.axes:
-            if index not in axis.places:
-                raise Obstacle("blocked", f"{axis.name}: 0x{index:04X} is in no RPDO: map it in "
-                                          "`rpdo:` of the network file")
-        raws = [self._raw(axis, axis.signals[index], value)
-                for axis, value in zip(link.axes, values)]
+        self._check_mapped(index)
+        raws = [self._raw(axis, index, value) for axis, value in zip(link.axes, values)]
         try:
             self._outputs.confirm({axis.places[index]: raw for axis, raw in zip(link.axes, raws)})
         except Obstacle:
@@ -63,14 +61,19 @@ class Profiles:
         """Hands over a set-point in profile position mode."""
         axes = self._link.axes
         self._check((PROFILE_POSITION,), positions)
-        targets = {axis: self._raw(axis, self._signal(axis, POSITION), float(position), relative)
-                   for axis, position in zip(axes, positions)}
+        self._check_mapped(TARGET)
+        if self._targets is None:
+            self._targets = [self._link.value(axis, POSITION) for axis in axes]
+        wanted = [float(position) + (target if relative else 0.0)
+                  for position, target in zip(positions, self._targets)]
+        raws = {axis: self._raw(axis, TARGET, value) for axis, value in zip(axes, wanted)}
         for name, bound in bounds.items():
             many = isinstance(bound, (list, tuple))
             for axis, value in zip(axes, bound if many else [bound] * len(axes)):
                 if value:
                     self._set_bound(axis, BOUNDS[name], float(value))
-        self._hand_over(targets, (CHANGE_AT_ONCE if at_once else 0) | (RELATIVE if relative else 0))
+        self._hand_over(raws, CHANGE_AT_ONCE if at_once else 0)
+        self._targets = wanted
 
     def wait(self, seconds: float) -> None:
         """Waits until the drives have reached their set-points, and have none in their buffers."""
@@ -95,6 +98,7 @@ class Profiles:
         turning = [axis for axis in axes if axis.mode in MODES_OF[TARGET_VELOCITY]]
         if turning and not self._drives.wait_for_rest(turning):
             raise Obstacle("time over", "the axes still move")
+        self._targets = None
         if self._given is None:
             return
         if self._drives.readiness == HALTED:
@@ -132,23 +136,23 @@ class Profiles:
         if off:
             raise Obstacle(kind, "; ".join(off))
 
-    def _signal(self, axis: Axis, index: int):
-        if index not in axis.signals:
-            raise Obstacle("blocked", f"{axis.name}: 0x{index:04X} is in no PDO, so its unit is "
-                                      "not known")
-        return axis.signals[index]
+    def _check_mapped(self, index: int) -> None:
+        for axis in self._link.axes:
+            if index not in axis.places:
+                raise Obstacle("blocked", f"{axis.name}: 0x{index:04X} is in no RPDO: map it in "
+                                          "`rpdo:` of the network file")
 
-    def _raw(self, axis: Axis, signal, value: float, distance: bool = False) -> int:
-        offset = signal.offset if distance else 0.0
-        raw = encode(signal, float(value) + offset)
+    def _raw(self, axis: Axis, index: int, value: float) -> int:
+        signal = axis.signals[index]
+        raw = encode(signal, float(value))
         if raw is None:
             raise Obstacle("wrong use", f"{axis.name} can't be commanded {value} {signal.unit}")
         return raw
 
     def _set_bound(self, axis: Axis, index: int, value: float) -> None:
         """In the unit of the velocity, per second for accelerations."""
-        signal = axis.signals.get(TARGET_VELOCITY) or axis.signals.get(VELOCITY)
-        raw = round(value / (signal or self._signal(axis, POSITION)).scale)
+        known = (axis.signals.get(index) for index in (VELOCITY, TARGET_VELOCITY, TARGET))
+        raw = round(value / abs(next(filter(None, known)).scale))
         if not 0 < raw < 1 << 32:
             raise Obstacle("wrong use", f"{axis.name}: 0x{index:04X} can't be {value}")
         index += AXIS_STEP * (axis.number - 1)
@@ -163,20 +167,21 @@ class Profiles:
         """The handshake of the set-point: bit 4 of the controlword rises while bit 12 of the
         statusword is 0, and falls when it is 1."""
         link, drives = self._link, self._drives
+        nodes = {axis.node_id for axis in targets}
         for axis, target in targets.items():
-            if TARGET not in axis.places:
-                data = target.to_bytes(4, "little", signed=True)
-                self._services.write(axis.node, TARGET + AXIS_STEP * (axis.number - 1), 0, data)
-            axis.target, axis.mode_bits = target, bits
-            axis.has_own_target = True
+            axis.target, axis.mode_bits, axis.has_own_target = target, bits, True
         drives.words = KEEPING
+        link.events.clear()
 
         def sent(axis: Axis, bit: int) -> bool:
-            word = link.raw(axis, CONTROLWORD) & (NEW_SET_POINT | CHANGE_AT_ONCE | RELATIVE)
-            return word == bits | bit and link.raw(axis, TARGET) in (None, axis.target)
+            word = link.raw(axis, CONTROLWORD) & (NEW_SET_POINT | CHANGE_AT_ONCE)
+            return word == bits | bit and link.raw(axis, TARGET) == axis.target
 
         def phase(reached, words: str) -> None:
             def over() -> bool:
+                refusal = self._outputs.refusal(nodes)
+                if refusal:
+                    raise Obstacle("refused", refusal)
                 self._check_enabled("stopped", targets)
                 return all(map(reached, targets))
             if not link.wait(over, link.longest):

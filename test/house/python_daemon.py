@@ -142,6 +142,7 @@ class Daemon:
         self.gears, self.streams, self.messages = [], [], 0  # messages of streams
         self.delay, self.late = 0, []  # of motion commands on their way here, in cycles
         self.objects, self.mute = {}, False  # of the devices, by SDO: node-ID, index, sub
+        self.refuses_targets = ""
         self.io, self.io_life, self.stubborn = {0x6000: 0, 0x6411: 0}, 0, False  # stubborn: drives ignore controlwords
 
     def LCM(self):
@@ -185,6 +186,8 @@ class Daemon:
             return self.say("command_refused", f"command of '{command.sender}' refused: {why}", node)
         if node == IO:
             self.io[index], self.io_life = value, self.cycle + command.time_to_live
+        elif index == 0x607A and self.refuses_targets:
+            self.say("limit_exceeded", self.refuses_targets, node)
         elif index in self.drives[node - 5].targets:
             self.drives[node - 5].targets[index] = value
         else:

@@ -27,9 +27,10 @@ axes.profile_move(2.0, velocity=3.0, acceleration=[40.0])
 check("a profile move ends at its target", axes.positions == [2.0] and not axes.moving)
 check("its bounds are written in the unit of velocities",
       (daemon.objects[5, 0x6081, 0], daemon.objects[5, 0x6083, 0], daemon.objects[5, 0x6084, 0])
-      == ((300).to_bytes(4, "little"), (4000).to_bytes(4, "little"), bytes(4)), daemon.objects)
+      == ((300).to_bytes(4, "little"), (4000).to_bytes(4, "little"), (4000).to_bytes(4, "little")), daemon.objects)
 axes.profile_move(-0.5, relative=True)
-check("a relative one goes its distance", axes.positions == [1.5] and not drive.controlword & 0x10)
+check("a relative one goes its distance, as a position", axes.positions == [1.5] and drive.targets[0x607A] == 1500 and
+      not drive.controlword & 0x50)
 axes.profile_move(3.0, wait=False)
 check("it can go on while the program does something else", axes.moving and axes.positions[0] < 3.0)
 axes.profile_move(4.0, at_once=False, wait=False)
@@ -46,7 +47,13 @@ axes.halt()
 check("so does a Halt", stands(axes) and drive.controlword & 0x100)
 check("a halted axis takes no set-point", "call resume() first" in obstacle(axes.profile_move, 1.0)[1])
 axes.resume()
-check("also after resume()", stands(axes) and not drive.controlword & 0x100)
+axes.wait()
+check("it goes on after resume()", axes.positions == [0.0])
+axes.profile_move(5.0, wait=False)
+axes.halt()
+axes.stop()
+axes.resume()
+check("but not if a stop has given it up", stands(axes) and not drive.controlword & 0x100)
 axes.profile_move(-9.0, relative=True, wait=False)
 axes.run(0.1)
 axes.enable()
@@ -57,6 +64,10 @@ check("another mode is named", "shoulder is in mode 8: call set_mode(1) first" i
 daemon, axes, drive = in_mode(1)
 drive.bits = lambda: 0x1000
 axes._link.longest = SHORT
+daemon.refuses_targets = "node 5: command to 607A is outside its limits"
+kind, text = obstacle(axes.profile_move, 1.0)
+check("a set-point that taktd refuses is named", (kind, text) == ("refused", daemon.refuses_targets), text)
+daemon.refuses_targets = ""
 check("a full buffer is named", "has no room for a set-point" in obstacle(axes.profile_move, 1.0)[1])
 drive.bits = lambda: 0
 kind, text = obstacle(axes.profile_move, 1.0)
@@ -107,7 +118,8 @@ daemon, axes, drive = in_mode(9)
 axes.command_velocities(1.0)
 for _ in range(300):
     daemon.pass_cycle()
-axes.run(0.1)
+kind, text = obstacle(axes.run, 0.1)
+check("a silence gives a velocity up", kind == "stopped" and "so its set-points were given up" in text, (kind, text))
 commanded = []
 recorder = type("Recorder", (dict,), {"__setitem__": lambda self, key, value: commanded.append(value)})
 drive.targets = recorder(drive.targets)

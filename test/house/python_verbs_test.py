@@ -78,6 +78,7 @@ check("and the drives are left alone", daemon.drives[0].controlword == 0 and not
 for _ in range(300):
     daemon.pass_cycle()
 check("it ends with a silence of the program", daemon.io_life < daemon.cycle)
+check("and the next run() says so", "its set-points were given up" in obstacle(axes.run, 0.1)[1])
 axes.run(1.0)
 check("and does not come again by itself", daemon.io_life < daemon.cycle)
 axes.set("io.valve", 0.5)
