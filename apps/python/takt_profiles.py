@@ -15,6 +15,7 @@ MODES_OF = {TARGET_VELOCITY: (3, 9), TARGET_TORQUE: (4, 10)}
 # Bits of the controlword and of the statusword in profile position mode.
 NEW_SET_POINT, CHANGE_AT_ONCE = 0x10, 0x20
 ACKNOWLEDGED = 0x1000
+STANDING_TIME = 1.0  # seconds after which an axis that stands before its target has not reached it
 BOUNDS = {"velocity": 0x6081, "acceleration": 0x6083, "deceleration": 0x6084}
 
 
@@ -78,17 +79,26 @@ class Profiles:
     def wait(self, seconds: float) -> None:
         """Waits until the drives have reached their set-points, and have none in their buffers."""
         link, axes = self._link, self._link.axes
+        moved, before = link.now(), None
 
-        def reached() -> bool:
+        def late() -> list[Axis]:
+            return [axis for axis in axes
+                    if axis.statusword & (TARGET_REACHED | ACKNOWLEDGED) != TARGET_REACHED]
+
+        def over() -> bool:
+            nonlocal moved, before
             self._check_enabled("stopped", axes)
-            there = all(axis.statusword & (TARGET_REACHED | ACKNOWLEDGED) == TARGET_REACHED
-                        for axis in axes)
-            return there and link.cycle >= self._given + WORD_CYCLES
-        if not link.wait(reached, seconds):
-            raise Obstacle("time over", "; ".join(
-                f"{axis.name} has not reached its set-point: bit 10 of its statusword "
-                f"0x{axis.statusword:04X} is 0" for axis in axes
-                if not axis.statusword & TARGET_REACHED) or "the set-points are not reached")
+            now = [link.raw(axis, POSITION) for axis in axes]
+            if now != before:
+                moved, before = link.now(), now
+            reached = not late() and link.cycle >= self._given + WORD_CYCLES
+            return reached or link.now() - moved > STANDING_TIME
+        if not link.wait(over, seconds):
+            raise Obstacle("time over", "the axes still move")
+        if late():
+            raise Obstacle("stopped", "; ".join(
+                f"{axis.name} stands, but its drive has not reached its target: its statusword is "
+                f"0x{axis.statusword:04X}" for axis in late()))
         self._given = None
 
     def stop(self) -> None:

@@ -75,6 +75,13 @@ check("so is a drive that does not acknowledge", kind == "time over" and "does n
 check("its bit 4 falls again", not drive.controlword & 0x10)
 daemon, axes, drive = in_mode(1)
 axes.profile_move(5.0, wait=False)
+drive.drive_itself = lambda: None
+kind, text = obstacle(axes.wait)
+check("a drive that stands before its target is named", kind == "stopped" and
+      "shoulder stands, but its drive has not reached its target" in text, (kind, text))
+daemon, axes, drive = in_mode(1)
+axes.profile_move(5.0, wait=False)
+check("a wait has its limit", obstacle(axes.wait, 0.1)[0] == "time over" and axes.moving)
 drive.statusword = 0x218
 kind, text = obstacle(axes.wait)
 check("a fault in a profile move is named", kind == "stopped" and "bit 3 (fault)" in text, (kind, text))
