@@ -15,11 +15,17 @@ constexpr std::int8_t motion_not_enabled = 0;
 
 }  // namespace
 
+bool Axes::State::is_in_mode_of_motions(Index axis) const {
+  const AxisControl& known = group.axes();
+  return known.mode(axis) == (known.signals(axis).interpolates ? DriveMode::interpolated_position
+                                                               : DriveMode::cyclic_position);
+}
+
 /// taktd also looks at the mode of operation before it reports a drive as enabled. It reports none
-/// in other modes than cyclic synchronous position mode.
+/// in other modes than that of its motions.
 bool Axes::State::is_ready(Index axis) const {
   if (!group.axes().drive(axis).enabled()) return false;
-  if (group.axes().mode(axis) != DriveMode::cyclic_position) return group.axes().in_mode(axis);
+  if (!is_in_mode_of_motions(axis)) return group.axes().in_mode(axis);
   const auto motion = group.motion(axis);
   return motion && motion->state != motion_not_enabled;
 }
@@ -32,12 +38,12 @@ bool Axes::State::all_enabled() const {
   return all([this](Index axis) { return group.axes().drive(axis).enabled(); });
 }
 
-bool Axes::State::all_in_cyclic_position() const {
-  return all([this](Index axis) { return group.axes().mode(axis) == DriveMode::cyclic_position; });
+bool Axes::State::all_in_mode_of_motions() const {
+  return all([this](Index axis) { return is_in_mode_of_motions(axis); });
 }
 
 void Axes::State::send_as_modes_need() {
-  sending_ = all_in_cyclic_position() ? Sending::alive : Sending::controls;
+  sending_ = all_in_mode_of_motions() ? Sending::alive : Sending::controls;
 }
 
 Done Axes::State::not_enabled() const {
@@ -65,7 +71,7 @@ std::string Axes::State::why_not_ready_text() const {
 Done Axes::State::enable() {
   if (!is_current()) return restarted();
   // A drive that moves in another mode must stand before its mode changes.
-  if (readiness_ != Readiness::not_enabled && !all_in_cyclic_position()) {
+  if (readiness_ != Readiness::not_enabled && !all_in_mode_of_motions()) {
     if (Done stood = stop(); !stood) return stood;
   }
   profile_targets_.reset();

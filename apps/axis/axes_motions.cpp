@@ -73,7 +73,7 @@ Done Axes::State::wait_for_begin(const MotionBounds& bounds) {
   if (!is_current()) return restarted();
   if (readiness_ == Readiness::not_enabled) return not_enabled();
   if (Done halted = check_halt(); !halted) return halted;
-  if (!all_in_cyclic_position()) {
+  if (!all_in_mode_of_motions()) {
     return obstacle(Obstacle::Kind::blocked,
                     "a motion needs cyclic synchronous position mode (8) on all axes: call "
                     "set_mode() first");
@@ -136,7 +136,7 @@ Done Axes::State::jog(const Values& velocities, const MotionBounds& bounds) {
 }
 
 Done Axes::State::wait(nanoseconds longest) {
-  if (profile_targets_ && !all_in_cyclic_position()) return wait_for_profiles(longest);
+  if (profile_targets_ && !all_in_mode_of_motions()) return wait_for_profiles(longest);
   finish_stream();
   const auto waited = wait_until([this] { return !is_under_way(course()); }, longest);
   if (!waited) return obstacle(Obstacle::Kind::time_over, "the axes still move");

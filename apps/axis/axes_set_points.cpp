@@ -59,7 +59,10 @@ Done Axes::State::check_set_points(const Values& values, const SetPoints& kind) 
                       fmt::format("{} is in mode {}, and this needs mode {}: call set_mode() first",
                                   known.name(axis), std::to_underlying(mode), list_of(kind.modes)));
     }
-    if (known.signals(axis).*kind.output) continue;
+    // The target of an axis that interpolates is 0x60C1:01, which other modes do not use.
+    const AxisSignals& signals = known.signals(axis);
+    const bool is_point = signals.interpolates && kind.output == &AxisSignals::target_position;
+    if (signals.*kind.output && !is_point) continue;
     return obstacle(Obstacle::Kind::blocked, fmt::format("{}: {} is in no RPDO: map it there",
                                                          known.name(axis), kind.object));
   }
@@ -289,7 +292,7 @@ Done Axes::State::stop_set_points() {
   std::vector<Index> positioned;
   for (const Index axis : axes) {
     const DriveMode mode = known.mode(axis);
-    if (mode == DriveMode::cyclic_position || !known.drive(axis).enabled()) continue;
+    if (is_in_mode_of_motions(axis) || !known.drive(axis).enabled()) continue;
     led.push_back(axis);
     const bool stands = known.set_point_taken(axis) && readiness_ != Readiness::halted &&
                         (known.statusword(axis) & target_reached) != 0;

@@ -162,7 +162,7 @@ void Axes::State::send_outputs() {
     send_speeds();
   } else {
     const bool lasts = !held_.empty() || any([this](Index axis) {
-      return group.axes().mode(axis) != DriveMode::cyclic_position || !group.axes().in_mode(axis);
+      return !is_in_mode_of_motions(axis) || !group.axes().in_mode(axis);
     });
     const auto cycles = options.timeout / std::max<nanoseconds>(group.period(), nanoseconds{1000});
     group.set_time_to_live(lasts ? static_cast<std::int32_t>(cycles)

@@ -210,9 +210,10 @@ class Axes::State {
   bool is_ready(Index axis) const;
   bool all_ready() const;
   bool all_enabled() const;
-  /// Returns true if taktd runs the motions of all axes: none has another mode than cyclic
-  /// synchronous position mode.
-  bool all_in_cyclic_position() const;
+  /// Returns true if taktd runs the motions of this axis: it is in cyclic synchronous position
+  /// mode, or in interpolated position mode if the axis has no target position (0x607A).
+  bool is_in_mode_of_motions(Index axis) const;
+  bool all_in_mode_of_motions() const;
   /// Drives in other modes need the commands of this program all the time.
   void send_as_modes_need();
   /// Returns the obstacle of a call before enable().

@@ -14,14 +14,15 @@
 namespace takt {
 namespace {
 
-/// A set-point that has an effect only in some modes of operation. `mode` is the cyclic synchronous
-/// one of these modes (CiA 402-2, 0x6060).
+/// A set-point that has an effect only in some modes of operation. `mode` is the one of these modes
+/// in which the drive takes a set-point with each SYNC (CiA 402-2, 0x6060).
 struct Target {
   std::uint16_t index;
   int mode;
   std::string_view mode_name;
 };
-constexpr std::array<Target, 3> targets{{{0x607A, 8, "cyclic synchronous position"},
+constexpr std::array<Target, 4> targets{{{0x607A, 8, "cyclic synchronous position"},
+                                         {0x60C1, 7, "interpolated position"},
                                          {0x60FF, 9, "cyclic synchronous velocity"},
                                          {0x6071, 10, "cyclic synchronous torque"}}};
 

@@ -69,6 +69,9 @@ class NetworkCompiler {
     assign_cob_ids(nodes_, service_ids(spec_, nodes_, report_), report_);
     for (const NodePdos& node : nodes_) judge_pdo_times(node, plan().bitrate, report_);
     ask_about_drives(nodes_, report_);
+    for (const NodePdos& node : nodes_) {
+      judge_interpolation(node, *spec_.master.sync_period_us, report_);
+    }
     for (const NodePdos& node : nodes_) add_node(node);
     error_control_.report_unused_retry_factor();
     compile_layout(nodes_, plan(), report_);

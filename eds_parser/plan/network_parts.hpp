@@ -48,6 +48,10 @@ bool is_cia402(const NodeSource& node);
 /// what the other CiA 402 drives do when one drive is lost.
 void ask_about_drives(std::span<const NodePdos> nodes, NetworkReport& report);
 
+/// Warns if the points of interpolated position mode do not come as often as a drive takes them, so
+/// that its buffer runs empty or full.
+void judge_interpolation(const NodePdos& node, std::uint32_t sync_period_us, NetworkReport& report);
+
 /// Returns how a node gets its node-ID by LSS, or std::nullopt if the network file does not ask for
 /// LSS. `others` holds the nodes before this one.
 std::optional<LssPlan> compile_lss(const NodeSpec& node, const ObjectDictionary& dictionary,

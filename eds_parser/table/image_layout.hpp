@@ -41,7 +41,8 @@ struct Signal {
   std::uint32_t fallback_cycles = 0;  ///< time to live of a command in cycles; 0 = no limit
   TimeToLiveKey fallback_key = TimeToLiveKey::after;
   std::optional<std::int64_t> safe_value{};  ///< value to send before the first command
-  std::optional<SignalIndex> seeded_from{};  ///< input that provides the first value (6064 -> 607A)
+  std::optional<SignalIndex>
+      seeded_from{};  ///< input that provides the first value (6064 for 607A)
 };
 
 /// Shortest time to live of commands that a network file can configure.

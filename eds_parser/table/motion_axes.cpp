@@ -31,12 +31,13 @@ AxisPlan axis_plan_of(const NodePlan& node, std::uint8_t number) {
 }
 
 std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, std::uint8_t number) {
-  const auto find = [&](std::uint16_t index, bool output) {
-    return plan.layout.find(node, axis_object(number, index), output);
+  const auto find = [&](std::uint16_t index, bool output, std::uint8_t sub = 0) {
+    return plan.layout.find(node, axis_object(number, index, sub), output);
   };
   const auto statusword = find(0x6041, false);
   const auto position = find(0x6064, false);
-  const auto target = find(0x607A, true);
+  const auto cyclic = find(0x607A, true);
+  const auto target = cyclic ? cyclic : find(0x60C1, true, 1);
   if (!statusword || !position || !target || find(0x60B0, true)) return std::nullopt;
   const auto signal = [&](SignalIndex index) -> const Signal& {
     return plan.layout.signals[index];
@@ -57,6 +58,8 @@ std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, st
                     .controlword = find(0x6040, true),
                     .velocity = find(0x606C, false),
                     .mode = shown_mode ? shown_mode : find(0x6060, true),
+                    .mode_of_motions = cyclic ? MotionMode::cyclic_synchronous_position
+                                              : MotionMode::interpolated_position,
                     .velocity_offset = same_unit ? offset : std::nullopt,
                     .torque_offset = known.feed_forward ? find(0x60B2, true) : std::nullopt,
                     .feed_forward = known.feed_forward.value_or(FeedForwardPlan{}),

@@ -30,16 +30,23 @@ struct Turn {
   }
 };
 
+/// Mode of operation (0x6060) in which a drive follows the set-points of motions. CiA 402-2.
+enum class MotionMode : std::uint8_t {
+  interpolated_position = 7,       ///< the drive takes points from 60C1:01
+  cyclic_synchronous_position = 8  ///< the drive follows 607A
+};
+
 /// An axis whose motions the master can run: the signals that a motion reads and writes.
 struct MotionAxis {
   std::uint8_t node_index = 0;               ///< position in BusPlan::nodes
   std::uint8_t number = 0;                   ///< axis number within its device, from 0
   SignalIndex statusword = 0;                ///< 6041
   SignalIndex position = 0;                  ///< 6064
-  SignalIndex target = 0;                    ///< 607A
+  SignalIndex target = 0;                    ///< 607A, or 60C1:01 if `mode_of_motions` is 7
   std::optional<SignalIndex> controlword{};  ///< 6040
   std::optional<SignalIndex> velocity{};     ///< 606C
   std::optional<SignalIndex> mode{};         ///< 6061, else 6060 if it is an output
+  MotionMode mode_of_motions = MotionMode::cyclic_synchronous_position;
   /// 60B1, if its unit is that of the target per second.
   std::optional<SignalIndex> velocity_offset{};
   /// 60B2, if the network file has a feed-forward of torque.
@@ -51,8 +58,9 @@ struct MotionAxis {
 };
 
 /// Returns the CiA 402 axes that have a statusword (6041) and an actual position (6064) in TPDOs
-/// and a target position (607A) in the same unit without an offset (60B0) in RPDOs, in the order of
-/// the nodes. At most 127 are returned. Both sides of the master number the axes in this order.
+/// and a target position in the same unit without an offset (60B0) in RPDOs, in the order of the
+/// nodes. The target is 607A; without it, it is the first interpolation data record (60C1:01). At
+/// most 127 are returned. Both sides of the master number the axes in this order.
 std::vector<MotionAxis> motion_axes(const BusPlan& plan);
 
 }  // namespace takt

@@ -104,11 +104,12 @@ void AxisControl::set_mode(DriveMode mode) noexcept {
 
 void AxisControl::set_mode(Index axis, DriveMode mode) noexcept {
   State::Axis& of = state_->at(axis);
-  if (mode != of.commanded_mode) {
+  const DriveMode possible = State::mode_for(of.signals, mode);
+  if (possible != of.commanded_mode) {
     state_->target_velocities(axis) = 0.0;
     state_->target_torques(axis) = 0.0;
   }
-  of.commanded_mode = mode;
+  of.commanded_mode = possible;
   if (mode != DriveMode::profile_position) of.handshake = {};
   if (mode != DriveMode::homing) of.homes = false;
 }

@@ -10,12 +10,17 @@
 namespace takt {
 namespace {
 
-constexpr std::uint16_t homing_start = 0x10;   // of the controlword in homing mode
-constexpr std::uint16_t stays_halted = 0x100;  // of the controlword in all modes
+// Bit 4 of the controlword in these modes.
+constexpr std::uint16_t homing_start = 0x10;
+constexpr std::uint16_t enable_interpolation = 0x10;
 
-/// Returns true if drives obey the target position 0x607A in this mode.
+constexpr std::uint16_t enable_operation = 0x000F;  // of the controlword
+constexpr std::uint16_t stays_halted = 0x100;       // of the controlword in all modes
+
+/// Returns true if drives obey the target position in this mode.
 bool is_position_mode(std::int8_t mode) noexcept {
   return mode == std::to_underlying(DriveMode::profile_position) ||
+         mode == std::to_underlying(DriveMode::interpolated_position) ||
          mode == std::to_underlying(DriveMode::cyclic_position);
 }
 
@@ -26,7 +31,6 @@ bool missing(AxisSignals::Position signal, const ImageInput& input) {
 /// Returns true if the image carries a target position and a controlword that enables operation, so
 /// that the drive obeys this target.
 bool shows_set_points(const AxisSignals& signals, const ImageInput& input) {
-  constexpr std::int64_t enable_operation = 0x000F;
   const std::int64_t controlword = input.values()[*signals.controlword];
   return signals.target_position && (controlword & enable_operation) == enable_operation;
 }
@@ -41,7 +45,7 @@ void AxisControl::State::set_layout(const ImageInput& input) {
   for (AxisSignals& signals : find_axes(input.signals())) {
     Axis& axis = axes.emplace_back();
     axis.signals = std::move(signals);
-    axis.commanded_mode = mode_of_new_axes;
+    axis.commanded_mode = mode_for(axis.signals, mode_of_new_axes);
   }
   for (Eigen::VectorXd* values : {&positions, &velocities, &torques, &sent_positions,
                                   &target_positions, &target_velocities, &target_torques}) {
@@ -95,6 +99,10 @@ void AxisControl::State::step(Axis& axis, const ImageInput& input) {
   }
   if (axis.homes) axis.controlword |= homing_start;
   if (axis.halts && axis.drive.enabled()) axis.controlword |= stays_halted;
+  const bool enables = (axis.controlword & enable_operation) == enable_operation;
+  if (axis.commanded_mode == DriveMode::interpolated_position && enables) {
+    axis.controlword |= enable_interpolation;
+  }
 }
 
 /// Returns true if the axis is in Operation enabled and in a position mode, both as commanded and

@@ -31,6 +31,12 @@ struct AxisControl::State {
     bool homes = false;           // bit 4 of the controlword is set in homing mode
   };
 
+  /// Returns the mode in which an axis with these signals does what `wanted` asks for.
+  static DriveMode mode_for(const AxisSignals& signals, DriveMode wanted) noexcept {
+    const bool points = signals.interpolates && wanted == DriveMode::cyclic_position;
+    return points ? DriveMode::interpolated_position : wanted;
+  }
+
   Axis& at(Index axis) { return axes[static_cast<std::size_t>(axis)]; }
   Index size() const noexcept { return static_cast<Index>(axes.size()); }
 

@@ -12,10 +12,13 @@ constexpr std::int32_t axis_step = 0x800;
 constexpr std::int32_t first_profile_object = 0x6000;
 constexpr std::int32_t last_profile_object = 0x9FFF;
 
+constexpr std::int32_t point_of_interpolation = 0x60C1;
+
 struct Meaning {
   std::int32_t object;
   bool output;
   AxisSignals::Position AxisSignals::* place;
+  std::int16_t sub = 0;
 };
 
 constexpr std::array meanings{
@@ -27,6 +30,7 @@ constexpr std::array meanings{
     Meaning{0x6040, true, &AxisSignals::controlword},
     Meaning{0x6060, true, &AxisSignals::mode},
     Meaning{0x607A, true, &AxisSignals::target_position},
+    Meaning{point_of_interpolation, true, &AxisSignals::target_position, 1},
     Meaning{0x60FF, true, &AxisSignals::target_velocity},
     Meaning{0x6071, true, &AxisSignals::target_torque},
     Meaning{0x60B1, true, &AxisSignals::velocity_offset},
@@ -40,7 +44,7 @@ const Meaning* meaning_of(const signal_t& signal) {
   const std::int32_t object = first_profile_object + signal.index % axis_step;
   for (const Meaning& meaning : meanings) {
     const bool same = meaning.object == object && meaning.output == (signal.output != 0);
-    if (same && signal.sub == 0) return &meaning;
+    if (same && signal.sub == meaning.sub) return &meaning;
   }
   return nullptr;
 }
@@ -61,6 +65,10 @@ std::vector<AxisSignals> find_axes(std::span<const signal_t> signals) {
     AxisSignals& axis = found[{signal.node_id, number}];
     axis.name = number == 1 ? signal.node : signal.node + "." + std::to_string(number);
     axis.node = signal.node_id;
+    if (meaning->object == point_of_interpolation) {
+      if (axis.target_position) continue;  // 0x607A, whose signals come first in a layout
+      axis.interpolates = true;
+    }
     axis.*(meaning->place) = i;
   }
   std::vector<AxisSignals> axes;

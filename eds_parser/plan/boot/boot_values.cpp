@@ -53,6 +53,7 @@ class ValueSteps : BootPart {
 
   void run() {
     if (context.node.cia402 && context.plan.cycle.sync) interpolation_periods();
+    if (context.node.cia402) open_point_buffers();
     if (dictionary.is_dcf) device_values();
     if (node.data != nullptr) {
       for (const ValueEdit& edit : node.data->values) of_device_data(edit);
@@ -127,6 +128,20 @@ class ValueSteps : BootPart {
       steps.integer(BootAction::write_if_differs, exponent, period->exponent,
                     concat(text, " (x 10^", period->exponent, " s)"), 1);
       set_already_.insert(exponent);
+    }
+  }
+
+  /// Opens the buffers of points of interpolated position mode: a drive takes no points while
+  /// 0x60C4:06 is 0. CiA 402-2, 0x60C4.
+  void open_point_buffers() {
+    for (unsigned axis = 0; axis < most_axes; ++axis) {
+      const ObjectKey access = axis_object(axis, 0x60C4, 6);
+      const bool has_points =
+          context.plan.layout.find(context.node_index, axis_object(axis, 0x60C1, 1), true)
+              .has_value();
+      if (!has_points || !steps.writable(access) || spec.written(access)) continue;
+      steps.integer(BootAction::write, access, 1, "open the buffer of points", 1);
+      set_already_.insert(access);
     }
   }
 

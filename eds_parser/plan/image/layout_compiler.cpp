@@ -196,10 +196,9 @@ class LayoutCompiler {
     for (std::size_t i = plan_.layout.inputs; i < plan_.layout.signals.size(); ++i) {
       Signal& signal = plan_.layout.signals[i];
       if (!plan_.nodes[signal.node_index].cia402) continue;
-      const std::uint16_t source = seed_object(signal.object.index);
-      if (source == 0) continue;
-      const auto found =
-          index_.find({false, std::size_t{signal.node_index}, {source, signal.object.sub}, 0});
+      const std::optional<ObjectKey> source = seed_object(signal.object);
+      if (!source) continue;
+      const auto found = index_.find({false, std::size_t{signal.node_index}, *source, 0});
       if (found != index_.end()) signal.seeded_from = found->second;
     }
   }

@@ -128,12 +128,15 @@ void apply_fallback(const NodeSource& node, bool cia402, Time period, Signal& si
   }
 }
 
-std::uint16_t seed_object(std::uint16_t output_index) noexcept {
-  const std::uint16_t first = first_axis(output_index);
-  const auto axis = static_cast<std::uint16_t>(output_index - first);
-  if (first == 0x607A) return static_cast<std::uint16_t>(0x6064 + axis);
-  if (first == 0x6060) return static_cast<std::uint16_t>(0x6061 + axis);
-  return 0;
+std::optional<ObjectKey> seed_object(ObjectKey output) noexcept {
+  const std::uint16_t first = first_axis(output.index);
+  const auto input = [&](std::uint16_t object) {
+    return ObjectKey{static_cast<std::uint16_t>(object + output.index - first), 0};
+  };
+  if (first == 0x607A && output.sub == 0) return input(0x6064);
+  if (first == 0x60C1 && output.sub == 1) return input(0x6064);
+  if (first == 0x6060 && output.sub == 0) return input(0x6061);
+  return std::nullopt;
 }
 
 void check_fallback(const NodeSource& node, bool cia402, NetworkReport& report) {

@@ -18,9 +18,9 @@ std::uint32_t fallback_cycles(const TimeoutSpec& timeout, Time period);
 /// can take over.
 void apply_fallback(const NodeSource& node, bool cia402, Time period, Signal& signal);
 
-/// Returns the index of the input that gives an output its first value, on the same axis (6064 for
-/// 607A, 6061 for 6060). 0 means that there is none.
-std::uint16_t seed_object(std::uint16_t output_index) noexcept;
+/// Returns the input that gives an output its first value, on the same axis: 6064 for 607A and
+/// 60C1:01, 6061 for 6060.
+std::optional<ObjectKey> seed_object(ObjectKey output) noexcept;
 
 /// Reports errors in `on_timeout` and `safe_values` that concern the node as a whole.
 void check_fallback(const NodeSource& node, bool cia402, NetworkReport& report);

@@ -122,6 +122,8 @@ std::string_view text(motion::StopCause cause) noexcept {
       return "its sender does not hold the node any longer";
     case disabled:
       return "the drive has left Operation enabled";
+    case inactive:
+      return "the drive has ended interpolated position mode: bit 12 of its statusword is 0";
     case fault:
       return "the drive is in fault";
     case node_lost:

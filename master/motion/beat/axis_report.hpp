@@ -19,6 +19,8 @@ enum class AxisCondition : std::uint8_t {
   halted,  ///< it is enabled, but has a Halt: some drives follow set-points nevertheless
   silent,  ///< its statusword is missing, so it may follow set-points
   unsent,  ///< it is enabled, but its set-points of several cycles were not sent
+  /// It is enabled, but takes no points: the mode interpolated position is not active.
+  inactive,
 };
 
 /// What is known of the home position of an axis.
@@ -58,6 +60,7 @@ enum class StopCause : std::uint8_t {
   sender_silent,    ///< longer than the timeout of the motion
   sender_left,      ///< it may not command the axis any longer, for example after its release
   disabled,         ///< an axis left Operation enabled
+  inactive,         ///< the drive of an axis has ended the mode interpolated position
   fault,            ///< of an axis
   node_lost,        ///< of an axis
   halted,           ///< the controlword of an axis has a Halt

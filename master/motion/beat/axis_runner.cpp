@@ -27,6 +27,8 @@ StopCause cause_of(AxisCondition condition) noexcept {
       return StopCause::no_statusword;
     case AxisCondition::unsent:
       return StopCause::not_sent;
+    case AxisCondition::inactive:
+      return StopCause::inactive;
   }
   return StopCause::none;
 }

@@ -15,7 +15,8 @@ using motion::AxisState;
 
 constexpr std::int64_t halt = 0x100;  // of the controlword, CiA 402-2, 0x6040
 
-/// CiA 402-2, 0x6041 in cyclic synchronous position mode: the drive follows the target position.
+/// CiA 402-2, 0x6041: the drive follows the target position (cyclic synchronous position), or the
+/// mode is active (interpolated position).
 constexpr std::int64_t follows_command = 0x1000;
 
 /// CiA 402-2, 0x6041.
@@ -25,11 +26,11 @@ AxisCondition condition_of(std::int64_t statusword) noexcept {
   return state == 0x0F || state == 0x08 ? AxisCondition::fault : AxisCondition::disabled;
 }
 
-/// CiA 402-2, 0x6061.
-constexpr std::int64_t cyclic_synchronous_position = 8;
-constexpr std::int64_t homing_mode = 6;
+constexpr std::int64_t homing_mode = 6;  // CiA 402-2, 0x6061
 
-constexpr std::int64_t homing_start = 0x10;  // of the controlword, CiA 402-2, homing mode
+/// CiA 402-2, bit 4 of the controlword in these modes.
+constexpr std::int64_t homing_start = 0x10;
+constexpr std::int64_t enables_interpolation = 0x10;
 
 /// So long a drive may show the result of an earlier homing run.
 constexpr Time homing_patience = std::chrono::milliseconds{500};
@@ -112,18 +113,31 @@ AxisCondition DrivenAxis::condition(PdoExchange& pdos, bool exchanging) noexcept
   if (image.is_stale(axis_.statusword)) return without_statusword();
   silent_beats_ = 0;
   const AxisCondition found = condition_of(image.values[axis_.statusword]);
-  const std::int64_t mode = axis_.mode ? image.values[*axis_.mode] : cyclic_synchronous_position;
-  const bool in_mode = mode == cyclic_synchronous_position;
+  const auto wanted_mode = static_cast<std::int64_t>(axis_.mode_of_motions);
+  const std::int64_t mode = axis_.mode ? image.values[*axis_.mode] : wanted_mode;
   ignores_target_ =
       found != AxisCondition::enabled || !rpdo.ready || !follows(AxisQuantity::position, mode);
   if (found != AxisCondition::enabled) return found;
-  if (!in_mode || !rpdo.ready) return AxisCondition::disabled;
+  if (mode != wanted_mode || !rpdo.ready) return AxisCondition::disabled;
   if (unsent_beats_ > longest_wait_) return AxisCondition::unsent;
   const bool follows_it = (image.values[axis_.statusword] & follows_command) != 0;
   tells_following_ |= follows_it;
+  if (!interpolates(image, follows_it)) {
+    ignores_target_ = true;
+    return AxisCondition::inactive;
+  }
   const bool halted = axis_.controlword && (image.values[*axis_.controlword] & halt) != 0;
   obeys_halt_ = halted && tells_following_ && !follows_it;
   return halted ? AxisCondition::halted : found;
+}
+
+/// A drive in interpolated position mode takes points if bit 4 of the controlword is set. If its
+/// buffer runs empty, it ends the mode by itself, and clears bit 12 of its statusword.
+bool DrivenAxis::interpolates(const WorkingImage& image, bool shows_activity) const noexcept {
+  if (axis_.mode_of_motions != MotionMode::interpolated_position) return true;
+  const bool wanted =
+      !axis_.controlword || (image.values[*axis_.controlword] & enables_interpolation) != 0;
+  return wanted && (shows_activity || !tells_following_);
 }
 
 /// A target position that does not change needs no frame.

@@ -77,6 +77,7 @@ class DrivenAxis {
 
   static std::uint32_t longest_wait_of(const BusPlan& plan, SignalIndex signal) noexcept;
   motion::AxisCondition condition(PdoExchange& pdos, bool exchanging) noexcept;
+  bool interpolates(const WorkingImage& image, bool shows_activity) const noexcept;
   void count_unsent(const RpdoStatus& rpdo, std::int64_t target) noexcept;
   motion::AxisCondition without_statusword() noexcept;
   motion::HomingState homing(const PdoExchange& pdos, bool exchanging) noexcept;
@@ -106,7 +107,7 @@ class DrivenAxis {
   std::uint32_t frames_ = 0;        ///< frames of the RPDO until the last beat
   std::int64_t sent_target_ = 0;    ///< target position of the last of them
   std::uint8_t silent_beats_ = 0;
-  bool ignores_target_ = false;  ///< the statusword of this beat says so
+  bool ignores_target_ = false;  ///< the words of this beat say so
   bool in_homing_mode_ = false;
   bool tells_following_ = false;  ///< bit 12 of the statusword was set: the drive uses it
   bool obeys_halt_ = false;       ///< in this beat

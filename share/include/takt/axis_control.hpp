@@ -31,11 +31,15 @@ struct AxisSignals {
 
   Position controlword;      ///< 0x6040
   Position mode;             ///< 0x6060, modes of operation
-  Position target_position;  ///< 0x607A
+  Position target_position;  ///< 0x607A, or 0x60C1:01 if `interpolates` is true
   Position target_velocity;  ///< 0x60FF
   Position target_torque;    ///< 0x6071
   Position velocity_offset;  ///< 0x60B1
   Position torque_offset;    ///< 0x60B2
+
+  /// True if 0x60C1:01 is mapped and 0x607A is not: the axis follows positions in interpolated
+  /// position mode (ip).
+  bool interpolates = false;
 };
 
 /// Presents all axes of a bus as Eigen vectors in SI units. The class turns each image into a
@@ -127,7 +131,8 @@ class AxisControl {
   void reset_fault(Index axis);
   /// Sets the mode of operation of all axes, at first DriveMode::cyclic_position. The commands
   /// carry it for each axis whose 0x6060 is mapped. Another mode than profile position ends the
-  /// handshakes of begin_set_points().
+  /// handshakes of begin_set_points(). An axis with AxisSignals::interpolates gets
+  /// DriveMode::interpolated_position instead of DriveMode::cyclic_position.
   void set_mode(DriveMode mode) noexcept;
   /// Sets the mode of operation of one axis. Another one than before sets its target velocity and
   /// its target torque to 0.

@@ -29,14 +29,15 @@ std::string_view name(State402 state) noexcept;
 
 /// Modes of operation: the values of the objects 0x6060 and 0x6061. CiA 402-2.
 enum class DriveMode : std::int8_t {
-  none = 0,              ///< no mode
-  profile_position = 1,  ///< pp: the drive moves to each target position by itself
-  profile_velocity = 3,  ///< pv: the drive accelerates to the target velocity by itself
-  profile_torque = 4,    ///< tq: the drive changes the torque by itself
-  homing = 6,            ///< hm: the drive looks for its reference
-  cyclic_position = 8,   ///< csp: a target position for each SYNC
-  cyclic_velocity = 9,   ///< csv: a target velocity for each SYNC
-  cyclic_torque = 10,    ///< cst: a target torque for each SYNC
+  none = 0,                   ///< no mode
+  profile_position = 1,       ///< pp: the drive moves to each target position by itself
+  profile_velocity = 3,       ///< pv: the drive accelerates to the target velocity by itself
+  profile_torque = 4,         ///< tq: the drive changes the torque by itself
+  homing = 6,                 ///< hm: the drive looks for its reference
+  interpolated_position = 7,  ///< ip: a point (0x60C1:01) for the buffer of the drive in each SYNC
+  cyclic_position = 8,        ///< csp: a target position for each SYNC
+  cyclic_velocity = 9,        ///< csv: a target velocity for each SYNC
+  cyclic_torque = 10,         ///< cst: a target torque for each SYNC
 };
 
 /// When a drive in profile position mode begins to move to a new set-point. CiA 402-2, bit 5 of the

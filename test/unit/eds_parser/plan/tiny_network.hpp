@@ -34,9 +34,9 @@ inline std::string record(std::string_view section, std::string_view name, int s
 /// in an EDS.
 inline std::string pdo(bool is_tpdo, int number, std::string_view cob_id, int transmission,
                        std::vector<std::string> entries, std::string_view mapping_access = "rw") {
-  const auto at = [&](int base, std::string_view sub) {
+  const auto at = [&](int first, std::string_view sub) {
     std::ostringstream out;
-    out << std::hex << std::uppercase << base + number - 1 << sub;
+    out << std::hex << std::uppercase << first + number - 1 << sub;
     return out.str();
   };
   const int comm = is_tpdo ? 0x1800 : 0x1400;

@@ -21,6 +21,21 @@ TEST(AxisSignals, FindsTheSecondAxisOfADevice) {
   EXPECT_EQ(axes[0].target_position, std::nullopt);
 }
 
+TEST(AxisSignals, APointOfInterpolationIsTheTargetWhereNoTargetPositionIsMapped) {
+  signal_t point = signal(5, 0x60C1, true, 32);
+  point.sub = 1;
+  std::vector signals{signal(5, 0x6041, false, 16), signal(5, 0x6040, true, 16), point};
+  auto axes = find_axes(signals);
+  ASSERT_EQ(axes.size(), 1U);
+  EXPECT_EQ(axes[0].target_position, 2U);
+  EXPECT_TRUE(axes[0].interpolates);
+
+  signals.insert(signals.begin() + 2, signal(5, 0x607A, true, 32));
+  axes = find_axes(signals);
+  EXPECT_EQ(axes[0].target_position, 2U);
+  EXPECT_FALSE(axes[0].interpolates);
+}
+
 TEST(AxisSignals, LeavesOutWhatIsNoAxis) {
   const std::vector signals{signal(5, 0x6041, false, 16),  // no controlword
                             signal(6, 0x6000, false, 8), signal(6, 0x6200, true, 8)};
