@@ -184,6 +184,25 @@ TEST(LoadNetwork, DeviceFilesAreFoundBesideTheFileAndInDcfPath) {
   EXPECT_THAT(errors[0], HasSubstr("eds/gone.eds"));
 }
 
+TEST(LoadNetwork, APathThroughALinkIsThatOfTheSystem) {
+  const test::Folder folder;
+  std::string eds = read(source / "share/eds/takt_io401.eds");
+  folder.write("d.eds", eds);
+  const std::string name = "ProductName=";
+  eds.insert(eds.find(name) + name.size(), "behind the link ");
+  folder.write("far/d.eds", eds);
+  fs::create_directories(folder.path() / "far/inside");
+  fs::create_directory_symlink("far/inside", folder.path() / "link");
+  const auto file = folder.write("net.yaml",
+                                 "master: {sync_period: 10000}\n"
+                                 "a: {node_id: 1, dcf: link/../d.eds}\n");
+
+  const auto network = load_network(file);
+
+  ASSERT_EQ(network.plan.nodes.size(), 1U);
+  EXPECT_THAT(network.plan.nodes[0].product_name, HasSubstr("behind the link"));
+}
+
 TEST(LoadNetwork, FindingsOfADeviceFileAreOneLine) {
   const test::Folder folder;
   std::string eds = read(source / "share/eds/takt_io401.eds");

@@ -10,6 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using test::compile;
+using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr ObjectKey cob_id_sync{0x1005, 0};
@@ -87,6 +88,24 @@ TEST(SyncSource, IsRefusedWhereItIsNoNodeOrHasNoPeriod) {
               HasSubstr("`sync_timeout` is for a SYNC that another device makes"));
 }
 
+TEST(SyncSource, IsRefusedWhereTheNodeCannotBeConfiguredToProduceIt) {
+  std::string eds = test::tiny_eds();
+  const std::string writable = "DataType=0x0007\nAccessType=rw\nDefaultValue=0x80\n";
+  eds.replace(eds.find(writable), writable.size(),
+              "DataType=0x0007\nAccessType=ro\nDefaultValue=0x80\n");
+  const auto declared = [&](const std::string& keys, const std::string& device) {
+    return compile(
+               "master: {sync_period: 10000, sync_source: arm}\n"
+               "nodes: {arm: {node_id: 5, dcf: x" +
+                   keys + "}}\n",
+               device)
+        .declared("sync-source");
+  };
+  EXPECT_THAT(declared("", eds), AllOf(HasSubstr("can't produce SYNC"), HasSubstr("1005:00")));
+  EXPECT_EQ(declared(", boot: false", eds), "") << "another tool configures the node";
+  EXPECT_EQ(declared("", test::tiny_eds()), "");
+}
+
 TEST(TimeOfDayKeys, GiveAPeriodAndAnIdentifier) {
   const std::string nodes = "nodes: {arm: {node_id: 5, dcf: x}}\n";
   EXPECT_EQ(compile(nodes).plan.time.period, 0ns);
@@ -99,6 +118,28 @@ TEST(TimeOfDayKeys, GiveAPeriodAndAnIdentifier) {
   EXPECT_THAT(
       compile("master: {time_period: 500, time_cob_id: 0x123}\n" + nodes).declared("cob-id"),
       HasSubstr("is reserved by CiA 301"));
+}
+
+TEST(TimeOfDayKeys, MayHaveAReservedIdentifierOnlyIfTheMasterDoesNotSendTime) {
+  const auto declared = [](const std::string& keys) {
+    return compile("master: {time_cob_id: 0x123" + keys + "}\nnodes: {arm: {node_id: 5, dcf: x}}\n")
+        .declared("cob-id");
+  };
+  EXPECT_EQ(declared(""), "");
+  EXPECT_THAT(declared(", time_period: 1"), HasSubstr("0x123"));
+}
+
+TEST(TimeOfDayKeys, OfANodeAreWrittenFirstWithoutAndThenWithTheBitOfTheConsumer) {
+  for (const int type : {7, 9}) {  // UNSIGNED32, and a type without a width, which is wrong here
+    const auto net =
+        compile("nodes: {arm: {node_id: 5, dcf: x, time_cob_id: 0x80000100}}\n",
+                test::tiny_eds() + test::entry("1012", "COB-ID TIME", type, "rw", "0x100"));
+    const auto found = steps_of(net.plan.nodes.at(0), {0x1012, 0});
+    ASSERT_EQ(found.size(), 2U) << type;
+    using Bytes = std::vector<std::byte>;
+    EXPECT_EQ(found[0]->value, (Bytes{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}}));
+    EXPECT_EQ(found[1]->value, (Bytes{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0x80}}));
+  }
 }
 
 }  // namespace

@@ -198,6 +198,19 @@ TEST(Fallback, PoliciesDoWhatTheySay) {
   EXPECT_EQ(find(safe.plan, 0x607A).fallback, Fallback::hold);
 }
 
+TEST(Fallback, OfARealIsItsBitPattern) {
+  const auto fallback = [](int type, const std::string& value) {
+    const auto net = compile(
+        test::arm_with("on_timeout: {fallback: safe}, safe_values: [{index: 0x2005, value: " +
+                       value + "}], rpdo: {1: {mapping: [{index: 0x2005}]}}"),
+        test::tiny_eds() + test::entry("2005", "Gain", type, "rww", "0", true));
+    return find(net.plan, 0x2005).fallback_value;
+  };
+  EXPECT_EQ(fallback(8, "0.5"), 0x3F00'0000);             // REAL32
+  EXPECT_EQ(fallback(11, "0.5"), 0x3FE0'0000'0000'0000);  // REAL64, which is type 0x11
+  EXPECT_EQ(fallback(11, "2"), 0x4000'0000'0000'0000);
+}
+
 TEST(Fallback, BeginsAfterMillisecondsOrCyclesButNotBothAndNotBeforeThreeCycles) {
   const auto cycles = [](const std::string& timeout) {
     return find(two_axes("  on_timeout: {" + timeout + "}\n").plan, 0x6040).fallback_cycles;

@@ -86,6 +86,28 @@ TEST(PdoCompiler, MoreThan64BitsAreAnError) {
   EXPECT_THAT(net.declared("too-long"), HasSubstr("72 bits, a PDO holds 64: move 8 bits"));
 }
 
+TEST(PdoCompiler, APdoOfTheDeviceWithMoreThan64BitsIsLeftOut) {
+  const auto tpdos = [](std::vector<std::string> mapping) {
+    const std::string eds = test::tiny_objects() + test::entry("2006", "Bit", 1, "ro", "0", true) +
+                            test::pdo(true, 1, "$NODEID+0x180", 1, std::move(mapping));
+    return compile("master: {sync_period: 10000}\narm: {node_id: 5, dcf: x}\n", eds)
+        .plan.pdos.tpdos.size();
+  };
+  EXPECT_EQ(tpdos({"0x60640020", "0x606C0020"}), 1U);
+  EXPECT_EQ(tpdos({"0x60640020", "0x606C0020", "0x20060001"}), 0U);
+}
+
+TEST(PdoCompiler, ABooleanHasOneBitOrAByte) {
+  const auto declared = [](const std::string& bits) {
+    return compile(arm_with("tpdo: {1: {mapping: [{index: 0x2006, bits: " + bits + "}]}}"),
+                   test::tiny_eds() + test::entry("2006", "Bit", 1, "ro", "0", true))
+        .declared("wrong-width");
+  };
+  EXPECT_EQ(declared("1"), "");
+  EXPECT_EQ(declared("8"), "");
+  EXPECT_THAT(declared("4"), HasSubstr("1 bits wide, not 4"));
+}
+
 TEST(PdoCompiler, GapsOfAnRpdoHaveNoField) {
   const auto net =
       compile(arm_with("rpdo: {1: {mapping: [{index: 0x6060}, {index: 5}, {index: 0x6040}]}}"));
