@@ -142,7 +142,7 @@ class Daemon:
         self.gears, self.streams, self.messages = [], [], 0  # messages of streams
         self.delay, self.late = 0, []  # of motion commands on their way here, in cycles
         self.objects, self.mute = {}, False  # of the devices, by SDO: node-ID, index, sub
-        self.refuses_targets = ""
+        self.refuses_targets, self.word_cycle = "", 0  # word_cycle: the cycle of the newest controlword
         self.io, self.io_life, self.stubborn = {0x6000: 0, 0x6411: 0}, 0, False  # stubborn: drives ignore controlwords
 
     def LCM(self):
@@ -191,6 +191,7 @@ class Daemon:
         elif index in self.drives[node - 5].targets:
             self.drives[node - 5].targets[index] = value
         else:
+            self.word_cycle = self.cycle if index == 0x6040 else self.word_cycle
             self.drives[node - 5].take_word(index, value)
 
     def answer(self, request):

@@ -23,7 +23,8 @@ axes.quick_stop()
 check("a quick stop is confirmed", daemon.drives[0].statusword == 0x217 and not axes.moving)
 check("then the axis is not enabled", "call enable() first" in obstacle(axes.move, 1.0)[1])
 axes.run(1.0)
-check("and stays so", daemon.drives[0].statusword == 0x217)
+axes.set_mode(1)
+check("and stays so, also in another mode", daemon.drives[0].statusword == 0x217)
 axes.enable()
 axes.halt()
 axes.enable()
@@ -121,6 +122,10 @@ def probes(come=40):
 daemon, axes = probes()
 check("a probe returns the position of its edge", axes.touch_probe("shoulder") == -1.5)
 check("it is armed and disarmed while the axis moves", daemon.objects[5, 0x60B8, 0] == b"\0\x11" and axes.moving)
+daemon, axes = probes()
+daemon.objects[5, 0x60B8, 0], daemon.objects[5, 0x60B9, 0] = b"\x11\x11", b"\x03\0"
+daemon.armed = 100
+check("it is armed anew", axes.touch_probe("shoulder") == -1.5)
 daemon, axes = probes(come=10**6)
 kind, text = obstacle(lambda: axes.touch_probe(0, seconds=SHORT))
 check("an edge that does not come is named", kind == "time over" and
