@@ -35,12 +35,14 @@ STATES = ((0x4F, 0x00, "not ready to switch on", "bit 0 (ready to switch on)", 0
           (0x6F, 0x07, QUICK_STOP, "bit 5 (quick stop)", 0),
           (0x4F, 0x0F, "fault reaction active", "bit 3 (fault)", 1),
           (0x4F, 0x08, "fault", "bit 3 (fault)", 1))
+ENABLE_OPERATION = 0x0F  # controlword
 # The controlword for each state on the way to Operation enabled, on the way back, and to keep the
 # state. Disable voltage is 0, which is for all other states.
 ENABLING = {"switch on disabled": 0x06, "ready to switch on": 0x07, "switched on": 0x0F,
-            ENABLED: 0x0F}
+            ENABLED: ENABLE_OPERATION}
 DISABLING = {ENABLED: 0x07, "switched on": 0x06}
-KEEPING = {"ready to switch on": 0x06, "switched on": 0x07, ENABLED: 0x0F, QUICK_STOP: 0x02}
+KEEPING = {"ready to switch on": 0x06, "switched on": 0x07, ENABLED: ENABLE_OPERATION,
+           QUICK_STOP: 0x02}
 RESETTING = KEEPING | {"fault": 0x80}
 QUICK_STOPPING = {ENABLED: 0x02, QUICK_STOP: 0x02}
 
@@ -104,7 +106,9 @@ class Axis:
             self.statusword & TARGET_REACHED != 0)
 
     def controlword(self, words: dict) -> int:
-        return words.get(self.state, 0) | (self.mode_bits if self.enabled else 0)
+        word = words.get(self.state, 0)
+        keeps = self.enabled and word == ENABLE_OPERATION
+        return word | (self.mode_bits if keeps else 0)
 
     def bits(self) -> str:
         """Names the bits of the statusword that show why the drive is not enabled."""
