@@ -113,6 +113,8 @@ class MasterRun {
 
   /// Copies the status of the master and of all nodes.
   void status(StatusSnapshot& snapshot) const { exchange_->status.read(snapshot); }
+  /// Returns a number that changes whenever the bus thread renews its status; 0 before the first.
+  std::uint64_t status_version() const noexcept { return exchange_->status.version(); }
   /// Returns the histograms of the times in the cycle.
   const TimingHistograms& timing() const noexcept { return exchange_->timing; }
   /// Returns the number of images that were lost because the front thread did not take them in

@@ -198,8 +198,14 @@ void Bridge::publish_outputs() {
   if (std::exchange(outputs_staged_, false)) master_.publish_outputs(judged_);
 }
 
+/// The bus thread renews the status less often than this thread needs it.
+void Bridge::read_status() {
+  const std::uint64_t version = master_.status_version();
+  if (std::exchange(status_version_, version) != version) master_.status(snapshot_);
+}
+
 void Bridge::take_messages() {
-  master_.status(snapshot_);
+  read_status();
   transport_.serve([this](std::string_view channel, Bytes data) { on_message(channel, data); });
   if (transport_.drained()) gap_.found_empty();
   publish_outputs();

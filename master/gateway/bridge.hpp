@@ -124,6 +124,7 @@ class Bridge {
   void take_replies(const FrontBudget& budget);
   void take_reply(const Reply& reply);
   void serve_requests();
+  void read_status();
   void take_messages();
   void on_message(std::string_view channel, Bytes data);
   void on_command(Bytes data);
@@ -196,7 +197,8 @@ class Bridge {
   RateLimit damaged_{std::chrono::seconds{10}};
   std::vector<std::byte> buffer_;
   StatusSnapshot snapshot_;
-  std::vector<PdoMark> marks_;  // marks of the newest image
+  std::uint64_t status_version_ = 0;  ///< of `snapshot_`
+  std::vector<PdoMark> marks_;        // marks of the newest image
   EmcyLog emcy_log_;
   Time wall_minus_monotonic_{};
   std::array<PeriodicState, 4> states_{{{std::chrono::seconds{1}, &Bridge::publish_layout},

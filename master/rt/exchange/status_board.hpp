@@ -75,6 +75,8 @@ class StatusBoard {
 
   /// Front thread.
   void read(StatusSnapshot& snapshot) const;
+  /// Front thread. The number changes with each write(); it is 0 before the first one.
+  std::uint64_t version() const noexcept { return lock_.version(); }
 
  private:
   static constexpr std::size_t node_at(std::size_t i) noexcept {

@@ -323,8 +323,11 @@ TEST(StatusBoard, KeepsTheNodesThatAreNotWritten) {
         {}, std::span{nodes}.first(count), [](std::size_t) { return PdoStatus{}; },
         [](std::size_t) { return RpdoStatus{}; });
   };
+  EXPECT_EQ(board.version(), 0U);
   write(3, 7);
+  const std::uint64_t first = board.version();
   write(2, 8);
+  EXPECT_NE(board.version(), first);
 
   StatusSnapshot snapshot;
   board.read(snapshot);
