@@ -11,11 +11,14 @@ bool VirtualEndpoint::publish(const std::string& channel, std::span<const std::b
 }
 
 bool VirtualEndpoint::wanted(std::string_view channel) const {
-  return lcm_.has_subscriber(channel);
+  return !lcm_.subscribers(channel).empty();
 }
 
-bool VirtualEndpoint::hears(std::string_view channel) const noexcept {
-  return std::ranges::find(channels_, channel) != channels_.end();
+void VirtualEndpoint::subscribe(const std::string& channel) { lcm_.subscribe(*this, channel); }
+
+void VirtualEndpoint::close() {
+  waiting_.clear();
+  lcm_.unsubscribe(*this);
 }
 
 void VirtualEndpoint::serve(const MessageHandler& handler) {
@@ -28,12 +31,23 @@ void VirtualEndpoint::serve(const MessageHandler& handler) {
 }
 
 VirtualEndpoint& VirtualLcm::join(std::size_t room, Echo echo) {
-  return *endpoints_.emplace_back(std::make_unique<VirtualEndpoint>(*this, room, echo));
+  return *endpoints_.emplace_back(
+      std::make_unique<VirtualEndpoint>(*this, endpoints_.size(), room, echo));
 }
 
-bool VirtualLcm::has_subscriber(std::string_view channel) const noexcept {
-  return std::ranges::any_of(endpoints_,
-                             [&](const auto& endpoint) { return endpoint->hears(channel); });
+void VirtualLcm::subscribe(VirtualEndpoint& program, const std::string& channel) {
+  Subscribers& all = subscribers_[channel];
+  const auto at = std::ranges::lower_bound(all, program.place_, {}, &VirtualEndpoint::place_);
+  if (at == all.end() || *at != &program) all.insert(at, &program);
+}
+
+void VirtualLcm::unsubscribe(VirtualEndpoint& program) {
+  for (auto& [channel, all] : subscribers_) std::erase(all, &program);
+}
+
+const VirtualLcm::Subscribers& VirtualLcm::subscribers(std::string_view channel) const noexcept {
+  const auto found = subscribers_.find(channel);
+  return found == subscribers_.end() ? nobody_ : found->second;
 }
 
 Time VirtualLcm::delay() noexcept {
@@ -44,9 +58,8 @@ void VirtualLcm::carry(const VirtualEndpoint& sender, const std::string& channel
                        std::span<const std::byte> data) {
   ++messages_;
   VirtualEndpoint::Message message;
-  for (const auto& endpoint : endpoints_) {
-    if (!endpoint->hears(channel)) continue;
-    if (endpoint.get() == &sender && endpoint->echo_ == Echo::unheard) continue;
+  for (VirtualEndpoint* const endpoint : subscribers(channel)) {
+    if (endpoint == &sender && endpoint->echo_ == Echo::unheard) continue;
     if (endpoint->waiting_.size() >= endpoint->room_) {
       ++endpoint->dropped_;
       continue;

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -21,14 +23,15 @@ enum class Echo : std::uint8_t { heard, unheard };
 /// serve() takes them.
 class VirtualEndpoint final : public Transport {
  public:
-  VirtualEndpoint(VirtualLcm& lcm, std::size_t room, Echo echo)
-      : lcm_{lcm}, room_{room}, echo_{echo} {}
+  /// `place` counts the programs of this LCM from 0.
+  VirtualEndpoint(VirtualLcm& lcm, std::size_t place, std::size_t room, Echo echo)
+      : lcm_{lcm}, place_{place}, room_{room}, echo_{echo} {}
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override;
   /// True if a program has subscribed to the channel, as the broker of LCM tells it.
   bool wanted(std::string_view channel) const override;
   /// Accepts whole names only, no patterns.
-  void subscribe(const std::string& channel) override { channels_.push_back(channel); }
+  void subscribe(const std::string& channel) override;
   void serve(const MessageHandler& handler) override;
   void watch(std::vector<pollfd>&) const override {}
   bool good() const override { return true; }
@@ -38,10 +41,7 @@ class VirtualEndpoint final : public Transport {
   /// queue is empty.
   Time next_arrival() const noexcept { return waiting_.empty() ? never : waiting_.front().arrival; }
   /// Discards all waiting messages and subscriptions, as the end of the process does.
-  void close() {
-    waiting_.clear();
-    channels_.clear();
-  }
+  void close();
   std::uint64_t dropped() const noexcept { return dropped_; }
 
  private:
@@ -51,12 +51,11 @@ class VirtualEndpoint final : public Transport {
     std::shared_ptr<const std::vector<std::byte>> data;
     Time arrival{};
   };
-  bool hears(std::string_view channel) const noexcept;
 
   VirtualLcm& lcm_;
+  std::size_t place_;
   std::size_t room_;
   Echo echo_;
-  std::vector<std::string> channels_;
   std::deque<Message> waiting_;
   std::uint64_t dropped_ = 0;
 };
@@ -75,12 +74,16 @@ class VirtualLcm {
   /// Sets the longest delay of the messages that are sent from now on.
   void set_delay(Time longest) noexcept { delay_ = longest; }
   Time now() const noexcept { return world_.now(); }
-  /// Returns true if a program has subscribed to the channel.
-  bool has_subscriber(std::string_view channel) const noexcept;
   std::uint64_t messages() const noexcept { return messages_; }
 
  private:
   friend class VirtualEndpoint;
+  /// Subscribers of one channel in the order in which they have joined.
+  using Subscribers = std::vector<VirtualEndpoint*>;
+
+  void subscribe(VirtualEndpoint& program, const std::string& channel);
+  void unsubscribe(VirtualEndpoint& program);
+  const Subscribers& subscribers(std::string_view channel) const noexcept;
   void carry(const VirtualEndpoint& sender, const std::string& channel,
              std::span<const std::byte> data);
   Time delay() noexcept;
@@ -89,6 +92,8 @@ class VirtualLcm {
   sim::Random random_;
   Time delay_ = usual_delay;
   std::vector<std::unique_ptr<VirtualEndpoint>> endpoints_;
+  std::map<std::string, Subscribers, std::less<>> subscribers_;  // by channel
+  Subscribers nobody_;
   std::uint64_t messages_ = 0;
 };
 
