@@ -54,6 +54,7 @@ LimitJudge::LimitJudge(const BusPlan& plan, sim::World& world, Verdict& verdict)
       sent_(plan.layout.outputs()) {
   for (const OutputLimit& limit : plan.limits.outputs) {
     Place& place = places_[limit.signal - plan.layout.inputs];
+    if (place.limit == nullptr) limited_.push_back(&place);
     place.limit = &limit;
     const Signal& target = signal_of(place);
     for (std::size_t i = plan.layout.inputs; i < plan.layout.signals.size(); ++i) {
@@ -81,13 +82,14 @@ void LimitJudge::begin_anew() {
 void LimitJudge::begin_cycle(Time now) {
   std::ranges::rotate(cycles_, cycles_.begin() + 1);
   cycles_.back() = now;
-  for (Place& place : places_) {
-    if (place.doubt != 0) --place.doubt;
-    if (place.mode_doubt != 0) --place.mode_doubt;
+  for (Place* const place : limited_) {
+    if (place->doubt != 0) --place->doubt;
+    if (place->mode_doubt != 0) --place->mode_doubt;
     // A babbling node may have sent a hundred positions in a cycle. All of them may have waited in
     // the queue while the master was stopped.
-    while (place.actual.size() > fewest_remembered && place.actual.front().when < cycles_.front()) {
-      place.actual.pop_front();
+    while (place->actual.size() > fewest_remembered &&
+           place->actual.front().when < cycles_.front()) {
+      place->actual.pop_front();
     }
   }
 }
@@ -103,24 +105,23 @@ void LimitJudge::heard(const Frame& frame) {
 
 void LimitJudge::note_input(SignalIndex signal, std::uint64_t bits) {
   const double value = number(plan_.layout.signals[signal], bits);
-  for (Place& place : places_) {
-    if (place.limit == nullptr) continue;
-    if (place.limit->feedback == signal) place.actual.push_back({world_.now(), value});
-    if (place.limit->mode_display == signal && !place.limit->mode) note_mode(place, bits);
-    if (place.limit->statusword != signal) continue;
-    place.enabled = (bits & 0x6F) == 0x27;
-    if (!place.enabled) place.doubt = state_doubt;
+  for (Place* const place : limited_) {
+    const OutputLimit& limit = *place->limit;
+    if (limit.feedback == signal) place->actual.push_back({world_.now(), value});
+    if (limit.mode_display == signal && !limit.mode) note_mode(*place, bits);
+    if (limit.statusword != signal) continue;
+    place->enabled = (bits & 0x6F) == 0x27;
+    if (!place->enabled) place->doubt = state_doubt;
   }
 }
 
 /// Notes controlwords and modes, which determine the meaning of the targets of their axis.
 void LimitJudge::note_order(SignalIndex signal, std::uint64_t bits) {
-  for (Place& place : places_) {
-    if (place.limit == nullptr) continue;
-    if (place.limit->mode == signal) note_mode(place, bits);
-    if (place.controlword != signal) continue;
-    place.enables = (bits & 0x0F) == 0x0F;
-    if (!place.enables) place.doubt = state_doubt;
+  for (Place* const place : limited_) {
+    if (place->limit->mode == signal) note_mode(*place, bits);
+    if (place->controlword != signal) continue;
+    place->enables = (bits & 0x0F) == 0x0F;
+    if (!place->enables) place->doubt = state_doubt;
   }
 }
 
@@ -230,24 +231,23 @@ void LimitJudge::judge_bend(const Place& place, double value, const Way& way) {
 void LimitJudge::sent(SignalIndex index, std::uint64_t bits, bool begins) {
   note_order(index, bits);
   sent_[index - plan_.layout.inputs] = number(plan_.layout.signals[index], bits);
-  for (Place& place : places_) {
-    if (place.limit == nullptr) continue;
-    if (place.limit->signal == index) {
+  for (Place* const place : limited_) {
+    if (place->limit->signal == index) {
       if (begins) {
-        place.enables = false;
-        place.doubt = state_doubt;
+        place->enables = false;
+        place->doubt = state_doubt;
       }
-      place.change = std::max(place.change, begins ? Change::begins : Change::value);
-    } else if (place.limit->offset == index && place.change == Change::none && place.value) {
-      place.change = Change::value;
+      place->change = std::max(place->change, begins ? Change::begins : Change::value);
+    } else if (place->limit->offset == index && place->change == Change::none && place->value) {
+      place->change = Change::value;
     }
   }
 }
 
 void LimitJudge::judge(Time now) {
-  for (Place& place : places_) {
-    const Change change = std::exchange(place.change, Change::none);
-    if (change != Change::none) judge_place(place, change, now);
+  for (Place* const place : limited_) {
+    const Change change = std::exchange(place->change, Change::none);
+    if (change != Change::none) judge_place(*place, change, now);
   }
 }
 

@@ -93,6 +93,7 @@ class LimitJudge {
   Verdict& verdict_;
   double most_cycles_;            // greatest number of cycles that counts for one distance
   std::vector<Place> places_;     // one for each output
+  std::vector<Place*> limited_;   // those that have a limit
   std::vector<double> sent_;      // newest value of each output
   std::array<Time, 6> cycles_{};  // start times of the newest cycles, oldest first
   std::uint64_t judged_ = 0;
