@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "master/lcm/random_number.hpp"
-
 namespace takt {
 namespace {
 
@@ -31,8 +29,8 @@ constexpr std::chrono::seconds longest_timeout{10};
 Axes::State::State(std::unique_ptr<Transport> lcm, AxesOptions given)
     : group{std::move(lcm), {.bus = given.bus, .sender = given.sender}},
       options{std::move(given)},
-      request_id_{random_number()},
-      id_{static_cast<std::int32_t>(random_number() & 0x3FFF'FFFF)} {}
+      request_id_{surroundings().random_number()},
+      id_{static_cast<std::int32_t>(surroundings().random_number() & 0x3FFF'FFFF)} {}
 
 bool Axes::State::all(const AxisCondition& is) const { return std::ranges::all_of(axes, is); }
 bool Axes::State::any(const AxisCondition& is) const { return std::ranges::any_of(axes, is); }

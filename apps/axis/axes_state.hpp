@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/axis/group/surroundings.hpp"
 #include "apps/axis/speed_drives.hpp"
 #include "apps/axis/stream/stream_buffer.hpp"
 
@@ -32,7 +33,7 @@ inline constexpr std::int64_t settled_cycles = 10;
 /// signals and probe.
 class Axes::State {
  public:
-  using Clock = std::chrono::steady_clock;
+  using Clock = ProgramClock;
   using Index = AxisControl::Index;
   using Values = Eigen::Ref<const Eigen::VectorXd>;
 

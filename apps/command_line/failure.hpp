@@ -9,7 +9,7 @@
 namespace takt {
 
 /// Exit code: the command line is wrong, or a file cannot be read.
-inline constexpr int wrong_use = 2;
+inline constexpr int exit_wrong_use = 2;
 
 /// Ends a command of `takt`: main() prints the sentence, and the program ends with the exit code.
 struct Failure : std::runtime_error {

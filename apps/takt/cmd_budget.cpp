@@ -44,7 +44,7 @@ int report(const BudgetArguments& options, const LoadedNetwork& network, const W
   BusBudget budget = bus_budget(plan, how);
   std::ranges::copy(left_out_tpdos(network.findings), std::back_inserter(budget.assumptions));
   if (!options.svg.empty() && !write_svg(options.svg, plan, budget)) {
-    return complain("can't write " + options.svg, wrong_use);
+    return complain("can't write " + options.svg, exit_wrong_use);
   }
   const bool fits = budget.fits();
   std::vector<Suggestion> suggestions;
@@ -99,7 +99,7 @@ int wrong_change(const std::string& text) {
                  "arm.tpdo2.start=2, arm.tpdo2.inhibit=10ms, "
                  "arm.tpdo2.cob_id=0x1C0"
                : ": expected " + values),
-      wrong_use);
+      exit_wrong_use);
 }
 
 int run(const BudgetArguments& options) {
@@ -110,13 +110,14 @@ int run(const BudgetArguments& options) {
   const auto device_time = parse_duration(options.device_time);
   if (!device_time) {
     return complain("--device-time " + options.device_time + ": expected a time such as 200us",
-                    wrong_use);
+                    exit_wrong_use);
   }
   BudgetOptions how{.device_time = *device_time};
   if (!options.errors.empty()) {
     const auto interval = parse_duration(options.errors);
     if (!interval || *interval == Time{0}) {
-      return complain("--errors " + options.errors + ": expected a time such as 10ms", wrong_use);
+      return complain("--errors " + options.errors + ": expected a time such as 10ms",
+                      exit_wrong_use);
     }
     how.errors = {.burst = 1, .interval = *interval};
   }
@@ -124,7 +125,7 @@ int run(const BudgetArguments& options) {
   Findings findings = network.findings;
   std::erase_if(findings, is_too_full);
   const bool bad = print_findings(findings, Severity::warning);
-  return bad ? wrong_use : report(options, network, changes, how);
+  return bad ? exit_wrong_use : report(options, network, changes, how);
 }
 
 }  // namespace

@@ -164,7 +164,7 @@ void dump_log(std::istream& in, const std::string& name, Printer& printer) {
   if (frames == 0 && strange != 0) {
     throw Failure{
         name + ": holds no frame; `candump -L can0 > FILE` makes a recording that takt reads",
-        wrong_use};
+        exit_wrong_use};
   }
 }
 
@@ -172,7 +172,8 @@ void dump_file(const std::string& name, Printer& printer) {
   if (name == "-") return dump_log(std::cin, "stdin", printer);
   std::ifstream file{name};
   if (!file || std::filesystem::is_directory(name)) {
-    throw Failure{name + ": cannot be read: " + std::strerror(file ? EISDIR : errno), wrong_use};
+    throw Failure{name + ": cannot be read: " + std::strerror(file ? EISDIR : errno),
+                  exit_wrong_use};
   }
   dump_log(file, name, printer);
 }
@@ -234,15 +235,15 @@ int run(const DumpOptions& options) {
   for (const std::string& file : options.files) {
     if (is_network(file) && !network) {
       network = load_network(file);
-      if (print_findings(network->findings, Severity::error)) return wrong_use;
+      if (print_findings(network->findings, Severity::error)) return exit_wrong_use;
     } else if (!log) {
       log = file;
     } else {
-      throw Failure{"give at most one network file and one recording", wrong_use};
+      throw Failure{"give at most one network file and one recording", exit_wrong_use};
     }
   }
   if (log && !options.bus.empty()) {
-    throw Failure{"give either --bus or a recording, not both", wrong_use};
+    throw Failure{"give either --bus or a recording, not both", exit_wrong_use};
   }
   const LoadedNetwork* const names = network ? &*network : nullptr;
   const auto node = options.node.empty() ? std::optional{0U} : node_of(options.node, names);
@@ -250,7 +251,7 @@ int run(const DumpOptions& options) {
     throw Failure{"'" + options.node + "' is not a node id 1..127" +
                       (names == nullptr ? "; a name needs a network file"
                                         : " and not a node of the network file"),
-                  wrong_use};
+                  exit_wrong_use};
   }
   Printer printer{options, *node, names};
   if (log) {
@@ -262,7 +263,8 @@ int run(const DumpOptions& options) {
   } else if (network && !network->plan.interface.empty()) {
     dump_bus(network->plan.interface, printer);
   } else {
-    throw Failure{"no bus is given; use --bus can0, --bus unix:PATH, or a recording", wrong_use};
+    throw Failure{"no bus is given; use --bus can0, --bus unix:PATH, or a recording",
+                  exit_wrong_use};
   }
   return 0;
 }

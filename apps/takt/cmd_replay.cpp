@@ -49,15 +49,15 @@ std::string find_network(const ReplayOptions& options, const RecordingHead& head
 }
 
 int run(const ReplayOptions& options) {
-  const auto recording = value_or_fail(read_recording(options.file), wrong_use);
-  if (recording.fault) throw Failure{options.file + ": " + *recording.fault, wrong_use};
+  const auto recording = value_or_fail(read_recording(options.file), exit_wrong_use);
+  if (recording.fault) throw Failure{options.file + ": " + *recording.fault, exit_wrong_use};
   const std::string file = find_network(options, recording.head);
   LoadedNetwork network = load_network(file);
   if (print_findings(network.findings, Severity::error)) {
-    if (!options.network.empty()) return wrong_use;
+    if (!options.network.empty()) return exit_wrong_use;
     throw Failure{"the recording needs the network file " + recording.head.network +
                       "; give it with --network",
-                  wrong_use};
+                  exit_wrong_use};
   }
   if (plan_fingerprint(network.plan) != recording.head.fingerprint) {
     complain(file + " or its EDS files have changed since the recording was made", 0);

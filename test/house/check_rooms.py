@@ -171,15 +171,19 @@ ROOMS = {
                          "master/black_box master/lcm master/linux master/linux/bus eds_parser/network_file " + EDS),
     "apps/takt/simulate/program": ("runs the daemon and applications in virtual time",
                                    "apps/axis master master/gateway master/lcm master/rt " + SIM),
+    "apps/takt/simulate/motion": ("programs in virtual time that command motions by a script",
+                                  "apps/axis apps/axis/group apps/takt/simulate/program eds_parser/report master/lcm " + SIM),
     "apps/takt/simulate": ("runs a whole network in virtual time, and reports the outcome",
-                           "apps/command_line apps/axis apps/takt/simulate/program eds_parser/network_file eds_parser/report "
+                           "apps/command_line apps/axis apps/takt/simulate/motion apps/takt/simulate/program "
+                           "eds_parser/network_file eds_parser/report "
                            "eds_parser/ini master/core master/explain master/gateway/command master/lcm master/rt "
                            "master/rt/exchange master/linux/bus " + SIM),
     "apps/takt/soak/judge": ("checks the invariants of a run",
                              "master/wire master/core master/rt/exchange master/sim/device " + SIM),
     "apps/takt/soak": ("runs random sequences of faults",
-                       "apps/command_line apps/takt/simulate apps/takt/simulate/program apps/takt/soak/judge "
-                       "eds_parser/network_file master/explain master/gateway master/rt master/rt/exchange " + SIM),
+                       "apps/command_line apps/axis/group apps/takt/simulate apps/takt/simulate/motion "
+                       "apps/takt/simulate/program apps/takt/soak/judge eds_parser/network_file master/explain "
+                       "master/gateway master/lcm master/rt master/rt/exchange " + SIM),
     "apps/takt/trajectory": ("plans trajectories without a bus", "apps/command_line apps/plot master/motion"),
     "apps/takt": ("the tool: commands on files",
                   "apps/command_line eds_parser/check eds_parser/write eds_parser/export eds_parser/budget "

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <ctime>
 #include <poll.h>
 #include <utility>
 
@@ -11,11 +10,6 @@ namespace {
 
 /// How often wait() checks whether the newest image is stale.
 constexpr std::chrono::milliseconds longest_pause{1};
-
-timespec timespec_of(std::chrono::nanoseconds time) {
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
-  return {.tv_sec = seconds.count(), .tv_nsec = (time - seconds).count()};
-}
 
 }  // namespace
 
@@ -44,8 +38,7 @@ Input AxisGroup::wait(std::chrono::nanoseconds longest) {
     if (left <= left.zero()) return Input::nothing;
     descriptors.clear();
     state.lcm->watch(descriptors);
-    const auto pause = timespec_of(std::min<std::chrono::nanoseconds>(left, longest_pause));
-    ::ppoll(descriptors.data(), descriptors.size(), &pause, nullptr);
+    surroundings().wait(descriptors, std::min<std::chrono::nanoseconds>(left, longest_pause));
   }
 }
 

@@ -6,7 +6,6 @@
 #include "apps/axis/group/axis_group_state.hpp"
 #include "apps/axis/group/find_axes.hpp"
 #include "master/lcm/channel_names.hpp"
-#include "master/lcm/random_number.hpp"
 
 namespace takt {
 namespace {
@@ -29,7 +28,7 @@ std::string sender_name(const std::string& program, std::int64_t instance) {
 AxisGroup::State::State(std::unique_ptr<Transport> transport, AxisGroupOptions given)
     : lcm{std::move(transport)},
       options{std::move(given)},
-      instance{options.instance != 0 ? options.instance : random_number()},
+      instance{options.instance != 0 ? options.instance : surroundings().random_number()},
       sender{sender_name(options.sender, instance)},
       holders{sender} {
   if (options.bus.empty()) {

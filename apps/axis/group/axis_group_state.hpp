@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "apps/axis/group/node_holders.hpp"
+#include "apps/axis/group/surroundings.hpp"
 #include "master/lcm/envelope/envelope.hpp"
 #include "master/lcm/messages.hpp"
 
@@ -23,7 +24,7 @@ namespace takt {
 /// What an AxisGroup knows of its bus. It takes messages in axis_group_input.cpp.
 class AxisGroup::State {
  public:
-  using Clock = std::chrono::steady_clock;
+  using Clock = ProgramClock;
   /// What taktd has reported about an axis, and in which cycle.
   struct Motion {
     axis_motion_t axis;
@@ -100,7 +101,7 @@ class AxisGroup::State {
 template <class Message>
 bool AxisGroup::State::send(const std::string& channel, Message& message) {
   using std::chrono::microseconds;
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const std::chrono::nanoseconds now = surroundings().wall();
   message.utime = std::chrono::duration_cast<microseconds>(now).count();
   message.instance = instance;
   message.sender = sender;

@@ -4,6 +4,7 @@
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/duration.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/whole_number.hpp"
 #include "apps/takt/simulate/fault_file.hpp"
@@ -31,6 +32,10 @@ int run(const SimulateArguments& arguments) {
     if (print_findings(file.findings)) return 2;
     options.faults = std::move(file.faults);
     options.programs = std::move(file.programs);
+    options.motions = std::move(file.motions);
+    if (options.move && !options.motions.empty()) {
+      throw Failure{"--move excludes `motions:` in " + arguments.faults, exit_wrong_use};
+    }
   }
   options.duration = *parse_duration(arguments.run_for);
   options.wake_jitter = *parse_duration(arguments.jitter);
@@ -61,7 +66,8 @@ void add_simulate(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   add_number(command, "--seed", arguments.simulation.seed, "seed; equal seeds give equal runs")
       ->capture_default_str();
-  command.add_option("--faults", arguments.faults, "file that lists faults and their times (YAML)");
+  command.add_option("--faults", arguments.faults,
+                     "file that lists faults, and motions of programs, with their times (YAML)");
   auto* move = command.add_flag("--move", arguments.simulation.move,
                                 "move all CiA 402 axes with a built-in sine, without application");
   add_number(command, "--applications", arguments.simulation.applications,
@@ -85,10 +91,16 @@ void add_simulate(CLI::App& app, int& exit_code) {
       "stall_front, kill_master, slow_messages (time), stall_application, slow_application\n"
       "(time), kill_application, end_application, second_sender (these five also take\n"
       "application), replay, forge_command, forge_image and damage_messages (time).\n"
-      "share/doc/faults.md has an example of each kind.\n\n"
+      "share/doc/faults.md has an example of each kind.\n"
+      "Motions: a list under `motions:`, each {kind, at, program, axes ...}. Kinds: enable, "
+      "reset,\n"
+      "move (to), move_by (by), jog (velocity), gear (leader), stream (points), stop, home,\n"
+      "disable, kill. share/doc/simulation.md has their keys.\n\n"
       "Example:\n"
       "  takt simulate share/demo/two_axes.yaml --for 100s --move\n"
       "  takt simulate share/demo/two_axes.yaml --applications 2 --faults crash.yaml\n"
+      "  takt simulate share/demo/two_axes.yaml --faults share/demo/motions/two_axes.yaml --for "
+      "20s\n"
       "  takt simulate lift.yaml --for 1h --seed 7 --faults bad_day.yaml --json");
 }
 

@@ -8,8 +8,9 @@
 #include <utility>
 #include <yaml-cpp/yaml.h>
 
-#include "apps/command_line/duration.hpp"
 #include "apps/command_line/live_arguments.hpp"
+#include "apps/takt/simulate/entry_reader.hpp"
+#include "apps/takt/simulate/motion_list_reader.hpp"
 #include "eds_parser/ini/number.hpp"
 #include "eds_parser/report/suggest.hpp"
 #include "eds_parser/table/little_endian.hpp"
@@ -40,49 +41,33 @@ std::optional<std::uint64_t> integer(const std::string& text) {
   return number->negative ? ~number->magnitude + 1 : number->magnitude;
 }
 
-/// One key of a fault with its value.
-struct Item {
-  explicit Item(const std::pair<YAML::Node, YAML::Node>& pair)
-      : key{pair.first.as<std::string>("")},
-        key_mark{pair.first.Mark()},
-        is_scalar{pair.second.IsScalar()},
-        text{is_scalar ? pair.second.as<std::string>("") : std::string{}},
-        mark{pair.second.Mark()} {}
-
-  std::string key;
-  YAML::Mark key_mark;
-  bool is_scalar;
-  std::string text;
-  YAML::Mark mark;
-};
-
 /// Reads one list entry after the other and collects the errors.
-class Reader {
+class Reader : public EntryReader {
  public:
-  Reader(std::string file, const BusPlan& plan, std::size_t applications)
-      : file_{std::move(file)}, plan_{plan}, applications_{applications} {}
+  Reader(const std::string& file, const BusPlan& plan, std::size_t applications)
+      : EntryReader{file, result_.findings},
+        plan_{plan},
+        applications_{applications},
+        motions_{*this, plan} {}
 
-  FaultFile take() { return std::move(result_); }
-
-  void error(const YAML::Mark& mark, std::string_view rule, std::string message) {
-    SourcePos pos;
-    if (mark.line >= 0) {
-      pos = {static_cast<std::uint32_t>(mark.line + 1),
-             static_cast<std::uint32_t>(mark.column + 1)};
-    }
-    result_.findings.push_back({.file = file_,
-                                .pos = pos,
-                                .severity = Severity::error,
-                                .rule = rule,
-                                .message = std::move(message)});
+  FaultFile take() {
+    result_.motions = motions_.take();
+    return std::move(result_);
   }
 
   void read(const YAML::Node& root) {
-    if (!root.IsMap() || root.size() != 1 || !root["faults"] || !root["faults"].IsSequence()) {
-      error(root.Mark(), "fault-file", "a fault file is a list under `faults:`");
+    const YAML::Node faults = root.IsMap() ? root["faults"] : YAML::Node{};
+    const YAML::Node motions = root.IsMap() ? root["motions"] : YAML::Node{};
+    const auto is_list = [](const YAML::Node& part) { return part && part.IsSequence(); };
+    const std::size_t lists = is_list(faults) + is_list(motions);
+    if (!root.IsMap() || lists == 0 || root.size() != lists) {
+      error(root.Mark(), "fault-file",
+            "a fault file is a list under `faults:`, one under `motions:`, or both");
       return;
     }
-    for (const YAML::Node& entry : root["faults"]) read_fault(entry);
+    if (motions) motions_.read(motions);
+    if (!faults) return;
+    for (const YAML::Node& entry : faults) read_fault(entry);
   }
 
  private:
@@ -96,7 +81,7 @@ class Reader {
     if (program) return read_program_fault(entry, *program);
     sim::Fault fault;
     for (const auto& pair : entry) {
-      const Item item{pair};
+      const EntryItem item{pair};
       if (item.is_scalar) {
         read_key(fault, item);
       } else {
@@ -116,13 +101,14 @@ class Reader {
 
   void read_program_fault(const YAML::Node& entry, ProgramFaultKind kind) {
     ProgramFault fault{.kind = kind};
-    if (applications_ == 0) {
+    const bool has_programs = !motions_.is_empty() && !concerns_application(kind);
+    if (applications_ == 0 && !has_programs) {
       error(entry.Mark(), "fault-kind",
             "`" + std::string{name(kind)} +
                 "` concerns programs, but there is no program: add `--applications 1`");
     }
     for (const auto& pair : entry) {
-      const Item item{pair};
+      const EntryItem item{pair};
       if (item.key == "kind" || read_span(fault, item)) continue;
       if (item.key == "time") {
         read_step(fault.time, item);
@@ -139,7 +125,7 @@ class Reader {
 
   /// Reads a key of the time in which a fault lasts. Returns false for other keys.
   template <class Fault>
-  bool read_span(Fault& fault, const Item& item) {
+  bool read_span(Fault& fault, const EntryItem& item) {
     if (item.key == "at") {
       read_time(fault.at, item);
       return true;
@@ -151,12 +137,12 @@ class Reader {
   }
 
   /// Reads the interval of a repeated action, or a delay.
-  void read_step(Time& time, const Item& item) {
+  void read_step(Time& time, const EntryItem& item) {
     read_time(time, item);
     if (time < shortest_step || time > longest_step) refuse(item, "a time of 100us to 1h");
   }
 
-  void read_application(ProgramFault& fault, const Item& item) {
+  void read_application(ProgramFault& fault, const EntryItem& item) {
     const auto number = integer(item.text);
     if (!number || *number < 1 || (applications_ != 0 && *number > applications_)) {
       return refuse(item, "the number of an application, counted from 1");
@@ -164,7 +150,7 @@ class Reader {
     fault.application = *number - 1;
   }
 
-  void read_key(sim::Fault& fault, const Item& item) {
+  void read_key(sim::Fault& fault, const EntryItem& item) {
     if (read_span(fault, item)) return;
     if (item.key == "kind") return read_kind(fault, item);
     if (item.key == "node") return read_node(fault, item);
@@ -187,7 +173,7 @@ class Reader {
     }
   }
 
-  void read_number(sim::Fault& fault, const Item& item) {
+  void read_number(sim::Fault& fault, const EntryItem& item) {
     const auto number = integer(item.text);
     const auto small = static_cast<std::int64_t>(number.value_or(0));
     bool in_range = true;
@@ -211,7 +197,7 @@ class Reader {
     if (!number || !in_range) refuse(item, "a number in the range of `" + item.key + "`");
   }
 
-  void read_kind(sim::Fault& fault, const Item& item) {
+  void read_kind(sim::Fault& fault, const EntryItem& item) {
     const auto kind = sim::fault_kind(item.text);
     if (kind) {
       fault.kind = *kind;
@@ -221,7 +207,7 @@ class Reader {
     }
   }
 
-  void read_node(sim::Fault& fault, const Item& item) {
+  void read_node(sim::Fault& fault, const EntryItem& item) {
     const auto number = integer(item.text);
     for (const NodePlan& node : plan_.nodes) {
       if (node.name == item.text || (number && node.id.value() == *number)) fault.node = node.id;
@@ -229,20 +215,13 @@ class Reader {
     if (!fault.node) refuse(item, "a node of the network, by name or number");
   }
 
-  void read_time(Time& time, const Item& item) {
-    const auto parsed = parse_duration(item.text);
-    const bool has_unit = item.text.find_first_not_of("0123456789.") != std::string::npos;
-    if (!parsed || !has_unit) return refuse(item, "a time like 500ms, 2s or 100us");
-    time = *parsed;
-  }
-
-  void read_probability(sim::Fault& fault, const Item& item) {
+  void read_probability(sim::Fault& fault, const EntryItem& item) {
     const auto parsed = parse_real(item.text);
     if (!parsed || !(*parsed >= 0.0 && *parsed <= 1.0)) return refuse(item, "0 to 1");
     fault.probability = *parsed;
   }
 
-  void read_data(sim::Fault& fault, const Item& item) {
+  void read_data(sim::Fault& fault, const EntryItem& item) {
     const std::string& text = item.text;
     unsigned byte = 0;
     for (std::size_t i = 0; i < text.size(); i += 2) {
@@ -256,14 +235,10 @@ class Reader {
     }
   }
 
-  void refuse(const Item& item, const std::string& wanted) {
-    error(item.mark, "fault-value", "`" + item.text + "` is not " + wanted);
-  }
-
-  std::string file_;
+  FaultFile result_;
   const BusPlan& plan_;
   std::size_t applications_;
-  FaultFile result_;
+  MotionListReader motions_;
   bool until_is_absolute_ = false;
 };
 

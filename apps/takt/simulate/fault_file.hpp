@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 
+#include "apps/takt/simulate/motion/motion_script.hpp"
 #include "apps/takt/simulate/program/program_faults.hpp"
 #include "eds_parser/report/source.hpp"
 #include "eds_parser/table/bus_plan.hpp"
@@ -8,10 +9,12 @@
 
 namespace takt {
 
-/// A schedule of faults for `takt simulate`. Usable only if `findings` holds no error.
+/// A schedule of faults, and of the motions that programs command, for `takt simulate`. Usable only
+/// if `findings` holds no error.
 struct FaultFile {
   sim::Faults faults;
   ProgramFaults programs;
+  MotionScripts motions;
   Findings findings;
 };
 
@@ -20,9 +23,13 @@ struct FaultFile {
 ///     faults:
 ///       - {kind: power_off, node: elbow, at: 2s, for: 500ms}
 ///       - {kind: override_value, node: 1, object: 1018:01, value: 0x43}
+///     motions:
+///       - {kind: enable, axes: [elbow]}
+///       - {kind: move, at: 2s, to: 1.5, velocity: 3, acceleration: 20}
 ///
 /// A node is given by name or number. All errors are listed at once. A fault of a program is an
-/// error if `applications` is 0.
+/// error if `applications` is 0 and, for a fault that concerns all programs, no program commands
+/// motions.
 FaultFile read_fault_file(const std::filesystem::path& path, const BusPlan& plan,
                           std::size_t applications = 0);
 

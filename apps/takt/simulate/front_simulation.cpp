@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "apps/takt/simulate/candump_log.hpp"
+#include "apps/takt/simulate/motion/motion_programs.hpp"
 #include "apps/takt/simulate/outcome_ledger.hpp"
 #include "apps/takt/simulate/program/program_fault_actor.hpp"
 #include "apps/takt/simulate/program/staged_port.hpp"
@@ -20,12 +21,15 @@ constexpr unsigned rival_number = 7;  // identifies the rivals in the low bits o
 constexpr Time last_words = 50ms;     // for the front thread to report the result of the stop
 constexpr Time without_taktd = 1ms;   // step of the simulation while taktd does not run
 
-/// Returns the nodes of one application. The CiA 402 nodes are distributed round-robin.
-std::vector<bool> nodes_of(const BusPlan& plan, std::size_t application, std::size_t applications) {
+/// Returns the nodes of one application. The CiA 402 nodes without an axis in `motions` are
+/// distributed round-robin.
+std::vector<bool> nodes_of(const BusPlan& plan, const MotionScripts& motions,
+                           std::size_t application, std::size_t applications) {
   std::vector<bool> mine(plan.nodes.size());
   std::size_t drive = 0;
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
-    if (plan.nodes[i].cia402) mine[i] = drive++ % applications == application;
+    const bool is_free = !commands_node(motions, plan.nodes[i].name);
+    if (plan.nodes[i].cia402 && is_free) mine[i] = drive++ % applications == application;
   }
   return mine;
 }
@@ -52,6 +56,7 @@ class FrontRun {
         forger_{plan_, lcm_, [](SignalIndex, std::int64_t) {}, random_.fork(3)},
         applications_{make_programs(Part::application)},
         rivals_{make_programs(Part::rival)},
+        motions_{plan_, options.motions, lcm_, clocks_, random_.fork(4)},
         program_faults_{
             {lcm_, daemon_, applications_, rivals_, forger_}, options.programs, options.faults} {
     world_.observe(&log_);
@@ -62,6 +67,7 @@ class FrontRun {
     for (const auto& one : applications_) stage_.add(*one);
     for (const auto& one : rivals_) stage_.add(*one);
     stage_.add(forger_);
+    motions_.join(stage_);
   }
 
   SimulationOutcome run() {
@@ -74,7 +80,9 @@ class FrontRun {
     world_.advance_to(world_.now() + options_.after);
     count_daemon();
     SimulationOutcome outcome = ledger_.finish(world_, snapshot_, stopped);
-    outcome.axes_moved = most_led_;
+    outcome.motions = motions_.end();
+    outcome.programs = options_.motions.size();
+    outcome.axes_moved = most_led_ + moved_axes(outcome.motions);
     for (const auto& one : applications_) {
       front_.applications.push_back({one->name(), one->images(), one->sent(), one->dropped()});
     }
@@ -94,7 +102,7 @@ class FrontRun {
           plan_, lcm_,
           ApplicationOptions{.name = "axes " + std::to_string(i + 1),
                              .number = number,
-                             .nodes = nodes_of(plan_, i, options_.applications)},
+                             .nodes = nodes_of(plan_, options_.motions, i, options_.applications)},
           random_.fork(100 + i + 10 * number)));
     }
     return all;
@@ -157,6 +165,7 @@ class FrontRun {
   Forger forger_;
   VirtualApplications applications_;
   VirtualApplications rivals_;
+  MotionPrograms motions_;
   ProgramFaultActor program_faults_;
   StatusSnapshot snapshot_;
   FrontOutcome front_;

@@ -69,6 +69,24 @@ Json node_json(const NodeOutcome& node) {
           {"rpdo_frames", node.rpdo_frames}};
 }
 
+Json motion_json(const MotionOutcome& motion) {
+  const auto time = [](const std::optional<Time>& when) {
+    return when ? Json(ms(*when)) : Json(nullptr);
+  };
+  Json axes = Json::array();
+  for (const AxisMaxima& axis : motion.axes) {
+    axes.push_back({{"axis", axis.axis},
+                    {"unit", axis.unit},
+                    {"largest_velocity", axis.velocity},
+                    {"largest_acceleration", axis.acceleration},
+                    {"largest_following_error", axis.following_error}});
+  }
+  return {{"program", motion.program},  {"kind", std::string{name(motion.kind)}},
+          {"line", motion.pos.line},    {"begin_ms", time(motion.begin)},
+          {"end_ms", time(motion.end)}, {"result", motion.result},
+          {"text", motion.text},        {"axes", std::move(axes)}};
+}
+
 Json front_json(const FrontOutcome& front) {
   Json refused = Json::object();
   for (std::size_t i = 0; i < front.refused.size(); ++i) {
@@ -105,6 +123,10 @@ void print_json(std::ostream& out, const SimulationOutcome& outcome) {
   for (const NodeOutcome& node : outcome.nodes) root["nodes"].push_back(node_json(node));
   root["move"] = {{"built_in_sine", outcome.move}, {"axes_moved", outcome.axes_moved}};
   if (outcome.front) root["front"] = front_json(*outcome.front);
+  if (outcome.programs != 0) {
+    root["motions"] = Json::array();
+    for (const MotionOutcome& one : outcome.motions) root["motions"].push_back(motion_json(one));
+  }
   root["stopped_in_order"] = outcome.stopped && outcome.stop == StopResult::confirmed;
   root["stop"] = {{"ended", outcome.stopped},
                   {"confirmed", outcome.stop == StopResult::confirmed},

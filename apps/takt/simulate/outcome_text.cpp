@@ -57,10 +57,20 @@ std::string refusals_text(const FrontOutcome& front) {
   return text.empty() ? text : text + ")";
 }
 
-void print_front(std::ostream& out, const FrontOutcome& front, std::size_t axes_moved) {
+std::string sources_text(const SimulationOutcome& outcome) {
+  const std::size_t applications = outcome.front->applications.size();
+  std::string text;
+  if (applications != 0) text = fmt::format("{} applications over LCM", applications);
+  if (outcome.programs == 0) return text;
+  return fmt::format("{}{}{} program{} with motions", text, text.empty() ? "" : ", ",
+                     outcome.programs, outcome.programs == 1 ? "" : "s");
+}
+
+void print_front(std::ostream& out, const SimulationOutcome& outcome) {
+  const FrontOutcome& front = *outcome.front;
   const auto refused = std::accumulate(front.refused.begin(), front.refused.end(), 0ULL);
-  out << fmt::format("  set-points   {} applications over LCM; {} axes moved\n",
-                     front.applications.size(), axes_moved)
+  out << fmt::format("  set-points   {}; {} axes moved\n", sources_text(outcome),
+                     outcome.axes_moved)
       << fmt::format("  front thread {} images published, {} commands taken, {} refused{}\n",
                      front.images, front.commands_taken, refused, refusals_text(front))
       << fmt::format(
@@ -82,6 +92,26 @@ void print_stop(std::ostream& out, const SimulationOutcome& outcome) {
   out << fmt::format("  stop         {}\n", declared);
   for (const std::string& axis : outcome.unconfirmed)
     out << fmt::format("               {}\n", axis);
+}
+
+void print_motions(std::ostream& out, const SimulationOutcome& outcome) {
+  if (outcome.programs == 0) return;
+  const auto time = [](const std::optional<Time>& when) {
+    return when ? fmt::format("{:.3f}", seconds(*when)) : "-";
+  };
+  out << fmt::format("\n  {:>4}  {:12} {:8} {:>9} {:>9}  {}\n", "line", "program", "motion",
+                     "begin s", "end s", "result");
+  for (const MotionOutcome& motion : outcome.motions) {
+    out << fmt::format("  {:>4}  {:12} {:8} {:>9} {:>9}  {}{}{}\n", motion.pos.line, motion.program,
+                       name(motion.kind), time(motion.begin), time(motion.end), motion.result,
+                       motion.text.empty() ? "" : ": ", printable_text(motion.text));
+    for (const AxisMaxima& axis : motion.axes) {
+      if (axis.velocity == 0.0) continue;
+      out << fmt::format(
+          "        {}: at most {:.4g} {}/s, {:.4g} {}/s^2, following error {:.3g} {}\n", axis.axis,
+          axis.velocity, axis.unit, axis.acceleration, axis.unit, axis.following_error, axis.unit);
+    }
+  }
 }
 
 void print_nodes(std::ostream& out, const SimulationOutcome& outcome) {
@@ -115,7 +145,7 @@ void print_text(std::ostream& out, const SimulationOutcome& outcome) {
   print_bus(out, outcome);
   print_sync(out, outcome.sync);
   if (outcome.front) {
-    print_front(out, *outcome.front, outcome.axes_moved);
+    print_front(out, outcome);
   } else if (outcome.move) {
     out << fmt::format("  set-points   built-in sine, no application; {} axes moved\n",
                        outcome.axes_moved);
@@ -123,6 +153,7 @@ void print_text(std::ostream& out, const SimulationOutcome& outcome) {
     out << "  set-points   none (no application; --move gives a built-in sine)\n";
   }
   print_stop(out, outcome);
+  print_motions(out, outcome);
   print_nodes(out, outcome);
   print_events(out, outcome);
 }

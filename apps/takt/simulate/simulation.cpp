@@ -74,7 +74,9 @@ class BusRun {
 }  // namespace
 
 SimulationOutcome simulate(const LoadedNetwork& network, const SimulationOptions& options) {
-  if (options.applications != 0) return simulate_front(network, options);
+  if (options.applications != 0 || !options.motions.empty()) {
+    return simulate_front(network, options);
+  }
   return std::make_unique<BusRun>(network, options)->run();
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/takt/simulate/motion/motion_outcome.hpp"
 #include "apps/takt/simulate/program/program_faults.hpp"
 #include "apps/takt/simulate/wire_statistics.hpp"
 #include "eds_parser/network_file/load_network.hpp"
@@ -25,9 +26,12 @@ struct SimulationOptions {
   /// most_applications. 0 means that only the bus thread runs. Excludes `move`.
   std::size_t applications = 0;
   ProgramFaults programs{};  ///< faults of the programs and of taktd
-  Time wake_jitter{};        ///< longest wake-up delay of the simulated bus thread
-  Time after{};              ///< how long the devices run on after the master has ended
-  std::string candump{};     ///< file for all frames as a candump log; empty means no file
+  /// Programs that command motions over LCM, through the whole taktd. Applications leave the nodes
+  /// of their axes alone. Excludes `move`.
+  MotionScripts motions{};
+  Time wake_jitter{};     ///< longest wake-up delay of the simulated bus thread
+  Time after{};           ///< how long the devices run on after the master has ended
+  std::string candump{};  ///< file for all frames as a candump log; empty means no file
 };
 
 /// Greatest number of programs. The low bits of a position identify the program that commanded it;
@@ -95,8 +99,10 @@ struct SimulationOutcome {
   std::uint64_t events_total = 0;
   std::size_t axes_moved = 0;
   bool move = false;
-  std::optional<FrontOutcome> front;  ///< empty without applications
-  bool stopped = false;               ///< the ordered stop was completed in time
+  std::optional<FrontOutcome> front;   ///< empty without applications and motions
+  std::size_t programs = 0;            ///< that command motions
+  std::vector<MotionOutcome> motions;  ///< in the order of the file
+  bool stopped = false;                ///< the ordered stop was completed in time
   StopResult stop = StopResult::none;
   std::vector<std::string> unconfirmed;  ///< a sentence for each axis that was not stopped
   bool mandatory_failed = false;         ///< a mandatory node never booted

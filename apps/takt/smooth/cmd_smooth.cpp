@@ -90,7 +90,8 @@ Trace read_file(const SmoothArguments& options) {
   const std::string log = log_of(options.file);
   std::ifstream file{log, std::ios::binary};
   std::error_code ignored;
-  if (!file || fs::is_directory(log, ignored)) throw Failure{log + ": can't be read", wrong_use};
+  if (!file || fs::is_directory(log, ignored))
+    throw Failure{log + ": can't be read", exit_wrong_use};
   return read_trace(file, log, options.bus);
 }
 
@@ -161,7 +162,7 @@ PdoMap find_map(const SmoothArguments& options, const Trace& trace) {
   if (!network.empty()) {
     const LoadedNetwork loaded = load_network(network);
     if (print_findings(loaded.findings, Severity::error)) {
-      throw Failure{network + ": the network file has errors", wrong_use};
+      throw Failure{network + ": the network file has errors", exit_wrong_use};
     }
     add_plan(map, loaded.plan);
   }
@@ -171,20 +172,20 @@ PdoMap find_map(const SmoothArguments& options, const Trace& trace) {
   for (const std::string& folder : options.folders) files.add_folder(folder, findings);
   for (const std::string& file : options.eds) good = files.add_argument(file, findings) && good;
   if (print_findings(findings, Severity::warning) || !good) {
-    throw Failure{"a device file can't be used", wrong_use};
+    throw Failure{"a device file can't be used", exit_wrong_use};
   }
   add_learned(map, trace.bus, files);
-  for (const std::string& pdo : options.pdos) value_or_fail(add_pdo(map, pdo), wrong_use);
+  for (const std::string& pdo : options.pdos) value_or_fail(add_pdo(map, pdo), exit_wrong_use);
   if (options.bitrate_kbit != 0) map.bitrate = options.bitrate_kbit * 1000;
   return map;
 }
 
 BusRecord record_of(const SmoothArguments& options, const Trace& trace) {
   print_findings(trace.bus.findings, Severity::warning);
-  if (trace.frames.empty()) throw Failure{options.file + ": holds no frame", wrong_use};
+  if (trace.frames.empty()) throw Failure{options.file + ": holds no frame", exit_wrong_use};
   if (!trace.with_times) {
     throw Failure{options.file + ": frames without time stamps; record with `candump -L`",
-                  wrong_use};
+                  exit_wrong_use};
   }
   BusRecord record = make_record(trace, find_map(options, trace));
   if (trace.cut) {
@@ -208,7 +209,7 @@ int run(const SmoothArguments& options) {
         record.source +
             ": takt does not know which PDO carries set-points (607A, 60C1, 60FF): record the boot "
             "of the drives as well, or give --network, --eds 5=FILE or --pdo 0x205=6040,607A",
-        wrong_use};
+        exit_wrong_use};
   }
   const Verdict verdict = judge(record);
   if (options.live.json) {

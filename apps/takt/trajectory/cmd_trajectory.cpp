@@ -41,11 +41,11 @@ class Requests {
  private:
   void answer(const std::string& line) {
     auto request = read_trajectory_request(line);
-    if (!request) return refuse(request.error(), wrong_use);
+    if (!request) return refuse(request.error(), exit_wrong_use);
     auto planned = answer_trajectory(std::move(*request));
     if (!planned) return refuse(planned.error(), no_solution);
     const auto text = trajectory_json(*planned, sample_);
-    if (!text) return refuse(text.error(), wrong_use);
+    if (!text) return refuse(text.error(), exit_wrong_use);
     std::cout << *text << '\n';
     if (!first_) first_ = std::move(*planned);
   }
@@ -53,7 +53,7 @@ class Requests {
   /// A wrong line is reported with its number. Its answer has the same sentence, so that each
   /// answer stands in the place of its request.
   void refuse(const std::string& why, int code) {
-    if (code == wrong_use) complain(name_ + ":" + std::to_string(number_) + ": " + why, code);
+    if (code == exit_wrong_use) complain(name_ + ":" + std::to_string(number_) + ": " + why, code);
     std::cout << trajectory_error_json(why) << '\n';
     exit_code_ = std::max(exit_code_, code);
   }
@@ -70,7 +70,7 @@ int plot(const std::string& path, const std::optional<TrajectoryAnswer>& answer)
   std::ofstream file{path};
   file << trajectory_svg(*answer);
   file.close();
-  return file.good() ? 0 : complain("can't write " + path, wrong_use);
+  return file.good() ? 0 : complain("can't write " + path, exit_wrong_use);
 }
 
 int run(const TrajectoryArguments& options) {
@@ -78,14 +78,15 @@ int run(const TrajectoryArguments& options) {
   if (!options.sample.empty()) {
     sample = parse_duration(options.sample);
     if (!sample || *sample <= Time{0}) {
-      return complain("--sample " + options.sample + ": expected a time such as 1ms", wrong_use);
+      return complain("--sample " + options.sample + ": expected a time such as 1ms",
+                      exit_wrong_use);
     }
   }
   const bool from_stdin = options.file == "-";
   std::ifstream file;
   if (!from_stdin) {
     file.open(options.file);
-    if (!file) return complain("can't read " + options.file, wrong_use);
+    if (!file) return complain("can't read " + options.file, exit_wrong_use);
   }
   Requests requests{from_stdin ? "stdin" : options.file, sample};
   requests.answer_all(from_stdin ? std::cin : file);

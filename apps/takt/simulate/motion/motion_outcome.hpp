@@ -1,0 +1,39 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/takt/simulate/motion/motion_script.hpp"
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+/// The largest magnitudes that taktd has reported for an axis while an entry was in progress, in
+/// the unit of the axis and in seconds.
+struct AxisMaxima {
+  std::string axis;
+  std::string unit;              ///< empty for raw counts
+  std::int16_t node_id = 0;      ///< as in axis_motion_t, as the next one
+  std::int8_t number = 0;        ///< of the axis in its device, from 1
+  double following_error = 0.0;  ///< commanded minus actual position
+  double velocity = 0.0;         ///< commanded
+  double acceleration = 0.0;     ///< commanded
+};
+
+/// What has become of an entry of `motions:`.
+struct MotionOutcome {
+  std::string program;
+  MotionKind kind = MotionKind::enable;
+  SourcePos pos{};
+  std::optional<Time> begin{};       ///< when the program began it; empty: never
+  std::optional<Time> end{};         ///< when the program knew its end; empty: never
+  std::string result = "not_begun";  ///< `done`, `running`, `not_begun`, or why it ended otherwise
+  std::string text{};                ///< a sentence about an end other than `done`
+  std::vector<AxisMaxima> axes{};
+};
+
+/// Returns the number of axes that have moved.
+std::size_t moved_axes(const std::vector<MotionOutcome>& outcomes);
+
+}  // namespace takt

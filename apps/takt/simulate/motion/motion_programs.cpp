@@ -1,0 +1,139 @@
+#include "apps/takt/simulate/motion/motion_programs.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "eds_parser/table/motion_axes.hpp"
+
+namespace takt {
+namespace {
+
+std::string name_of(const BusPlan& plan, const MotionAxis& axis) {
+  const std::string& node = plan.nodes[axis.node_index].name;
+  return axis.number == 0 ? node : node + "." + std::to_string(axis.number + 1);
+}
+
+/// Makes an outcome of each entry, for an entry that has not begun.
+std::vector<MotionOutcome> outcomes_of(const BusPlan& plan, const MotionScripts& scripts) {
+  const std::vector<MotionAxis> known = motion_axes(plan);
+  std::vector<MotionOutcome> outcomes;
+  for (const MotionScript& script : scripts) {
+    std::vector<AxisMaxima> axes;
+    for (const std::string& wanted : script.axes) {
+      const auto axis = std::ranges::find_if(
+          known, [&](const MotionAxis& one) { return name_of(plan, one) == wanted; });
+      if (axis == known.end()) continue;
+      axes.push_back({.axis = wanted,
+                      .unit = plan.layout.signals[axis->target].unit,
+                      .node_id = plan.nodes[axis->node_index].id.value(),
+                      .number = static_cast<std::int8_t>(axis->number + 1)});
+    }
+    for (const MotionEntry& entry : script.entries) {
+      outcomes.push_back(
+          {.program = script.program, .kind = entry.kind, .pos = entry.pos, .axes = axes});
+    }
+  }
+  return outcomes;
+}
+
+}  // namespace
+
+bool commands_node(const MotionScripts& scripts, std::string_view node) {
+  const auto is_of_node = [&](std::string_view axis) {
+    return axis.substr(0, axis.find('.')) == node;
+  };
+  return std::ranges::any_of(scripts, [&](const MotionScript& script) {
+    return std::ranges::any_of(script.axes, is_of_node);
+  });
+}
+
+std::size_t moved_axes(const std::vector<MotionOutcome>& outcomes) {
+  std::set<std::string_view> moved;
+  for (const MotionOutcome& outcome : outcomes) {
+    for (const AxisMaxima& axis : outcome.axes) {
+      if (axis.velocity > 0.0) moved.insert(axis.axis);
+    }
+  }
+  return moved.size();
+}
+
+std::vector<std::string> motion_axis_names(const BusPlan& plan) {
+  std::vector<std::string> names;
+  for (const MotionAxis& axis : motion_axes(plan)) names.push_back(name_of(plan, axis));
+  return names;
+}
+
+MotionPrograms::MotionPrograms(const BusPlan& plan, const MotionScripts& scripts, VirtualLcm& lcm,
+                               const Clocks& clocks, sim::Random random)
+    : plan_{plan}, outcomes_{outcomes_of(plan, scripts)}, observer_{lcm, plan.name, outcomes_} {
+  std::size_t first = 0;
+  for (const MotionScript& script : scripts) {
+    programs_.push_back(
+        {.script = script,
+         .first_outcome = first,
+         .process = std::make_unique<VirtualProcess>(lcm, clocks, random.fork(programs_.size()))});
+    first += script.entries.size();
+  }
+  for (Program& program : programs_) {
+    start(program);
+    for (const MotionEntry& entry : program.script.entries) {
+      if (entry.kind != MotionKind::kill || !entry.at) continue;
+      killer_.agenda.add(*entry.at, [this, &program, at = *entry.at] { kill(program, at); });
+    }
+  }
+}
+
+void MotionPrograms::join(Stage& stage) {
+  stage.add(killer_);
+  for (const Program& program : programs_) stage.add(*program.process);
+  stage.add(observer_);
+}
+
+/// The new process does the entries up to the next `kill`.
+void MotionPrograms::start(Program& program) {
+  const std::vector<MotionEntry>& entries = program.script.entries;
+  const auto begin = entries.begin() + static_cast<std::ptrdiff_t>(program.next);
+  const auto end = std::find_if(
+      begin, entries.end(), [](const MotionEntry& one) { return one.kind == MotionKind::kill; });
+  const std::size_t first = program.first_outcome + program.next;
+  const auto count = static_cast<std::size_t>(end - begin);
+  VirtualProcess& process = *program.process;
+  program.code = std::make_unique<MotionProgram>(
+      MotionProgram::Setting{.bus = plan_.name,
+                             .connect = [&process] { return process.connect(); },
+                             .is_killed = [&process] { return process.is_killed(); }},
+      program.script, std::span{begin, count}, std::span{outcomes_}.subspan(first, count));
+  program.next += count;
+  process.start([&code = *program.code] { code.run(); });
+}
+
+/// `program.next` is the entry that kills it.
+void MotionPrograms::kill(Program& program, Time now) {
+  program.process->kill();
+  const auto outcomes = std::span{outcomes_}.subspan(program.first_outcome, program.next + 1);
+  for (MotionOutcome& outcome : outcomes) {
+    if (!outcome.begin) {
+      outcome.text = "the program was killed before";
+    } else if (!outcome.end) {
+      outcome.end = now;
+      outcome.result = "killed";
+      outcome.text = "the program was killed meanwhile";
+    }
+  }
+  outcomes.back().begin = outcomes.back().end = now;
+  outcomes.back().result = "done";
+  outcomes.back().text.clear();
+  ++program.next;
+  start(program);
+}
+
+std::vector<MotionOutcome> MotionPrograms::end() {
+  for (Program& program : programs_) program.process->kill();
+  std::ranges::sort(outcomes_, {}, [](const MotionOutcome& one) { return one.pos.line; });
+  return std::move(outcomes_);
+}
+
+}  // namespace takt

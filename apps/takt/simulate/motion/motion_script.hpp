@@ -1,0 +1,69 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <takt/motion.hpp>
+#include <vector>
+
+#include "eds_parser/report/source.hpp"
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+/// What a simulated program does by an entry of `motions:`. All but `kill` are calls of Axes.
+enum class MotionKind : std::uint8_t {
+  enable,
+  reset,
+  move,
+  move_by,
+  jog,
+  gear,
+  stream,
+  stop,
+  home,
+  disable,
+  kill,  ///< the program ends without a word; a new one does the entries that follow
+};
+inline constexpr std::array<std::string_view, 11> motion_kind_names{
+    "enable", "reset", "move", "move_by", "jog", "gear",
+    "stream", "stop",  "home", "disable", "kill"};
+
+constexpr std::string_view name(MotionKind kind) noexcept {
+  return motion_kind_names[static_cast<std::size_t>(kind)];
+}
+/// Returns true if the program goes on to its next entry while the axes still move.
+constexpr bool goes_on(MotionKind kind) noexcept {
+  return kind >= MotionKind::move && kind <= MotionKind::stream;
+}
+/// Returns true for motions that do not come to rest by themselves.
+constexpr bool is_endless(MotionKind kind) noexcept {
+  return kind == MotionKind::jog || kind == MotionKind::gear;
+}
+
+/// One entry of `motions:`.
+struct MotionEntry {
+  MotionKind kind = MotionKind::enable;
+  SourcePos pos{};
+  /// When the program does it. Empty: as soon as the entry before has ended.
+  std::optional<Time> at{};
+  Eigen::VectorXd values{};  ///< targets of a move, distances of a move_by, velocities of a jog
+  MotionBounds bounds{};
+  Gear gear{};
+  std::vector<PathPoint> points{};
+};
+
+/// What a simulated program does: it commands its axes by one entry after the other.
+struct MotionScript {
+  std::string program;
+  std::vector<std::string> axes;  ///< names as in AxesOptions::names
+  std::vector<MotionEntry> entries{};
+};
+using MotionScripts = std::vector<MotionScript>;
+
+/// Returns true if one of the programs commands an axis of this node.
+bool commands_node(const MotionScripts& scripts, std::string_view node);
+
+}  // namespace takt
