@@ -81,6 +81,7 @@ Done Axes::State::enable() {
     known.set_mode(axis, DriveMode::cyclic_position);
     known.set_goal(axis, DriveGoal::enabled);
   }
+  if (sending_ == Sending::nothing) has_begun_ = false;
   sending_ = Sending::controls;
   const auto blocked = [&](Index axis) {
     return known.drive(axis).in_fault() || group.holder(axis).is_other(held_statuses);

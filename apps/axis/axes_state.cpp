@@ -159,13 +159,16 @@ void Axes::State::send_outputs() {
   if (speed) {
     send_speeds();
   } else {
-    const bool lasts = !held_.empty() || any([this](Index axis) {
-      return !is_in_mode_of_motions(axis) || !group.axes().in_mode(axis);
-    });
+    has_begun_ |= has_motion_ && course() != Course::unanswered && course() != Course::refused;
+    // taktd keeps a drive enabled by signs of life only after a motion of it has begun.
+    const bool waits = sending_ == Sending::alive && !has_begun_;
+    const bool lasts = waits || !held_.empty() || any([this](Index axis) {
+                         return !is_in_mode_of_motions(axis) || !group.axes().in_mode(axis);
+                       });
     const auto cycles = options.timeout / std::max<nanoseconds>(group.period(), nanoseconds{1000});
     group.set_time_to_live(lasts ? static_cast<std::int32_t>(cycles)
                                  : AxisGroupOptions{}.time_to_live);
-    if (sending_ == Sending::controls) group.send_controls(commanded_);
+    if (waits || sending_ == Sending::controls) group.send_controls(commanded_);
   }
   send_held();
 }

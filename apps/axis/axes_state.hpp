@@ -265,6 +265,7 @@ class Axes::State {
   std::int64_t request_id_ = 0;   // of the newest request
   std::int32_t id_ = 0;           // of the newest motion
   bool has_motion_ = false;       // false before the first motion, and after a stop
+  bool has_begun_ = false;        // a motion has begun since the drives were enabled
   bool jog_goes_on_ = false;      // the newest motion is a jog, and no call has ended it
   std::optional<Stream> stream_;  // until it has ended
   std::int64_t session_ = 0;      // of the layout in which the axes were found
