@@ -59,7 +59,7 @@ class Reader : public EntryReader {
     const YAML::Node faults = root.IsMap() ? root["faults"] : YAML::Node{};
     const YAML::Node motions = root.IsMap() ? root["motions"] : YAML::Node{};
     const auto is_list = [](const YAML::Node& part) { return part && part.IsSequence(); };
-    const std::size_t lists = is_list(faults) + is_list(motions);
+    const auto lists = std::size_t{is_list(faults)} + std::size_t{is_list(motions)};
     if (!root.IsMap() || lists == 0 || root.size() != lists) {
       error(root.Mark(), "fault-file",
             "a fault file is a list under `faults:`, one under `motions:`, or both");

@@ -28,8 +28,10 @@ struct SoakArguments {
   SoakPlan plan;
 };
 
-const std::map<std::string, SoakPart> parts{
-    {"bus", SoakPart::bus}, {"front", SoakPart::front}, {"both", SoakPart::both}};
+const std::map<std::string, SoakPart> parts{{"bus", SoakPart::bus},
+                                            {"front", SoakPart::front},
+                                            {"both", SoakPart::both},
+                                            {"homing", SoakPart::homing}};
 
 /// Sums over all runs.
 struct Sum {
@@ -106,8 +108,9 @@ int run(const SoakArguments& arguments) {
             << total.commands << " commands (" << total.forged << " forged), " << total.moves
             << " moves, " << total.motions << " motions (" << total.arrivals << " arrived, "
             << total.groups << " groups seen to begin, " << total.gears << " gears, "
-            << total.streams << " streams), " << total.program_faults << " program faults; "
-            << sum.bad << (sum.bad == 1 ? " violation" : " violations") << std::endl;
+            << total.streams << " streams), " << total.homings << " homings, "
+            << total.program_faults << " program faults; " << sum.bad
+            << (sum.bad == 1 ? " violation" : " violations") << std::endl;
   std::cerr << static_cast<long>(hours * 3600 / elapsed()) << " times real time\n";
   return sum.bad == 0 ? 0 : 1;
 }
@@ -126,9 +129,11 @@ void add_soak(CLI::App& app, int& exit_code) {
       ->check(duration_error)
       ->capture_default_str();
   command
-      .add_option("--part", arguments.part,
-                  "run the bus part or the front thread part of each seed, or both")
-      ->check(one_of({"bus", "front", "both"}))
+      .add_option(
+          "--part", arguments.part,
+          "run the bus part or the front thread part of each seed, or both; or programs that "
+          "home axes")
+      ->check(one_of({"bus", "front", "both", "homing"}))
       ->capture_default_str();
   command
       .add_option("--hours", arguments.hours,

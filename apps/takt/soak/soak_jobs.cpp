@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/takt/soak/front_run.hpp"
+#include "apps/takt/soak/homing_run.hpp"
 
 namespace takt::soak {
 namespace {
@@ -61,6 +62,7 @@ bool put(int pipe, const Record& record) {
 /// Runs the bus part, the front part, or both, as the plan says.
 SoakOutcome run(const LoadedNetwork& network, const SoakPlan& plan, const SoakOptions& options) {
   if (plan.part == SoakPart::front) return soak_front(network, options);
+  if (plan.part == SoakPart::homing) return soak_homing(network, options);
   SoakOutcome outcome = soak(network, options);
   if (plan.part == SoakPart::bus || outcome.violation) return outcome;
   const SoakOutcome front = soak_front(network, options);

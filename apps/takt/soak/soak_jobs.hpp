@@ -11,6 +11,7 @@ enum class SoakPart : std::uint8_t {
   bus,    ///< the bus thread and the devices: soak()
   front,  ///< the front thread and programs: soak_front()
   both,
+  homing,  ///< programs that home axes: soak_homing()
 };
 
 struct SoakPlan {

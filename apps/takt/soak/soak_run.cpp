@@ -196,6 +196,7 @@ SoakCounts& SoakCounts::operator+=(const SoakCounts& other) noexcept {
   groups += other.groups;
   gears += other.gears;
   streams += other.streams;
+  homings += other.homings;
   forged += other.forged;
   program_faults += other.program_faults;
   return *this;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "apps/takt/soak/judge/image_judge.hpp"
+#include "apps/takt/soak/judge/frame_values.hpp"
 
 namespace takt::soak {
 namespace {
@@ -19,10 +19,6 @@ constexpr unsigned cycles_after_late = 3;  // in which a late frame may be follo
 constexpr unsigned most_cycles_of_frame = 2;  // one frame may be missing
 constexpr Time short_rest = 150ms;            // a motion that ends has ended by then
 constexpr Time long_rest = 100ms;             // no motion runs
-
-constexpr std::uint64_t cyclic_synchronous_position = 8;  // 6061
-
-bool is_enabled(std::uint64_t statusword) noexcept { return (statusword & 0x6F) == 0x27; }
 
 }  // namespace
 
@@ -147,27 +143,16 @@ void MotionJudge::heard(const Frame& frame) {
   if (plan_.cycle.sync && frame.id == plan_.cycle.sync_cob_id) sync_heard();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = axes_[i];
-    if (const auto word = value_in(frame, orders_.axes()[i].statusword)) {
+    if (const auto word = input_in(plan_, frame, orders_.axes()[i].statusword)) {
       axis.enabled = is_enabled(*word);
       axis.silent_cycles = 0;
       if (!axis.enabled) axis.doubt = state_doubt;
     }
     // A frame of a babbling node may also tell another mode.
     const auto mode = orders_.axes()[i].mode;
-    const auto told = mode && !is_output(*mode) ? value_in(frame, *mode) : std::nullopt;
+    const auto told = mode ? input_in(plan_, frame, *mode) : std::nullopt;
     if (told && *told != cyclic_synchronous_position) axis.doubt = state_doubt;
   }
-}
-
-/// The value of an input in a frame; empty if the frame does not have it. The master ignores a
-/// frame that is shorter than its mapping.
-std::optional<std::uint64_t> MotionJudge::value_in(const Frame& frame, SignalIndex input) const {
-  const PdoRow& row = plan_.pdos.tpdos[plan_.layout.signals[input].row];
-  if (row.cob_id != frame.id || frame.length < row.length) return std::nullopt;
-  for (const PdoField& field : plan_.pdos.fields_of(row)) {
-    if (field.signal == input) return bits_of(frame, field.bit_offset, field.bits);
-  }
-  return std::nullopt;
 }
 
 void MotionJudge::sync_sent() {

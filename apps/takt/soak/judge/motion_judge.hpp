@@ -72,8 +72,6 @@ class MotionJudge {
   void judge_rest(std::size_t axis);
   void judge_way(std::size_t axis, const Way& way, unsigned syncs, Time now);
   void sync_heard() noexcept;
-  std::optional<std::uint64_t> value_in(const Frame& frame, SignalIndex input) const;
-  bool is_output(SignalIndex signal) const { return plan_.layout.signals[signal].output; }
   void report_violation(std::size_t axis, const char* invariant, const std::string& what);
 
   const BusPlan& plan_;
