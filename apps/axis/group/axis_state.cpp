@@ -10,6 +10,10 @@
 namespace takt {
 namespace {
 
+/// Counts by which the target position of a drive that is not enabled may be apart from the actual
+/// one, and the images after which this program sends it.
+constexpr double most_counts_apart = 100;
+constexpr int most_lagging = 4;
 // Bit 4 of the controlword in these modes.
 constexpr std::uint16_t homing_start = 0x10;
 constexpr std::uint16_t enable_interpolation = 0x10;
@@ -91,7 +95,8 @@ void AxisControl::State::step(Axis& axis, const ImageInput& input) {
   if (mode) axis.shown_mode = static_cast<std::int8_t>(input.values()[*mode]);
   if (missing(axis.signals.statusword, input)) return;  // The last controlword is held.
   axis.statusword = static_cast<std::uint16_t>(input.values()[*axis.signals.statusword]);
-  const bool placed = axis.seeded || !missing(axis.signals.position, input);
+  const bool known = axis.seeded || !missing(axis.signals.position, input);
+  const bool placed = known && axis.lagging == 0;
   axis.controlword = axis.drive.step(axis.statusword, placed ? Enabling::goes_on : Enabling::waits);
   if (!axis.drive.enabled()) axis.homes = false;
   if (axis.commanded_mode == DriveMode::profile_position && axis.drive.enabled()) {
@@ -149,12 +154,28 @@ void AxisControl::State::make_controls(std::span<const Index> chosen) {
 /// mode. Drives read a set-point of profile position mode only when the handshake begins.
 void AxisControl::State::put_position(Index index) {
   Axis& axis = at(index);
-  axis.sends_position |= axis.commanded_mode == DriveMode::profile_position;
+  axis.lagging = lags(index) ? axis.lagging + 1 : 0;
+  axis.sends_position |=
+      axis.commanded_mode == DriveMode::profile_position || axis.lagging > most_lagging;
   if (!axis.sends_position || !axis.seeded) return;
   const bool waits = !axis.handshake.taken() || !axis.signals.position;
   put_si(axis.signals.target_position, waits ? target_positions(index) : positions(index));
-  const bool is_cyclic = axis.commanded_mode == DriveMode::cyclic_position;
-  if (is_cyclic && takes_positions(axis) && in_mode(axis)) axis.sends_position = false;
+  const bool is_cyclic = axis.commanded_mode != DriveMode::profile_position &&
+                         is_position_mode(std::to_underlying(axis.commanded_mode));
+  const bool has_mode = axis.signals.mode_display || axis.signals.mode;
+  const bool is_shown = !has_mode || axis.shown_mode == std::to_underlying(axis.commanded_mode);
+  if (is_cyclic && is_shown && axis.drive.enabled()) axis.sends_position = false;
+}
+
+/// Returns true if a drive that is not enabled would jump if it were: its target position is far
+/// from its actual one. taktd lets the target follow from the first command on, unless another
+/// program has commanded one before.
+bool AxisControl::State::lags(Index index) const {
+  const Axis& axis = axes[static_cast<std::size_t>(index)];
+  if (axis.drive.enabled() || axis.stale || !axis.signals.position) return false;
+  if (!axis.signals.target_position) return false;
+  const double count = std::abs(units.format(*axis.signals.target_position).scale);
+  return std::abs(sent_positions(index) - positions(index)) > most_counts_apart * count;
 }
 
 bool AxisControl::State::in_mode(const Axis& axis) const noexcept {

@@ -26,6 +26,7 @@ struct AxisControl::State {
     bool stale = false;
     bool seeded = false;  // true if the target position has been set from a valid value
     DriveMode commanded_mode = DriveMode::cyclic_position;
+    int lagging = 0;              // images in sequence in which the target position lags
     bool sends_position = false;  // controls() sends target positions: taktd does not lead them
     bool halts = false;           // bit 8 of the controlword is set
     bool homes = false;           // bit 4 of the controlword is set in homing mode
@@ -56,6 +57,7 @@ struct AxisControl::State {
   bool takes_positions(const Axis& axis) const noexcept;
   void rest(Index axis, const ImageInput& input);
   void put_position(Index axis);
+  bool lags(Index axis) const;
   void put(AxisSignals::Position signal, std::int64_t raw);
   void put_si(AxisSignals::Position signal, double si);
 
