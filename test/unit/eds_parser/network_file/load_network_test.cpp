@@ -1,5 +1,6 @@
 #include "eds_parser/network_file/load_network.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <gmock/gmock.h>
@@ -182,6 +183,21 @@ TEST(LoadNetwork, DeviceFilesAreFoundBesideTheFileAndInDcfPath) {
   EXPECT_THAT(errors[0], HasSubstr("net.yaml:6:24: error: node `c`: device file `gone.eds` not "
                                    "found; looked for"));
   EXPECT_THAT(errors[0], HasSubstr("eds/gone.eds"));
+}
+
+TEST(LoadNetwork, OfADeviceFileWithoutObjectsTheErrorsAreThoseOfTheFile) {
+  const test::Folder folder;
+  folder.write("d.eds", "[FileInfo]\nFileName=d.eds\n");
+  const auto file = folder.write("net.yaml",
+                                 "master: {sync_period: 10000}\n"
+                                 "a: {node_id: 1, dcf: d.eds}\n");
+
+  const auto network = load_network(file);
+
+  const auto at = std::ranges::find(network.findings, "no-device-file", &Finding::rule);
+  ASSERT_NE(at, network.findings.end());
+  EXPECT_EQ(at->severity, Severity::note);
+  EXPECT_TRUE(has_error(network.findings));
 }
 
 TEST(LoadNetwork, APathThroughALinkIsThatOfTheSystem) {
