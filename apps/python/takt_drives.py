@@ -17,6 +17,7 @@ BOOT_READY = 2  # node_status_t::boot_state
 # gives up.
 HELD_STATUSES = 20
 WORD_CYCLES = 10  # in which a drive may show words from before a command
+MOST_COUNTS_APART = 100  # of the target and the actual position of a drive that is enabled
 LOW_TIME = 0.1  # seconds for which bit 7 of the controlword is low before its rising edge
 
 
@@ -38,6 +39,7 @@ class Drives:
         link = self._link
         for axis in link.axes:
             axis.change_mode(CYCLIC_SYNCHRONOUS_POSITION)
+            axis.has_own_target |= not axis.enabled and self._target_is_far(axis)
         self.words, self.readiness, link.commanding = ENABLING, IDLE, True
 
         def no_motions() -> str:
@@ -218,6 +220,11 @@ class Drives:
         if not axis.has_own_target or axis.obeys_motions and can_move(axis):
             return None
         return self._link.raw(axis, POSITION) if axis.target is None else axis.target
+
+    def _target_is_far(self, axis: Axis) -> bool:
+        """A program that has died may have left a target position to which the drive would jump."""
+        target, position = self._link.raw(axis, TARGET), self._link.raw(axis, POSITION)
+        return None not in (target, position) and abs(target - position) > MOST_COUNTS_APART
 
     def _newest_error(self, node) -> str:
         told = next((event.text for event in reversed(self._link.events)

@@ -22,6 +22,11 @@ def stands(axes):
     return axes.positions == before
 
 
+daemon, axes = on_a_bus("shoulder")
+daemon.drives[0].targets[0x607A] = 5000
+axes.run(0.0)
+axes.enable()
+check("a target of a program that has died does not enable", daemon.drives[0].targets[0x607A] == 0)
 daemon, axes, drive = in_mode(1)
 axes.profile_move(2.0, velocity=3.0, acceleration=[40.0])
 check("a profile move ends at its target", axes.positions == [2.0] and not axes.moving)
