@@ -90,8 +90,8 @@ TEST_F(AxesObjects, OutputsAreHeldWhileTheProgramIsAlive) {
 
 TEST_F(AxesObjects, OutputsAreGivenUpAfterASilence) {
   Axes axes = open(2s);
-  ASSERT_TRUE(axes.set("io.0x6200:1", 0x5A));
-  ASSERT_TRUE(axes.run(10ms));
+  // A busy machine may make this program silent for 2 s.
+  ASSERT_TRUE(test::succeeds_at_last([&] { return axes.set("io.0x6200:1", 0x5A); }));
   std::this_thread::sleep_for(2100ms);
   const Obstacle lost = obstacle_of(axes.run(10ms));
   EXPECT_EQ(lost.kind, Kind::stopped);

@@ -43,4 +43,14 @@ class LinkInVirtualTime final : public Transport {
   std::deque<std::pair<std::string, std::vector<std::byte>>> arriving_;
 };
 
+/// Repeats a call of Axes that depends on the clock of the machine, at most ten times. Returns true
+/// if it has succeeded.
+template <class Call>
+bool succeeds_at_last(Call call) {
+  for (int i = 0; i < 10; ++i) {
+    if (call()) return true;
+  }
+  return false;
+}
+
 }  // namespace takt::test
