@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "apps/axis/not_ready.hpp"
+#include "apps/command_line/failure.hpp"
 #include "apps/move/held_axes.hpp"
 #include "apps/move/sine.hpp"
 
@@ -16,7 +17,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int exit_good = 0;
 constexpr int exit_not_followed = 1;
-constexpr int exit_wrong_use = 2;
 constexpr int exit_no_daemon = 3;
 
 /// Duration of the motion if there is no --for and the move leaves time for a sine, seconds.
