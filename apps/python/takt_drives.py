@@ -22,9 +22,9 @@ LOW_TIME = 0.1  # seconds for which bit 7 of the controlword is low before its r
 
 
 class Drives:
-    """Sends controlwords and modes while a state or a mode changes. In the modes in which taktd
-    moves axes, the values stay valid after that as long as this program gives signs of life; in
-    other modes they are sent from each image."""
+    """Sends controlwords and modes while a state or a mode changes, and until the first motion has
+    begun. In the modes in which taktd moves axes, the values stay valid after that as long as this
+    program gives signs of life; in other modes they are sent from each image."""
 
     def __init__(self, link: Link):
         self._link = link
@@ -32,6 +32,7 @@ class Drives:
             axis.change_mode(CYCLIC_SYNCHRONOUS_POSITION)
         self.words = None  # the controlword for each state, while it is sent
         self.readiness = IDLE
+        self._has_begun = False  # a motion of taktd, since the drives were enabled
         link.in_each_cycle.append(self._send)
 
     def enable(self) -> str:
@@ -40,6 +41,7 @@ class Drives:
         for axis in link.axes:
             axis.change_mode(CYCLIC_SYNCHRONOUS_POSITION)
             axis.has_own_target |= not axis.enabled and self._target_is_far(axis)
+        self._has_begun &= link.commanding
         self.words, self.readiness, link.commanding = ENABLING, IDLE, True
 
         def no_motions() -> str:
@@ -232,12 +234,15 @@ class Drives:
         return told or f"its newest error is 0x{node.emcys[0] & 0xFFFF:04X}"
 
     def _send(self) -> None:
-        if self.words is None:
+        link = self._link
+        self._has_begun |= any(map(moves, link.axes))
+        waits = self.words is None and link.commanding and not self._has_begun
+        if self.words is None and not waits:
             return
         values = {}
         for axis in self._link.axes:
             halt = HALT if self.readiness == HALTED and axis.enabled else 0
-            word = axis.controlword(self.words) | halt
+            word = axis.controlword(self.words or KEEPING) | halt
             for index, value in ((CONTROLWORD, word), (MODE, axis.mode),
                                  (TARGET, self._target(axis))):
                 if index in axis.places and value is not None:

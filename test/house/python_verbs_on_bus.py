@@ -26,6 +26,7 @@ def near(axes, position, most=0.01):
 
 with Axes("verbs", "slide", longest=30) as axes:
     axes.enable()
+    axes.run(0.5)  # longer than the time in on_timeout
     axes.move(0.1, velocity=0.5, acceleration=5)
     axes.jog(0.1)
     axes.halt()

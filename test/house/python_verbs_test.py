@@ -46,6 +46,13 @@ daemon, axes = on_a_bus("shoulder")
 kinds = {obstacle(axes.halt)[0], obstacle(axes.quick_stop)[0]}
 check("an axis that is not enabled is not halted", kinds == {"blocked"} and not daemon.sender, kinds)
 
+daemon, axes = on_a_bus("shoulder")
+axes.enable()
+axes.run(1.0)
+check("taktd needs controlwords until a motion has begun", daemon.word_cycle > daemon.cycle - 5)
+axes.jog(0.1)
+axes.run(1.0)
+check("and signs of life after that", daemon.word_cycle < daemon.cycle - 50)
 
 daemon, axes = on_a_bus("shoulder", longest=SHORT)
 axes.run(0.1)
