@@ -307,7 +307,7 @@ Done Axes::State::stop_set_points() {
                     text_of_each(led, "{} still moves: its statusword is 0x{:04X}"));
   }
   if (positioned.empty()) return {};
-  if (Done done = hand_over(positioned, actual_positions(), SetPointTiming::at_once); !done) {
+  if (Done done = hand_over(positioned, actual_positions(), SetPointTiming::immediately); !done) {
     return done;
   }
   if (readiness_ == Readiness::halted) return {};

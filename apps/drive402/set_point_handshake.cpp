@@ -31,7 +31,7 @@ std::uint16_t SetPointHandshake::step(std::uint16_t statusword) noexcept {
   } else if (phase_ == Phase::raised && seen) {
     phase_ = Phase::lowered;
   }
-  const std::uint16_t change = timing_ == SetPointTiming::at_once ? at_once : 0;
+  const std::uint16_t change = timing_ == SetPointTiming::immediately ? at_once : 0;
   return phase_ == Phase::raised ? new_set_point | change : change;
 }
 

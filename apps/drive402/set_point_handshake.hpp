@@ -12,7 +12,7 @@ class SetPointHandshake {
  public:
   /// Starts a handshake for a new target in 0x607A. If a handshake is running, another one follows
   /// it.
-  void begin(SetPointTiming timing = SetPointTiming::at_once) noexcept;
+  void begin(SetPointTiming timing = SetPointTiming::immediately) noexcept;
   /// Returns bits 4 and 5 of the controlword (new set-point, change at once) that answer this
   /// statusword. Bit 5 is set unless the set-point waits for the one before it.
   std::uint16_t step(std::uint16_t statusword) noexcept;
@@ -27,8 +27,8 @@ class SetPointHandshake {
   enum class Phase : std::uint8_t { idle, before, raised, lowered };
   Phase phase_ = Phase::idle;
   bool again_ = false;
-  SetPointTiming timing_ = SetPointTiming::at_once;
-  SetPointTiming next_timing_ = SetPointTiming::at_once;  // of the handshake that follows
+  SetPointTiming timing_ = SetPointTiming::immediately;
+  SetPointTiming next_timing_ = SetPointTiming::immediately;  // of the handshake that follows
 };
 
 }  // namespace takt

@@ -43,7 +43,7 @@ enum class DriveMode : std::int8_t {
 /// When a drive in profile position mode begins to move to a new set-point. CiA 402-2, bit 5 of the
 /// controlword.
 enum class SetPointTiming : std::uint8_t {
-  at_once,        ///< It replaces the set-points before it.
+  immediately,    ///< It replaces the set-points before it.
   after_the_last  ///< The drive first reaches the set-point before it.
 };
 

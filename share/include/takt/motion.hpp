@@ -117,7 +117,7 @@ struct ProfileMove {
   /// True: by distances from the newest targets, or from the actual positions after a stop. The
   /// drives get absolute positions, so that taktd can check them.
   bool relative = false;
-  SetPointTiming timing = SetPointTiming::at_once;  ///< when the drives begin
+  SetPointTiming timing = SetPointTiming::immediately;  ///< when the drives begin
   bool wait = true;  ///< false: the call returns when the drives have taken the targets
 };
 
