@@ -46,10 +46,10 @@ TEST_F(AxesPoints, TheBootOpensTheBufferAndEnablingActivatesTheMode) {
 }
 
 TEST_F(AxesPoints, AMoveIsOnePointInEachCycle) {
-  Axes axes = open();
-  ASSERT_NO_FATAL_FAILURE(enable(axes));
   std::int64_t most = 0;
   int inactive = 0;
+  Axes axes = open();
+  ASSERT_NO_FATAL_FAILURE(enable(axes));
   bus_.each_cycle = [&] {
     most = std::max(most, value(0, 0x60C4, 4));
     inactive += (value(0, 0x6041) & mode_is_active) == 0 ? 1 : 0;
@@ -64,10 +64,10 @@ TEST_F(AxesPoints, AMoveIsOnePointInEachCycle) {
 }
 
 TEST_F(AxesPoints, AModeThatEndsStopsBothAxesAndNamesIt) {
-  Axes axes = open();
-  ASSERT_NO_FATAL_FAILURE(enable(axes));
   const NodeId node = bus_.network.plan.nodes[bus_.axes[0].node_index].id;
   int cycles = 0;
+  Axes axes = open();
+  ASSERT_NO_FATAL_FAILURE(enable(axes));
   bus_.each_cycle = [&] {
     constexpr int in_motion = 500;
     if (++cycles == in_motion) bus_.world.device(node)->objects().find({0x60C4, 6})->set(0);
