@@ -15,6 +15,7 @@
 #include <sched.h>
 #include <signal.h>
 #include <sys/types.h>
+#include <sys/wait.h>
 #include <time.h>
 
 typedef long long Nanoseconds;
@@ -30,7 +31,14 @@ static int (*host_sigsuspend)(const sigset_t*);
 static pid_t (*host_waitpid)(pid_t, int*, int);
 static int (*host_clone)(int (*)(void*), void*, int, void*, ...);
 
+/* UML looks at its clock at each tick of its kernel, 80 ms of processor time at most. Where a look
+ * finds more, the machine has stood still under the host, or a host process has got the number of
+ * a process of the guest that has ended: nobody in the guest has worked in this time. */
+static const Nanoseconds longest_step = 100000000;
+
 static Nanoseconds idle;         /* the sum of all jumps */
+static Nanoseconds seen;         /* processor time at the last look */
+static Nanoseconds lost;         /* processor time in which nobody in the guest has worked */
 static Nanoseconds of_processes; /* processor time of the guest's processes */
 static Nanoseconds booted;       /* processor time that the kernel took until its first process */
 static pid_t last;               /* the process that UML waited for last; the others stand still */
@@ -64,7 +72,12 @@ static void count(void) {
 
 static Nanoseconds used(void) {
   count();
-  return processor_time(CLOCK_PROCESS_CPUTIME_ID) + of_processes;
+  const Nanoseconds found = processor_time(CLOCK_PROCESS_CPUTIME_ID) + of_processes - lost;
+  const Nanoseconds step = found - seen;
+  const Nanoseconds more = speed > 1 && step > longest_step ? step - longest_step : 0;
+  lost += more;
+  seen = found - more;
+  return seen;
 }
 
 static Nanoseconds now(void) { return idle + (used() - booted) / speed + booted; }
@@ -157,7 +170,12 @@ pid_t waitpid(pid_t process, int* status, int options) {
     last = process;
     counted = processor_time(clock_of(process));
   }
-  return host_waitpid(process, status, options);
+  int found = 0;
+  const pid_t heard = host_waitpid(process, &found, options);
+  const int has_ended = heard > 0 && (WIFEXITED(found) || WIFSIGNALED(found));
+  if (has_ended) last = 0; /* The host may give its number to another process. */
+  if (heard > 0 && status) *status = found;
+  return heard;
 }
 
 __attribute__((constructor)) static void find_functions(void) {
