@@ -65,20 +65,18 @@ def record(binaries, folder, network, url):
         check(asked.returncode == 0 and named.exists() and named.parent == box, "takt record names the file", asked)
         if '"recorded"' not in events.read_text():
             sys.exit("recordings are no events")
-        before = len(recordings_with(box, ""))
         # Both signals wait for it: it is to stop at once, and still writes what it has.
         daemon.send_signal(signal.SIGSTOP)
         daemon.send_signal(signal.SIGTERM)
         daemon.send_signal(signal.SIGINT)
         daemon.send_signal(signal.SIGCONT)
-        if daemon.wait(180) == 0 or len(recordings_with(box, "")) == before:
+        if daemon.wait(180) == 0 or not recordings_with(box, "the ordered stop did not end"):
             sys.exit(f"two signals: exit {daemon.returncode}, {sorted(box.iterdir())}")
     finally:
         node.kill()
         daemon.kill()
-    of_the_fault = recordings_with(box, "heartbeat lost")[0]
-    newest = max(box.glob("*.log"), key=lambda log: log.stat().st_mtime_ns)
-    return pathlib.Path(str(of_the_fault).replace(".events.json", ".log")), newest
+    return [pathlib.Path(str(recordings_with(box, words)[0]).replace(".events.json", ".log"))
+            for words in ("heartbeat lost", "the ordered stop did not end")]
 
 
 def check_foreign_texts(binaries, folder, log):
@@ -112,8 +110,8 @@ def main(binaries):
         with socket.create_server(("127.0.0.1", 0)) as free:
             port = str(free.getsockname()[1])
         network.write_text(NETWORK.replace("PORT", port))
-        first, newest = record(binaries, folder, network, f"tcpq://127.0.0.1:{port}")
-        last = replay(binaries, newest, "--quiet")
+        first, last_one = record(binaries, folder, network, f"tcpq://127.0.0.1:{port}")
+        last = replay(binaries, last_one, "--quiet")
         check(last.returncode == 0 and "the ordered stop did not end" in last.stdout, "the end replays", last)
 
         good = replay(binaries, first)

@@ -1,22 +1,7 @@
 #!/bin/sh
 # python_axes_test.sh BIN PYTHON - the Python examples move axes of the demo.
-set -eu
-here=$(cd "$(dirname "$0")/../.." && pwd)
-bin=$1 python=$2
-tmp=$(mktemp -d)
-daemon=
-end() {
-  [ -z "$daemon" ] || { kill "$daemon" && wait "$daemon"; } 2>/dev/null || true
-  rm -rf "$tmp"
-}
-trap end EXIT
-lcm-gen -p --ppath "$tmp" "$here"/share/lcm/*.lcm
-
-export LCM_DEFAULT_URL=tcpq://127.0.0.1:$((20000 + $$ % 12000))
-"$bin/taktd" "$here/share/demo/two_axes.yaml" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/log" &
-daemon=$!
-for _ in $(seq 600); do grep -q 'serving' "$tmp/log" && break || sleep 0.1; done
-fails() { cat "$tmp/log" "$tmp/said" >&2; exit 1; }
+. "$(dirname "$0")/python_on_bus.sh"
+start_taktd "$here/share/demo/two_axes.yaml"
 PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/axes.py" demo 2 >"$tmp/said" 2>&1 || fails
 motion() { PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/motion.py" demo "$@" >"$tmp/said" 2>&1; }
 moves() { motion shoulder 1.5 --velocity 3 --acceleration 20 && grep -q '^the motion is done: shoulder is at 1\.[45]' "$tmp/said"; }
@@ -35,10 +20,7 @@ with Axes("demo", "shoulder", "elbow") as axes:
 }
 homes || fails
 # An inverter is an axis too. Its program stops it, and so does taktd when the program is gone.
-kill "$daemon" && wait "$daemon" || true
-"$bin/taktd" "$here/share/demo/astraada_drv28.yaml" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/log" &
-daemon=$!
-for _ in $(seq 600); do grep -q 'serving' "$tmp/log" && break || sleep 0.1; done
+start_taktd "$here/share/demo/astraada_drv28.yaml"
 runs() {
   PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/first_speed.py" >"$tmp/said" 2>&1
   grep -qF "['pump'] [20.0] ['Hz']" "$tmp/said"

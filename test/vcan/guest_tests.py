@@ -31,6 +31,7 @@ libc = ctypes.CDLL(None, use_errno=True)
 
 def become(command, recordings):
     """In the process of the test: what a shell would do for it."""
+    os.dup2(sys.stdout.fileno(), sys.stderr.fileno())
     if libc.unshare(CLONE_NEWNET) != 0:
         raise OSError(ctypes.get_errno(), "no network namespace")
     subprocess.run(["ip", "-batch", "-"], input=NETWORK, text=True, check=True)
@@ -54,6 +55,9 @@ def start(command, recordings):
         become(command, recordings)
     except SystemExit as end:
         code = end.code or 0
+        if not isinstance(code, int):  # sys.exit("what went wrong")
+            print(code)
+            code = 1
     except BaseException:
         traceback.print_exc()
         code = 1
