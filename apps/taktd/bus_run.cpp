@@ -16,7 +16,6 @@ namespace takt {
 namespace {
 
 constexpr Time stop_margin = std::chrono::seconds{1};  // beyond the limit of the ordered stop
-constexpr std::size_t heap_bytes = 8 << 20;
 
 }  // namespace
 
@@ -32,7 +31,6 @@ BusRun::BusRun(LoadedNetwork network, const FrontThread& front)
 
 std::optional<Exit> BusRun::start() {
   const bool observe = front_.options.observe;
-  prefault_heap(heap_bytes);
   master_ = std::make_unique<MasterRun>(network_.plan, MasterRunOptions{.observe = observe});
   bus_->attach(*master_, recorder_.journal());
   const auto started = master_->start([this](std::function<void()> body) {

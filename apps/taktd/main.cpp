@@ -15,6 +15,7 @@
 #include "eds_parser/network_file/load_network.hpp"
 #include "master/lcm/envelope/key_file.hpp"
 #include "master/lcm/printable_text.hpp"
+#include "master/linux/rt_thread.hpp"
 
 namespace takt {
 namespace {
@@ -61,6 +62,7 @@ Exit run(const DaemonOptions& options) {
   fits_the_bus(network, options.network_file, "warning: ");
   std::vector<LoadedNetwork> networks;
   networks.push_back(std::move(network));
+  prepare_memory();
   Daemon daemon{std::move(networks), options};
   return daemon.run();
 }

@@ -129,13 +129,15 @@ bool prefer_this_thread() noexcept {
          setpriority(PRIO_PROCESS, 0, highest) == 0;
 }
 
-void prefault_heap(std::size_t bytes) {
+void prepare_memory() {
+  constexpr std::size_t stack_bytes = 512 * 1024;
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, stack_bytes);
+  pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
   mallopt(M_TRIM_THRESHOLD, -1);
   mallopt(M_MMAP_MAX, 0);
-  const std::unique_ptr<char, decltype(&std::free)> block{static_cast<char*>(std::malloc(bytes)),
-                                                          &std::free};
-  if (!block) return;
-  for (std::size_t i = 0; i < bytes; i += 4096) *const_cast<volatile char*>(block.get() + i) = 0;
 }
 
 std::string to_string(const RtReport& report) {

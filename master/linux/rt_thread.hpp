@@ -41,9 +41,10 @@ RtReport apply_realtime(const RealtimeOptions& options);
 /// allow it (RLIMIT_NICE).
 bool prefer_this_thread() noexcept;
 
-/// Makes the heap keep its memory (no trimming, no mmap of single blocks) and touches `bytes` of
-/// it, so that later allocations cause no page fault. To be called once, before the threads start.
-void prefault_heap(std::size_t bytes);
+/// Makes the heap keep its memory (no trimming, no mmap of single blocks), so that later
+/// allocations cause few page faults, and gives later threads stacks of 512 KiB: the whole stack of
+/// a thread counts as used once memory is locked. To be called once, before the threads start.
+void prepare_memory();
 
 /// Starts a thread with real-time properties, and returns when `report` tells what the machine has
 /// granted. If the report does not permit the thread to run, the thread ends without calling

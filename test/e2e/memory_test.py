@@ -1,0 +1,38 @@
+#!/usr/bin/env python3
+"""memory_test.py BIN: a taktd with sixteen nodes and locked memory has at most 10 MB for itself."""
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+LIMIT_KB = 10_000
+PATIENCE = 180  # s
+
+
+def main(binaries):
+    with tempfile.TemporaryDirectory() as name:
+        log = pathlib.Path(name) / "log"
+        command = [f"{binaries}/taktd", ROOT / "share/demo/sixteen_nodes.yaml", "--bus", "sim", "--lcm-url", "memq://"]
+        with log.open("w") as out:
+            daemon = subprocess.Popen(command, stdout=out, stderr=out)
+        try:
+            until = time.monotonic() + PATIENCE
+            while "the network is ready" not in log.read_text():
+                if time.monotonic() > until or daemon.poll() is not None:
+                    sys.exit(f"taktd is not ready:\n{log.read_text()}")
+                time.sleep(0.05)
+            locked = "memory locked" in log.read_text()
+            status = pathlib.Path(f"/proc/{daemon.pid}/status").read_text()
+        finally:
+            daemon.kill()
+            daemon.wait()
+    private = int(re.search(r"RssAnon:\s+(\d+) kB", status)[1])
+    print(f"taktd has {private} kB for itself, at most {LIMIT_KB}; memory locked: {locked}")
+    return private > LIMIT_KB or not locked
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))
