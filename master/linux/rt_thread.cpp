@@ -1,13 +1,11 @@
 #include "master/linux/rt_thread.hpp"
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <future>
 #include <linux/capability.h>
 #include <malloc.h>
-#include <memory>
 #include <pthread.h>
 #include <sched.h>
 #include <string_view>

@@ -41,9 +41,10 @@ RtReport apply_realtime(const RealtimeOptions& options);
 /// allow it (RLIMIT_NICE).
 bool prefer_this_thread() noexcept;
 
-/// Makes the heap keep its memory (no trimming, no mmap of single blocks), so that later
-/// allocations cause few page faults, and gives later threads stacks of 512 KiB: the whole stack of
-/// a thread counts as used once memory is locked. To be called once, before the threads start.
+/// Prepares the memory of the process. Call this function once, before any thread starts. From then
+/// on, the heap returns no memory to the kernel, so that later allocations cause few page faults.
+/// Each later thread has a stack of 512 KiB, because locked memory includes the whole stack, not
+/// only the part that the thread uses.
 void prepare_memory();
 
 /// Starts a thread with real-time properties, and returns when `report` tells what the machine has

@@ -69,7 +69,7 @@ sed "s#\.\./eds/#$prefix/share/takt/eds/#; s/name: demo/name: other/" "$demo" >"
 "$prefix/bin/taktd" "$tmp/other.yaml" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/hub" &  # the others talk by way of it
 hub=$!
 started=$hub
-until grep -q 'the network is ready' "$tmp/hub"; do kill -0 "$hub" && sleep 0.1; done
+until grep -q 'the network is ready' "$tmp/hub"; do kill -0 "$hub"; sleep 0.1; done
 example_of_readme() { exec "$tmp/by_cmake/example" 2>>"$tmp/example_log"; }
 example_of_readme &
 example=$!
