@@ -43,8 +43,8 @@ bool prefer_this_thread() noexcept;
 
 /// Prepares the memory of the process. Call this function once, before any thread starts. From then
 /// on, the heap returns no memory to the kernel, so that later allocations cause few page faults.
-/// Each later thread has a stack of 512 KiB, because locked memory includes the whole stack, not
-/// only the part that the thread uses.
+/// Each later thread has a stack of 512 KiB beside its thread-local variables, because locked
+/// memory includes the whole stack, not only the part that the thread uses.
 void prepare_memory();
 
 /// Starts a thread with real-time properties, and returns when `report` tells what the machine has

@@ -90,7 +90,10 @@ TEST(LineWriter, CountsWhatAFullDiskRefuses) {
 
   EXPECT_TRUE(file->flush(60s));
   EXPECT_EQ(file->take_lost(), 3U);
-  EXPECT_EQ(LineWriter::open("/nonexistent/events"), nullptr);
+}
+
+TEST(LineWriter, RefusesAFileBelowSomethingThatIsNoFolder) {
+  EXPECT_EQ(LineWriter::open("/dev/full/events"), nullptr);
 }
 
 TEST(LineWriter, RefusesAPipeThatNobodyReadsInsteadOfWaitingForAReader) {
