@@ -15,9 +15,9 @@ struct FollowOptions {
   double ratio = 1.0;
   std::optional<double> phase;
   double modulo = 0.0;
-  Time filter_time{};  ///< 0: that of taktd
+  Time filter_time{};  ///< 0: the default of taktd
   double max_phase_error = 0.0;
-  double velocity = 0.0;  ///< 0: that of the network file, as for the next two
+  double velocity = 0.0;  ///< 0: the limit of the network file; acceleration and jerk alike
   double acceleration = 0.0;
   double jerk = 0.0;
   std::optional<Time> seconds;  ///< time for which the axis follows

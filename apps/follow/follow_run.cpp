@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-/// Time between two lines of the terminal.
+/// Time between two updates of the line on the terminal.
 constexpr std::chrono::milliseconds look{100};
 
 Eigen::VectorXd one(double value) { return Eigen::VectorXd::Constant(1, value); }
@@ -27,7 +27,7 @@ Done FollowRun::run() {
   return followed || asked ? disabled : followed;
 }
 
-/// Follows until the time is over, which counts while the axis is locked.
+/// Follows the leader until the time is over. Only the time in which the axis is locked counts.
 Done FollowRun::follow() {
   Gear gear{.leader = options_.leader,
             .signal = options_.signal,
@@ -42,7 +42,7 @@ Done FollowRun::follow() {
   if (Done begun = axes_.gear(gear, bounds); !begun) return begun;
   for (Time locked{}; !options_.seconds || locked < *options_.seconds;) {
     if (const Done done = axes_.run(look); !done) return done;
-    if (!axes_.moving()) return axes_.wait();  // it has stopped by itself: says why
+    if (!axes_.moving()) return axes_.wait();  // the axis has stopped by itself: returns the reason
     if (axes_.locked()) locked += look;
     show(axes_.locked() ? "follows" : "approaches");
   }

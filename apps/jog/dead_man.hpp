@@ -5,9 +5,9 @@
 
 namespace takt {
 
-/// Tells from the characters of a terminal for how long a key is held. A terminal does not report
-/// that a key is released. It repeats the key while it is held. The first repetition comes after a
-/// delay of usually 250 to 660 ms, and the others follow every 20 to 50 ms.
+/// Determines from the characters of a terminal for how long a key is held. A terminal does not
+/// report that a key is released. It repeats the key while it is held. The first repetition comes
+/// after a delay of usually 250 to 660 ms, and the others follow every 20 to 50 ms.
 ///
 ///     released --press--> pressed --press--> held
 ///        ^                   | nothing for     | nothing for
@@ -24,9 +24,9 @@ class DeadMan {
 
   explicit DeadMan(Times times) : times_{times} {}
 
-  /// A character of this direction has come: 1 or -1.
+  /// To be called when a character of this direction, 1 or -1, has come.
   void press(int direction, Time now) noexcept;
-  /// Another key was pressed, or the program has stood still.
+  /// To be called when another key was pressed or the program was stalled.
   void release() noexcept { state_ = State::released; }
   /// Returns 1 or -1 while the key of this direction is held, else 0.
   int direction(Time now) noexcept;

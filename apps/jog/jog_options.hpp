@@ -13,7 +13,7 @@ struct JogOptions {
   double velocity = 0.0;
   /// Empty: the axis reaches its velocity in a quarter of a second.
   std::optional<double> acceleration;
-  double jerk = 0.0;  ///< 0: that of the network file
+  double jerk = 0.0;  ///< 0: the limit of the network file
   Time first = std::chrono::milliseconds{700};
   Time dead_man = std::chrono::milliseconds{250};
   std::optional<Time> seconds;  ///< duration of a jog without a keyboard

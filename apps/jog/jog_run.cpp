@@ -11,9 +11,10 @@ namespace {
 
 /// Time to the full velocity without --acceleration, seconds.
 constexpr double usual_ramp = 0.25;
-/// Time between two looks at the keyboard.
+/// Period in which the program reads the keyboard.
 constexpr std::chrono::milliseconds look{10};
-/// Keys that have waited for longer say nothing about what the user holds now.
+/// If the program has not read the keyboard for longer than this, it discards the keys that have
+/// come meanwhile: they may be older than the release of the key.
 constexpr std::chrono::milliseconds oldest_key{100};
 
 Time now() { return std::chrono::steady_clock::now().time_since_epoch(); }
@@ -49,7 +50,7 @@ Done JogRun::run() {
 Done JogRun::jog_for(Time time) {
   Done done = turn_to(1);
   if (done) done = axes_.run(time);
-  if (done && !axes_.moving()) done = axes_.wait();  // it has stopped by itself: says why
+  if (done && !axes_.moving()) done = axes_.wait();  // returns why the axis has stopped
   return done ? axes_.stop() : done;
 }
 
@@ -63,7 +64,7 @@ Done JogRun::jog_by_keys() {
     if (done && direction_ != 0 && !axes_.moving()) done = axes_.wait();
     if (done && wanted != direction_) {
       done = turn_to(wanted);
-      keyboard.forget();  // what has come meanwhile may be older than the release of the key
+      keyboard.forget();  // keys that have come meanwhile may be older than the release
       last_look_ = now();
     }
     show(direction_ == 0 ? "stands" : "moves");

@@ -7,8 +7,8 @@ namespace takt {
 /// Keys that takt-jog knows.
 enum class JogKey : std::uint8_t { none, forward, backward, end, other };
 
-/// The keys of the terminal, which does not echo them meanwhile. The destructor puts the terminal
-/// back. stdin must be a terminal.
+/// Reads the keys of the terminal and switches its echo off. The destructor restores the terminal.
+/// stdin must be a terminal.
 class Keyboard {
  public:
   Keyboard();

@@ -25,7 +25,7 @@ constexpr std::int32_t statusword = 0x6041;
 
 }  // namespace
 
-/// Finds what the names of the rules mean on one bus.
+/// Binds the names in the rules to the signals of one bus.
 class LogicProgram::Binder {
  public:
   Binder(LogicProgram& program, const std::vector<signal_t>& signals,
@@ -85,7 +85,8 @@ class LogicProgram::Binder {
     return std::nullopt;
   }
 
-  /// The target of a rule has the value that the rule gives it, before the bus has taken it.
+  /// Returns the source of a name. The target of a rule has the value that the rule has set, even
+  /// before the bus has taken it.
   std::optional<Source> source(std::string_view name) const {
     for (std::size_t i = 0; i < program_.rules_.size(); ++i) {
       if (program_.rules_[i].target == name) return Source{.kind = Kind::target, .place = i};

@@ -15,7 +15,7 @@ struct Comparison {
   std::string_view sign;
   Operation operation;
 };
-/// Longer signs come before those that they begin with.
+/// The parser takes the first sign that fits, so `<=` comes before `<`.
 constexpr std::array<Comparison, 6> comparisons{{{"==", Operation::equal},
                                                  {"!=", Operation::unequal},
                                                  {"<=", Operation::at_most},
@@ -114,7 +114,7 @@ class Parser {
     return true;
   }
 
-  /// What stands between parentheses, and the closing one.
+  /// Reads the expression between parentheses, and the closing parenthesis.
   bool inside() {
     if (!enter() || !either()) return false;
     --depth_;
@@ -140,7 +140,7 @@ class Parser {
     return good ? std::optional{value} : std::nullopt;
   }
 
-  /// A word may begin with a sign, as a number does.
+  /// Returns the length of the next word. A word may begin with `-`, as a number does.
   std::size_t word_length() const {
     std::size_t end = at_;
     if (end < text_.size() && text_[end] == '-') ++end;

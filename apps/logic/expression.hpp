@@ -33,8 +33,8 @@ struct NameUse {
 /// One step: a number, a name or an operation.
 using Step = std::variant<double, NameUse, Operation>;
 
-/// An expression as steps of a stack: operands come before their operation. Each step runs each
-/// time, so that no edge is missed.
+/// An expression in postfix notation: operands come before their operation. Each evaluation runs
+/// all steps, so that no edge is missed.
 struct Expression {
   static constexpr std::size_t most_text = 2000;  ///< characters
   static constexpr int most_depth = 50;           ///< parentheses and `not` inside each other

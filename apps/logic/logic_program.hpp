@@ -13,8 +13,8 @@
 namespace takt {
 
 /// Rules that are bound to the layout of a bus. step() evaluates all of them once, in the order of
-/// the file. A rule sees the markers of rules before it as they are now, and those of later rules
-/// as the image before has left them, so that rules may refer to each other.
+/// the file. A rule sees the markers of earlier rules as they are now, and the markers of later
+/// rules as they were after the previous image. Rules may therefore refer to each other.
 ///
 /// A rule that reads an input whose PDO is missing is off, and its delays begin anew.
 class LogicProgram {
@@ -25,23 +25,24 @@ class LogicProgram {
     std::int64_t raw = 0;
   };
 
-  /// Binds the rules. What does not fit the layout is appended to `findings`: unknown names,
-  /// outputs that are none, outputs of axes (of nodes in `axes`), values that do not fit.
+  /// Binds the rules. Appends to `findings` what does not fit the layout: unknown names, targets
+  /// that are inputs, outputs of axes (of nodes in `axes`), and values that do not fit their
+  /// output.
   LogicProgram(std::vector<Rule> rules, const std::vector<signal_t>& signals,
                std::span<const std::int16_t> axes, const std::string& file, Findings& findings);
 
   /// Evaluates all rules with this image. `passed` is the time since the image before.
   void step(const ImageInput& input, Time passed);
 
-  /// Returns the values of all outputs of the nodes of which rules set outputs. Those without a
-  /// rule are 0: the device gets an RPDO only if each output in it has a value.
+  /// Returns the values of all outputs of each node that has at least one rule. Outputs without a
+  /// rule are 0, because the device gets an RPDO only if each output in it has a value.
   const std::vector<Output>& outputs() const noexcept { return outputs_; }
   /// Returns the names of all inputs that rules read, and of all targets.
   std::vector<std::string> names() const;
   /// Returns the values of these names with the image of the newest step().
   std::vector<double> values(const ImageInput& input) const;
-  /// Returns the value of the target of a rule: of a marker or counter its number, of an output 1
-  /// while it is on, else 0.
+  /// Returns the value of the target of a rule. For a marker or counter it is the number; for an
+  /// output it is 1 while the output is on, else 0.
   double value(std::size_t rule) const { return states_[rule].value; }
 
  private:

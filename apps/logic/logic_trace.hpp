@@ -13,8 +13,8 @@ class LogicTrace {
  public:
   static constexpr std::size_t most_changes = 20'000;
 
-  /// Takes the values of one image; `time` is that of the bus in seconds. There are as many values
-  /// each time.
+  /// Takes the values of one image; `time` is that of the bus in seconds. Each call has the same
+  /// number of values.
   void take(double time, const std::vector<double>& values);
   /// Returns a picture with a low panel for each value.
   Plot plot(std::string title, const std::vector<std::string>& names) const;

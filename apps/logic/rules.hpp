@@ -29,8 +29,8 @@ enum class RuleKind : std::uint8_t {
   count,  ///< the target counts how often `first` has become true; `second` resets it
 };
 
-/// One rule of the file. A target with a point is an output or one bit of it; one without is a
-/// marker, which only rules see.
+/// One rule of the file. A target whose name has a point is an output, or one bit of it. Any other
+/// target is a marker, which only rules see.
 struct Rule {
   RuleKind kind = RuleKind::set;
   std::string target;
@@ -40,7 +40,7 @@ struct Rule {
   Time on_delay{0};
   Time off_delay{0};
   double on_value = 1.0;   ///< of the target while it is on, in the unit of the output
-  double off_value = 0.0;  ///< the same while it is off
+  double off_value = 0.0;  ///< of the target while it is off
 };
 
 /// Largest number of rules in a file.

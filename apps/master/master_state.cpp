@@ -12,7 +12,7 @@
 namespace takt {
 namespace {
 
-/// Pause between two looks for an image that is later than predicted.
+/// Period in which the program polls for an image that is later than predicted.
 constexpr Time look = std::chrono::microseconds{200};
 constexpr std::string_view virtual_bus = "virtual";
 

@@ -8,7 +8,7 @@
 namespace takt {
 namespace {
 
-/// Farthest from the line at which a point is left out, pixels.
+/// Largest distance from the line at which a point is left out, in pixels.
 constexpr double flat = 0.15;
 
 /// Width of a column, pixels.

@@ -15,7 +15,8 @@ struct Curve {
   Stroke stroke = Stroke::thin;
 };
 
-/// Curves of one quantity over the time. The name of a low panel, below 60 pixels, stands above it.
+/// Curves of one quantity over the time. The name of a panel that is less than 60 pixels high is
+/// written above the panel.
 struct Panel {
   std::string quantity = {};  ///< "position"
   std::string unit = {};      ///< "rad"
@@ -23,7 +24,7 @@ struct Panel {
   double height = 130.0;  ///< pixels
 };
 
-/// An entry of the legend, which stands for all curves of this colour and stroke.
+/// An entry of the legend, which describes all curves of this colour and stroke.
 struct LegendEntry {
   std::string text = {};
   std::size_t colour = 0;

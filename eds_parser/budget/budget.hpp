@@ -13,19 +13,19 @@ struct BudgetRow {
   /// Latest end of the frame. For frames of the cycle the time counts from SYNC, for others from
   /// being queued. Empty if there is no bound.
   std::optional<Time> worst;
-  std::optional<Time> worst_in_burst;         ///< the same while every node sends an EMCY
-  std::optional<Time> worst_behind_services;  ///< the same with service frames in its queue
-  std::optional<Time> worst_steady;           ///< the same while no event-driven output changes
+  std::optional<Time> worst_in_burst;         ///< `worst` while every node sends an EMCY
+  std::optional<Time> worst_behind_services;  ///< `worst` with service frames in one queue
+  std::optional<Time> worst_steady;           ///< `worst` while no event-driven output changes
   Time limit{};                               ///< latest permitted end, for the reason `why`
   BudgetLimit why = BudgetLimit::none;
   Time cycle{};      ///< time of the next SYNC; 0 = not a frame of the cycle
-  Time tolerance{};  ///< how much the outputs may delay the next SYNC
+  Time tolerance{};  ///< longest permitted delay of the next SYNC by the outputs
 
   bool fits() const noexcept { return within(worst) || is_late_by_changes_only(); }
   bool fits_in_burst() const noexcept { return within(worst_in_burst); }
 
-  /// Returns whether an output delays the next SYNC by more than the tolerance, but only if all
-  /// event-driven outputs change at once. Such an output has no deadline of its own.
+  /// Returns whether this is an output that delays the next SYNC by more than the tolerance only if
+  /// all event-driven outputs change at once. Event-driven outputs have no deadline themselves.
   bool is_late_by_changes_only() const noexcept {
     return frame.is_output() && worst && !within(worst) && meets_limit(*worst) &&
            within(worst_steady);

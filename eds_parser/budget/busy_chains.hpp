@@ -16,8 +16,8 @@ class BusyChains : protected CycleFrames {
   using CycleFrames::CycleFrames;
 
   /// A period in which the bus is busy without a pause before one frame of the cycle. The bus is
-  /// busy with the frames that certainly go before it, and with those of higher priority that come
-  /// by themselves in this period.
+  /// busy with the frames that certainly go before it, and with the frames of higher priority that
+  /// devices send outside the cycle in this period.
   struct Busy {
     std::size_t at = 0;  ///< frames at lower positions of `frames_` go first
     Time since{};        ///< begin of the period
@@ -33,14 +33,15 @@ class BusyChains : protected CycleFrames {
   enum class LateSync : std::uint8_t {
     in_time,      ///< no output ends that late
     follows_up,   ///< a chain of late SYNCs, each followed by the device time
-    at_any_time,  ///< each SYNC by itself is as late as possible
+    at_any_time,  ///< each SYNC separately is as late as possible
   };
 
   std::optional<Time> end_of(const Busy& busy) const;
 
-  /// Bus time of the frames [first, end) of `frames_` that come by themselves within `within`. It
-  /// includes only the SDO answers to `rounds` rounds of requests (0 = no limit). A round lasts one
-  /// cycle or longer. A server is late by at most one round, and has no other request meanwhile.
+  /// Bus time of the frames [first, end) of `frames_` that devices send outside the cycle within
+  /// `within`. It includes only the SDO answers to `rounds` rounds of requests (0 = no limit). A
+  /// round lasts one cycle or longer. A server is late by at most one round, and has no other
+  /// request meanwhile.
   Time from_devices(std::size_t first, std::size_t end, int rounds, Time within) const;
 
   /// Bus time of the frames that come with the outputs and with later SYNCs, and that go before a
@@ -72,8 +73,8 @@ class BusyChains : protected CycleFrames {
   /// lowest frame of the master's queue although they do not go before `at`.
   Time follow_up(const Busy& busy, int cycles) const;
 
-  /// How late SYNC may be. It waits behind the outputs of the cycle before in the same transmit
-  /// queue.
+  /// How late SYNC may be because it waits behind the outputs of the previous cycle in the same
+  /// transmit queue.
   Time sync_late() const noexcept {
     if (!plan_.cycle.makes_sync()) return Time{0};
     return std::max(std::max(outputs_end_, services_end_) - plan_.cycle.period, Time{0});
@@ -86,7 +87,8 @@ class BusyChains : protected CycleFrames {
     return services_in_queue() && at >= lowest_service_;
   }
 
-  /// Also covers frames that wait behind SYNC in the same transmit queue.
+  /// Returns whether service frames delay the frame at `at`: because it has no higher priority, or
+  /// because it waits behind SYNC in the same transmit queue.
   bool services_count(std::size_t at) const noexcept {
     return waits_for_services(at) || (services_in_queue() && late_ == LateSync::follows_up);
   }
@@ -95,7 +97,7 @@ class BusyChains : protected CycleFrames {
     return std::max(services_end_ - plan_.cycle.output_deadline, Time{0});
   }
 
-  /// Bus time for which SYNC may have to wait. A service frame that follows the SYNC before is
+  /// Bus time for which SYNC may have to wait. A service frame that follows the previous SYNC is
   /// still in the queue only if the period is short enough.
   Time sync_blocking() const noexcept {
     const Time begun = std::max(sync_blocking_, late_input_);

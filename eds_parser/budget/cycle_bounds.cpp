@@ -86,8 +86,8 @@ class CycleAnalysis : BusyChains {
   }
 
   /// Finds the jitter of another device's SYNC. The analysis cannot distinguish a SYNC that waits
-  /// for the bus from one that was queued later, so the SYNCs before and behind it may be nearer by
-  /// this wait. Returns false if the wait has no bound.
+  /// for the bus from one that was queued later, so the time to the previous SYNC and to the next
+  /// one may be shorter by this wait. Returns false if the wait has no bound.
   bool find_sync_jitter() {
     if (!sync_ || plan_.cycle.makes_sync()) return true;
     const auto wait = end_of({.at = *sync_, .work = sync_blocking()});
@@ -130,7 +130,7 @@ class CycleAnalysis : BusyChains {
 
   /// Returns the end of an output behind the service frames of its cycle, or the end of these if
   /// `before` and `own` are 0. The service frames and their answers would end before the outputs if
-  /// no other frames came by themselves meanwhile.
+  /// devices sent no other frames outside the cycle meanwhile.
   std::optional<Time> end_in_queue(Time before, Time own) const {
     const std::size_t at = lowest_queued();
     const Time inputs = inputs_around(at);

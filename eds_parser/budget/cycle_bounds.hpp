@@ -13,7 +13,7 @@ enum class Emcys : std::uint8_t {
   one_of_each,  ///< every node sends one at the same moment
 };
 
-/// Whether the service frames of the master delay what it sends behind them.
+/// Whether the service frames of the master delay the frames that it sends after them.
 enum class Services : std::uint8_t {
   apart,     ///< no: they wait in a separate queue unless they have already begun
   in_queue,  ///< yes: one queue holds all frames of the master, as in SocketCAN

@@ -10,8 +10,8 @@
 
 namespace takt {
 
-/// The frames of a bus as they meet in a cycle. Its functions sum up the bus time of frames that
-/// may go before another frame; they do not compute points in time.
+/// The frames of a bus as they meet in a cycle. The functions of this class add the bus times of
+/// frames that may go before another frame. They do not compute points in time.
 class CycleFrames {
  protected:
   static constexpr std::size_t most_turns =
@@ -51,8 +51,8 @@ class CycleFrames {
   bool is_overloaded() const noexcept;
   bool has_turn(const TrafficFrame& frame, std::size_t cycle) const noexcept;
   Time by_themselves(std::size_t first, std::size_t end, Time within) const;
-  /// Bus time of the master's frames outside the cycle that go before `at`. They come when the
-  /// master no longer waits for a late TPDO.
+  /// Bus time of the master's frames outside the cycle that go before `at`. The master sends them
+  /// when it no longer waits for a late TPDO.
   Time by_master(std::size_t at) const { return work_before(at, &TrafficFrame::is_service); }
   Time inputs_before(std::size_t at, std::size_t cycle) const {
     return work_before(
@@ -63,10 +63,10 @@ class CycleFrames {
   Time outputs_before(std::size_t at, std::size_t cycles_later) const;
   /// Bus time of the service frames that the master sends in `cycles` cycles. The master sends one
   /// only if it and its answer fit in before the outputs. If no cycle has room for that, the master
-  /// sends one now and then.
+  /// sends one in every `cycles_to_relief` cycles.
   Time services_in(int cycles) const noexcept;
-  /// The same for one cycle in which late TPDOs keep the master waiting until its receive window
-  /// ends.
+  /// Bus time of the service frames that the master sends in a cycle in which it waits for late
+  /// TPDOs until its receive window ends.
   Time services_behind_window() const noexcept;
   /// Returns whether a cycle has room for a request with its answer.
   bool has_room_for_services() const noexcept { return room_for_services() >= longest_service_; }
@@ -98,12 +98,12 @@ class CycleFrames {
   Time inputs_work_{};
   Time outputs_work_{};
   Time outputs_blocking_{};
-  Time queue_blocking_{};  ///< for service frames and outputs
+  Time queue_blocking_{};  ///< longest frame that may delay service frames and outputs
   Time sync_blocking_{};
   Time services_work_{};  ///< bus time of all service frames, each once
   Time longest_service_{};
   std::size_t lowest_service_ = 0;
-  Time services_before_sync_{};  ///< of the master's service frames that go before SYNC
+  Time services_before_sync_{};  ///< bus time of the master's service frames that go before SYNC
 
  private:
   /// Returns the time for requests in a cycle. The same time is left for their answers.
@@ -111,8 +111,8 @@ class CycleFrames {
   Time services_due(int cycles) const noexcept;
   /// Finds SYNC, the queue of the outputs, and the frames that may block them.
   void find_ends_of_cycle();
-  /// Counts the cycles until they repeat. They differ from each other if the turns of TPDOs are
-  /// certain.
+  /// Counts the cycles until they repeat. Cycles differ from each other if the SYNC counter
+  /// determines in which of them a TPDO is sent.
   void count_turns();
 
   std::size_t turns_ = 1;

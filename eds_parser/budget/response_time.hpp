@@ -11,12 +11,12 @@ namespace takt {
 /// Frames of one identifier: how often they come at most, and how long each takes on the wire.
 struct FrameStream {
   std::uint64_t priority =
-      0;               ///< a smaller value goes first, equal ones in any order; CAN: the identifier
+      0;  ///< a smaller value goes first, equal values in any order; on CAN this is the identifier
   Time frame{};        ///< with worst stuffing and interframe space
   Time period{};       ///< shortest distance between two frames; > 0
   Time jitter{};       ///< how much later than its period a frame may be queued
   unsigned burst = 1;  ///< number of frames at once in each period
-  bool counts = true;  ///< false: it delays no other stream
+  bool counts = true;  ///< false: this stream delays no other stream
 };
 
 /// Errors on the wire: `burst` errors at once, then at most one in each `interval`. 0 means no

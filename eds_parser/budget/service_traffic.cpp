@@ -25,7 +25,8 @@ ServiceShare service_share(const BusPlan& plan, double load_of_others) noexcept 
   const Time round = cycle.period >= long_cycle ? round_distance : cycle.period;
   const Time share =
       std::max(slack, Time{0}) * round.count() / std::max<Time::rep>(cycle.period.count(), 1);
-  // If no cycle has room for a request with its answer, the master still sends one now and then.
+  // If no cycle has room for a request with its answer, the master still sends one in every
+  // `cycles_to_relief` cycles.
   if (share < pair) return {.dialogues = 1, .round = cycles_to_relief * round};
   const auto most = std::max<Time::rep>(cycle.service_frames, 1);
   return {.dialogues = static_cast<unsigned>(std::min<Time::rep>(share / pair, most)),

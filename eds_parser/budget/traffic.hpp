@@ -36,7 +36,7 @@ enum class Traffic : std::uint8_t {
 enum class BudgetLimit : std::uint8_t {
   none,
   receive_window,   ///< of the master; a PDO that ends later counts as missing
-  output_deadline,  ///< the same, if the deadline is earlier than the end of that window
+  output_deadline,  ///< of the master, if it is earlier than the end of the receive window
   sync_window,      ///< 0x1007 of the devices
   own_period,       ///< the next frame of the same kind comes
   timeout,          ///< the receiver's time-out expires: SDO time-out, heartbeat consumer
@@ -50,7 +50,7 @@ struct TrafficFrame {
   bool remote_request = false;
   bool from_master = false;
   bool in_cycle = false;  ///< SYNC, the TPDOs that follow it at once, and the outputs
-  bool awaited = false;   ///< the master sends nothing else before it has arrived
+  bool awaited = false;   ///< the master sends nothing else before this frame has arrived
   std::uint8_t bytes = 0;
   std::uint16_t every = 1;              ///< in_cycle: number of SYNCs from one frame to the next
   std::optional<std::uint16_t> turn{};  ///< SYNC number modulo `every`, if it is certain
@@ -63,7 +63,7 @@ struct TrafficFrame {
   std::optional<Time> limit{};  ///< longest time from being queued to its end
   BudgetLimit why = BudgetLimit::none;
   std::string waits{};   ///< timeout: who waits, for example "arm (0x1016)"
-  bool answers = false;  ///< the limit counts from the moment its request was queued
+  bool answers = false;  ///< an answer, whose limit counts from the moment its request was queued
 
   bool by_itself() const noexcept { return !from_master && !in_cycle; }
   bool is_input() const noexcept { return in_cycle && kind == Traffic::tpdo; }
@@ -84,7 +84,7 @@ struct BusTraffic {
 /// Shares of the bus capacity; 1 is the whole capacity.
 struct BusLoad {
   double typical = 0;   ///< SYNC, PDOs, error control and TIME, with a usual number of stuff bits
-  double worst = 0;     ///< the same with worst stuffing
+  double worst = 0;     ///< the traffic of `typical` with worst stuffing
   double services = 0;  ///< greatest share of SDO, in addition to `worst`
 };
 

@@ -218,7 +218,7 @@ class DbcWriter {
   std::optional<CobId> mpdo_;
   std::set<std::string> message_names_;
   std::set<std::string> names_;       // names of the signals of one message
-  std::set<std::string> full_names_;  // the same before shortening
+  std::set<std::string> full_names_;  // names of the signals of one message before shortening
 };
 
 }  // namespace

@@ -72,7 +72,7 @@ class PointSupply {
         static_cast<std::int8_t>(configured_object(node_.node, object(0x60C2, 2)).value_or(-3));
     return count * std::pow(10.0, power) * 1e6;
   }
-  /// Returns how long the buffer takes to be full.
+  /// Returns a sentence that says after which time the buffer is full.
   std::string filling(double supply, double demand) const {
     const std::int64_t points =
         configured_object(node_.node, object(0x60C4, 2))

@@ -188,8 +188,8 @@ class BudgetText {
     list([](const BudgetRow& row) { return row.fits_in_burst(); }, &BudgetRow::worst_in_burst);
   }
 
-  /// Warns only, without effect on the verdict: this case needs a late server and all frames that
-  /// come by themselves at the same moment.
+  /// Warns only, without effect on the verdict: this case needs a late server and, at the same
+  /// moment, all frames that devices send outside the cycle.
   void warn_of_services() {
     const Time tolerated = plan_.cycle.period / 10;
     const auto delay = budget_.sync_delay_behind_services();

@@ -43,7 +43,8 @@ struct DeviceMatch {
   }
 };
 
-/// The place of a statement in the device data, and its reason: the maker's manual in our words.
+/// The place of a statement in the device data, and its reason, which paraphrases the manual of the
+/// maker.
 struct DeviceFact {
   SourcePos pos;
   std::string reason;

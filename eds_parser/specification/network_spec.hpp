@@ -121,11 +121,10 @@ struct AxisLimitsSpec {
   Sourced<double> velocity;
   Sourced<double> acceleration;
   Sourced<double> jerk;
-  Sourced<double>
-      following_error;   ///< largest distance of the actual position in a motion of taktd
+  Sourced<double> following_error;  ///< largest following error in a motion that taktd runs
   Sourced<double> step;  ///< largest change of a position set-point from one cycle to the next
   Sourced<double> torque;
-  Sourced<double> modulo;  ///< length of the range after which the position starts again
+  Sourced<double> modulo;  ///< length of a turn, after which the position begins again
 };
 
 struct AxisOverrideSpec {
@@ -185,9 +184,9 @@ struct FeedForwardSpec {
   }
 };
 
-/// The homing of an axis, in the units of `units:`. What is not given is not written to the device.
+/// The homing of an axis, in the units of `units:`. The boot writes only the values that are given.
 struct AxisHomingSpec {
-  Sourced<bool> required{.value = true};  ///< Without homing, no absolute motion.
+  Sourced<bool> required{.value = true};  ///< An absolute motion needs homing first.
   Sourced<std::int8_t> method;            ///< 0x6098
   Sourced<double> speed_switch;           ///< 0x6099:01
   Sourced<double> speed_zero;             ///< 0x6099:02

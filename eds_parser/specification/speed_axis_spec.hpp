@@ -29,7 +29,7 @@ struct SpeedCommandsSpec {
 
 /// `speed_axis:` of the device data or of a node. What a node states takes precedence.
 struct SpeedAxisSpec {
-  SourcePos pos{};  ///< of the section; empty if there is none
+  SourcePos pos{};  ///< place of the section; empty if there is none
   bool enabled = true;
   std::optional<SpeedSequence> sequence;
   std::optional<FaultReset> fault_reset;
@@ -39,8 +39,8 @@ struct SpeedAxisSpec {
   std::optional<SpeedValueSpec> actual_speed;
   SpeedCommandsSpec commands;
   SpeedStates states;  ///< a pattern without a mask is not stated
-  std::string ramps;   ///< where the ramps of the drive are, in words
-  std::string source;  ///< where these facts come from
+  std::string ramps;   ///< text that says where the ramps of the drive are
+  std::string source;  ///< text that says where these facts come from
 
   bool is_stated() const noexcept { return pos != SourcePos{}; }
 };
@@ -48,7 +48,7 @@ struct SpeedAxisSpec {
 /// Returns the name of the first part that is missing, for example "`control`". The name is empty
 /// if the axis has all parts that it needs.
 std::string missing_part(const SpeedAxisSpec& axis);
-/// Returns `axis` with all that `own` states in the place of its own parts.
+/// Returns `axis`, in which each part that `own` states replaces the same part.
 SpeedAxisSpec merged(SpeedAxisSpec axis, const SpeedAxisSpec& own);
 /// Returns the words of a CiA 402 drive in velocity mode (vl, mode 2). CiA 402-2: 0x6042 and 0x6044
 /// are in revolutions per minute unless 0x604C says something else.

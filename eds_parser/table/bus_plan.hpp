@@ -86,11 +86,12 @@ struct RawUnit {
   std::string unit{};
 };
 
-/// `homing:` of an axis in the network file. The boot writes the other values of it.
+/// Values of `homing:` of an axis in the network file that the plan keeps. The boot writes the
+/// others.
 struct HomingPlan {
-  bool required = true;                    ///< Without homing, no absolute motion.
+  bool required = true;                    ///< An absolute motion needs homing first.
   Time timeout{std::chrono::seconds{60}};  ///< longest time of a homing run
-  std::optional<std::int8_t> method{};     ///< 0x6098; empty: that of the device
+  std::optional<std::int8_t> method{};     ///< 0x6098; empty: the method that the device has
 };
 
 /// `feed_forward:` of an axis in the network file, in the units of its signals.
@@ -102,8 +103,9 @@ struct FeedForwardPlan {
 /// One CiA 402 axis of a device, as the ordered stop sees it. Values are raw units of the device.
 struct AxisPlan {
   std::uint8_t number = 0;  ///< counts from 0; the axis's objects are 0x800 x number higher
-  std::int64_t velocity_window = 10;   ///< of 0x606C; below this the axis counts as standing still
-  std::int64_t position_window = 10;   ///< of 0x6064, within 50 ms; below this it stands still
+  std::int64_t velocity_window = 10;  ///< of 0x606C; below this the axis counts as standing still
+  /// Change of 0x6064 in 50 ms below which the axis counts as standing still.
+  std::int64_t position_window = 10;
   Time stopping_time{};                ///< of a quick stop from its velocity limit; 0 = not known
   std::int16_t quick_stop_option = 2;  ///< 0x605A; the boot reads what the device has
   std::uint16_t ramp_object = 0;       ///< 0x6085 or 0x6084; 0 = not known
@@ -159,7 +161,7 @@ enum class SyncLoss : std::uint8_t {
   stop,      ///< NMT stop to all nodes except the producer; NMT start when SYNC is back
 };
 
-/// How the devices' watches over the master are disarmed at the end of a confirmed ordered stop.
+/// How the master disarms the supervision in the devices at the end of a confirmed ordered stop.
 enum class StopDisarm : std::uint8_t {
   sdo,                  ///< 0 is written to 0x1016, 0x1006, 0x100C and 0x100D
   reset_communication,  ///< NMT reset communication is the last command

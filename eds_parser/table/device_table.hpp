@@ -40,7 +40,7 @@ struct DeviceTable {
   std::string model;                    ///< "drive402", "io401", "lenze8400", "plain" ...
   std::vector<std::string> quirks;      ///< "late_bootup", ...
   std::string firmware{};               ///< "15.02.00"; empty = the newest that the model knows
-  /// What stands behind the axes of a `drive402`; none: its motors are simple lags.
+  /// The mechanics behind the axes of a `drive402`. Empty: each motor is a simple lag.
   std::optional<MechanicsTable> mechanics{};
 };
 

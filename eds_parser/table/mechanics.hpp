@@ -4,16 +4,16 @@
 
 namespace takt {
 
-// What stands behind a simulated CiA 402 axis. All values in SI units; those of the load are
-// referred to the shaft of the motor. The defaults are a servo motor of 400 W. Positions of the
-// axis are in counts in the table of a device, and in the unit of `units: position` in a
+// The mechanics behind a simulated CiA 402 axis. All values are in SI units. The values of the load
+// are referred to the shaft of the motor. The defaults describe a servo motor of 400 W. Positions
+// of the axis are in counts in the table of a device, and in the unit of `units: position` in a
 // specification.
 
 struct MotorParameters {
   double inertia = 3e-5;        ///< kg m2
   double rated_torque = 1.27;   ///< N m
   double peak_torque = 3.81;    ///< N m
-  double max_speed = 628.0;     ///< rad/s; the torque ends there
+  double max_speed = 628.0;     ///< rad/s; the motor has no torque at this speed
   double breakaway = 1;         ///< dry friction at rest, times that in motion
   double friction = 0.02;       ///< N m, dry
   double viscosity = 2e-5;      ///< N m s/rad
@@ -26,7 +26,7 @@ struct LoadParameters {
   double friction = 0.02;             ///< N m, dry
   double viscosity = 2e-5;            ///< N m s/rad
   double torque = 0;                  ///< N m, constant, for example weight
-  std::optional<double> stiffness{};  ///< N m/rad of the coupling; none: the coupling is rigid
+  std::optional<double> stiffness{};  ///< N m/rad of the coupling; empty: the coupling is rigid
   double damping = 0;                 ///< N m s/rad of the coupling
   double backlash = 0;                ///< rad, from contact to contact
 };
@@ -35,7 +35,7 @@ struct ControllerParameters {
   double position_gain = 80;         ///< 1/s
   double velocity_bandwidth = 100;   ///< Hz
   double integral_time = 0.008;      ///< s
-  double velocity_feed_forward = 0;  ///< part of the velocity of the set-points
+  double velocity_feed_forward = 0;  ///< fed-forward share of the velocity of the set-points
   double velocity_filter = 2.5e-4;   ///< s, time constant
 };
 
@@ -64,7 +64,7 @@ struct TravelParameters {
   std::optional<ZoneParameters> home{};      ///< home switch: active inside
   std::optional<ZoneParameters> probe_1{};   ///< inputs of the touch probe: active inside
   std::optional<ZoneParameters> probe_2{};
-  std::optional<double> index{};  ///< place of an index pulse of the encoder; none: by the seed
+  std::optional<double> index{};  ///< place of an index pulse; empty: the seed determines it
 };
 
 /// `sim: {mechanics: ...}` of a node.

@@ -24,7 +24,8 @@ Turn turn_of(const BusPlan& plan, SignalIndex target) {
   return {.length = std::round(row->modulus), .lowest = row->lowest};
 }
 
-/// Returns the axis of the node. Without one, the network file says nothing about it.
+/// Returns the axis of the node, or an axis with default values if the node has none of this
+/// number.
 AxisPlan axis_plan_of(const NodePlan& node, std::uint8_t number) {
   const auto found = std::ranges::find(node.axes, number, &AxisPlan::number);
   return found == node.axes.end() ? AxisPlan{} : *found;

@@ -8,22 +8,23 @@
 
 namespace takt {
 
-/// The positions of a rotary axis, which begin again after a turn. Counts of the target position.
+/// The positions of a rotary axis, which begin again after a turn. All values are in counts of the
+/// target position.
 struct Turn {
   double length = 0.0;  ///< 0: the axis is not rotary, or its range keeps it from turning
   double lowest = 0.0;  ///< where a turn begins
 
-  /// Returns the position inside the turn that is the same place as this one.
+  /// Returns the position inside the turn at which the axis is in the same place as at `counts`.
   double inside(double counts) const noexcept {
     return length > 0.0 ? counts - length * std::floor((counts - lowest) / length) : counts;
   }
-  /// Returns the place of this position that is nearest to `reference`. Of two that are half a turn
-  /// away it is the upper one.
+  /// Returns the position nearest to `reference` at which the axis is in the same place as at
+  /// `counts`. If two positions are half a turn away, returns the upper one.
   double nearest(double counts, double reference) const noexcept {
     return length > 0.0 ? counts + length * std::floor((reference - counts) / length + 0.5)
                         : counts;
   }
-  /// The same turn for numbers that are counts x scale + offset.
+  /// Returns this turn for positions that are counts x scale + offset.
   Turn in_unit(double scale, double offset) const noexcept {
     const double begin = scale < 0.0 ? lowest + length : lowest;
     return {.length = length * std::abs(scale), .lowest = begin * scale + offset};

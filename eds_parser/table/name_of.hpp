@@ -13,8 +13,8 @@ consteval bool is_enumerator() noexcept {
   return next < '0' || next > '9';
 }
 
-/// Returns the name of an enumerator, or `other` for a value that is none. `names` has the name of
-/// every enumerator, in the order of their values, which count from 0.
+/// Returns the name of an enumerator, or `other` for a value without an enumerator. `names` has the
+/// name of every enumerator, in the order of their values, which count from 0.
 template <class Enum, std::size_t Count>
 constexpr std::string_view name_of(Enum value, const std::string_view (&names)[Count],
                                    std::string_view other = {}) noexcept {

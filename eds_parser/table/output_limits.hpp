@@ -21,8 +21,8 @@ enum class LimitKind : std::uint8_t {
   step,
   torque,
   range,            ///< range of a single output
-  following_error,  ///< of planned motion; the bus thread stops a motion by it, and checks no
-                    ///< output
+  following_error,  ///< following error of a motion: the bus thread stops a motion that exceeds it,
+                    ///< and checks no output
 };
 
 /// The kind of a set-point of an axis. It decides in which modes the axis follows the set-point.
@@ -78,7 +78,7 @@ struct OutputLimit {
   std::optional<SignalIndex> statusword{};    ///< shows whether the drive follows set-points
   std::optional<SignalIndex> mode{};          ///< 6060, if it is an output
   std::optional<SignalIndex> mode_display{};  ///< 6061
-  std::optional<SpeedOrders> orders{};        ///< of a set speed: what `controlword` makes of it
+  std::optional<SpeedOrders> orders{};        ///< of a set speed: effect of `controlword` on it
   bool idle = false;  ///< 6060 is not an output, and the file sets a mode without `quantity`
 };
 

@@ -10,10 +10,10 @@
 
 namespace takt {
 
-/// States by which bits of its status word a drive shows one of its states.
+/// The bits of the status word with which a drive shows one of its states.
 struct WordPattern {
   std::uint16_t mask = 0;               ///< the bits that count; 0 = the state is not shown
-  std::vector<std::uint16_t> values{};  ///< the bits of `mask` in this state, one of these values
+  std::vector<std::uint16_t> values{};  ///< values of the bits of `mask` in this state
 
   bool is_known() const noexcept { return mask != 0; }
   bool shows(std::int64_t word) const noexcept {
@@ -28,7 +28,7 @@ enum class SpeedSequence : std::uint8_t {
   cia402,  ///< the state machine of CiA 402; bits 4 to 6 of the controlword run the ramp (mode vl)
 };
 
-/// How a drive takes the command "fault reset".
+/// When a drive obeys the command "fault reset".
 enum class FaultReset : std::uint8_t {
   edge,   ///< at the change from another command to this one
   level,  ///< while the command is there
@@ -38,7 +38,7 @@ enum class FaultReset : std::uint8_t {
 struct SpeedCommands {
   std::uint16_t mask = 0xFFFF;
   std::uint16_t off = 0;   ///< the drive does not move, and may be without power
-  std::uint16_t stop = 0;  ///< the drive stops along its ramp, and stands
+  std::uint16_t stop = 0;  ///< the drive stops along its ramp and stays at standstill
   std::uint16_t run = 0;   ///< the drive follows the set speed
   std::optional<std::uint16_t> run_reverse{};  ///< backward; empty: the set speed has a sign
   std::optional<std::uint16_t> quick_stop{};
@@ -49,9 +49,9 @@ struct SpeedCommands {
 struct SpeedStates {
   WordPattern ready{};       ///< the drive obeys the command to run
   WordPattern running{};     ///< the motor is under power
-  WordPattern reverse{};     ///< it turns backward
+  WordPattern reverse{};     ///< the drive turns backward
   WordPattern at_speed{};    ///< the set speed is reached
-  WordPattern standstill{};  ///< it stands
+  WordPattern standstill{};  ///< the drive is at standstill
   WordPattern fault{};
 };
 
@@ -74,8 +74,8 @@ struct SpeedAxisPlan {
   double max_acceleration = 0;  ///< `limits: {acceleration}` in `unit` per second; 0 = none
 };
 
-/// What a control word makes of a set speed: the speed that the drive follows is the set speed
-/// times factor(). Used by the checks of the bus thread.
+/// The effect of the control word on the set speed: the drive follows the set speed times factor().
+/// The checks of the bus thread use this.
 struct SpeedOrders {
   std::uint16_t mask = 0xFFFF;
   std::uint16_t run = 0;

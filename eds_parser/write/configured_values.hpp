@@ -19,7 +19,7 @@ struct ConfiguredValues {
   Findings findings;                  ///< including those of the file
 };
 
-/// Returns the same for a file that was read. A file with an error configures nothing.
+/// Returns the values that a DCF configures. A file with an error configures nothing.
 ConfiguredValues configured_values(const EdsFile& file);
 
 }  // namespace takt

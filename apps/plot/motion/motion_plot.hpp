@@ -13,8 +13,8 @@
 
 namespace takt {
 
-/// The file of `--plot`: a picture of what the axes of a run were commanded and did, from the
-/// motion_t of each cycle. Without a file name, nothing happens.
+/// The file of `--plot`: a picture of the commanded and the actual motion of the axes of a run,
+/// from the motion_t of each cycle. Without a file name, nothing happens.
 class MotionPlot {
  public:
   /// `title` is that of the picture.
@@ -36,8 +36,8 @@ class MotionPlot {
   std::unique_ptr<MotionTrace> trace_;
 };
 
-/// Opens the axes of a program, does its work, and writes the picture of it into
-/// AxesProgram::plot, also if the work ends with an obstacle.
+/// Opens the axes of a program, runs `work`, and writes the picture of the run into
+/// AxesProgram::plot, even if `work` ends with an obstacle.
 Done run_with_plot(AxesProgram program,
                    const std::function<std::expected<Axes, Obstacle>(const AxesProgram&)>& open,
                    const std::function<Done(Axes&)>& work);

@@ -11,13 +11,13 @@ namespace takt {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-/// Velocities and accelerations that are computed from actual values use means over this time,
-/// seconds: the steps of the encoder would hide them in the difference of two cycles.
+/// Velocities and accelerations are computed from means of actual values over this time, in
+/// seconds. The difference of two cycles would show mainly the steps of the encoder.
 constexpr double window = 0.04;
 
 using Values = std::vector<double>;
 
-/// Sums of values, for means over many of them. Where there is no value, the one before counts.
+/// Sums of values, for means over many of them. A missing value counts as the previous value.
 class Sums {
  public:
   explicit Sums(const Values& values) : sums_{0.0} {
@@ -35,8 +35,8 @@ class Sums {
   Values sums_;
 };
 
-/// Returns the slope at each time: the mean of the values in the window after it less the mean in
-/// the window before it. At the ends there is none.
+/// Returns the slope at each time, from the means of the values in the window after it and in the
+/// window before it. The slope is NaN at the ends.
 Values slopes(const Values& values, const Values& times) {
   Values slopes(values.size(), none);
   const Sums sums{values};
@@ -53,7 +53,7 @@ Values slopes(const Values& values, const Values& times) {
   return slopes;
 }
 
-/// What is drawn of one axis.
+/// The curves of one axis.
 struct Curves {
   Values position;
   Values velocity;

@@ -19,13 +19,14 @@ struct TracedAxis {
   std::string unit = {};      ///< of its positions; empty: raw counts
 };
 
-/// Keeps what taktd reports about the motions of all axes, of each cycle. The memory is bounded:
-/// when it is full, every second cycle is dropped, and from then on only as many are kept.
+/// Keeps the reports of taktd about the motions of all axes in each cycle. The memory is bounded:
+/// when it is full, every second cycle is dropped, and from then on only every second new cycle is
+/// kept.
 class MotionTrace {
  public:
   static constexpr std::size_t most_cycles = 8192;
 
-  /// Takes one message; the parts of one cycle may come in several.
+  /// Takes one message. The reports of one cycle may come in several messages.
   void take(const motion_t& message);
   /// Returns the picture of these axes, or one without panels if nothing was reported of them.
   /// `period` is that of SYNC, in seconds.
@@ -52,7 +53,7 @@ class MotionTrace {
 
   std::vector<Cycle> cycles_;
   std::int64_t session_ = 0;
-  std::int64_t every_ = 1;  // of this number of cycles, one is kept
+  std::int64_t every_ = 1;  // one of this number of cycles is kept
 };
 
 }  // namespace takt

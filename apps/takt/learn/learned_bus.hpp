@@ -34,9 +34,9 @@ struct LearnedValues : std::map<ObjectKey, LearnedValue> {
   /// Returns the last value of an object as a number, or std::nullopt if it is no number or not
   /// known.
   std::optional<std::uint64_t> number(ObjectKey key) const noexcept;
-  /// Does the same for an object that the master has read.
+  /// Returns number() of an object that the master has read, else std::nullopt.
   std::optional<std::uint64_t> number_read(ObjectKey key) const noexcept;
-  /// Does the same for an object that the master has written.
+  /// Returns number() of an object that the master has written, else std::nullopt.
   std::optional<std::uint64_t> number_written(ObjectKey key) const noexcept;
 };
 

@@ -22,8 +22,9 @@ constexpr Time refusal_pause = std::chrono::milliseconds{1100};
 constexpr Time settle =
     std::chrono::milliseconds{250};  // every bus sends a status within this time
 
-/// Returns true if the status names the bus of its own channel, as that of every daemon does. A
-/// message that names another bus does not count, so that the user need not choose between the two.
+/// Returns true if the status names the bus of the channel on which it came, as the status of every
+/// daemon does. A message that names another bus does not count, so that the user need not choose
+/// between the two buses.
 bool has_status(std::string_view bus, const BusView& view) {
   return view.status() &&
          bus_of_channel(channel_name(view.status()->bus, "STATUS"), "STATUS") == bus;
@@ -210,7 +211,8 @@ void DaemonClient::serve(const MessageHandler& handler, Time until) {
       until);
 }
 
-/// The event may be about another program, but what is refused there is refused here too.
+/// The event may be about another program, but the daemon then refuses messages of this program as
+/// well.
 void DaemonClient::note_event(Bytes data) {
   const auto event = decode<event_t>(data);
   if (!event || event->kind != "envelope_refused" || event->session != status_.session) return;

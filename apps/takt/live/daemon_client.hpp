@@ -33,7 +33,7 @@ class DaemonClient {
   /// Sends a request and waits for its answer for at most `limit`, which must be longer than the
   /// daemon itself waits for the service. The answer may be a refusal.
   reply_t ask(request_t request, Time limit);
-  /// Does the same, and throws a Failure with the reason if the answer is a refusal.
+  /// Sends a request as ask() does. Throws a Failure with the reason if the answer is a refusal.
   reply_t demand(request_t request, Time limit);
 
   /// Sends a message on the channel BUS_WHAT, in an envelope if there is a key.

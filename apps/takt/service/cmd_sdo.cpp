@@ -41,7 +41,7 @@ struct SdoOptions {
   std::string type;
   std::string value;
   std::string file;
-  int timeout_ms = 0;  ///< 0 means that of the node
+  int timeout_ms = 0;  ///< 0 means the time-out of the node
   std::size_t limit = most_file_bytes;
 };
 
@@ -53,7 +53,8 @@ class SdoRoute {
 
   Value upload(ObjectKey object);
   void download(ObjectKey object, const Value& value);
-  /// The same for files, which may be long: in parts, by block transfer and with progress.
+  /// These functions transfer files, which may be long: in parts, by block transfer and with
+  /// progress.
   Value upload_file(ObjectKey object, std::size_t limit, const Progress& progress);
   void download_file(ObjectKey object, const Value& value, const Progress& progress);
   int node() const noexcept { return node_; }
@@ -127,7 +128,8 @@ void SdoRoute::download_file(ObjectKey object, const Value& value, const Progres
   FileTransfer{*daemon_, {node_, object, timeout_ms_}, progress}.download(value);
 }
 
-/// Returns the object that the user names. `examples` continues the sentence if it is none.
+/// Returns the object that the user names. If the text names no object, `examples` continues the
+/// sentence of the Failure.
 ObjectKey object_of(const SdoOptions& options, const char* examples = "6041 or 1018:1") {
   const auto object = parse_object(options.object);
   if (object) return *object;

@@ -61,7 +61,8 @@ struct SmoothArguments {
 
 bool is_live(const SmoothArguments& options) { return options.file == "live"; }
 
-/// Returns the path of the frames of a recording of the black box, and of any other file itself.
+/// Returns the path of the file with the frames. A recording of the black box may be named by any
+/// of its files; every other file has its frames itself.
 std::string log_of(const std::string& file) {
   for (const std::string_view ending : {".events.json", ".journal"}) {
     if (file.ends_with(ending)) return file.substr(0, file.size() - ending.size()) + ".log";

@@ -13,7 +13,7 @@
 namespace takt::smooth {
 namespace {
 
-/// Returns the object of the first axis that has this role for another axis.
+/// Returns the index of the same object on the first axis, for example 0x607A for 0x687A.
 unsigned of_first_axis(unsigned index) {
   return index >= 0x6000 && index < 0xA000 ? 0x6000 + (index - 0x6000) % 0x800 : index;
 }
@@ -100,7 +100,7 @@ void take_learned(PartsByNumber& pdos, const learn::LearnedValues& values) {
   }
 }
 
-/// Returns the identifier that a PDO 1 to 4 has unless the device was told another one.
+/// Returns the identifier that a PDO 1 to 4 has unless the device is configured otherwise.
 std::optional<std::uint32_t> predefined_id(bool is_tpdo, std::uint16_t number, std::uint8_t node) {
   if (number > 4) return {};
   return (is_tpdo ? 0x080U : 0x100U) + 0x100U * number + node;
@@ -165,7 +165,7 @@ void add_learned(PdoMap& map, const learn::LearnedBus& bus, const learn::DeviceF
     for (const auto& [key, value] : values) {
       if (const auto number = value.number()) known.values[key] = *number;
     }
-    for (const learn::LearnedWrite& write : node->later) {  // an application sets the mode so
+    for (const learn::LearnedWrite& write : node->later) {  // an application may set the mode
       const auto& bytes = write.transfer.value;
       if (bytes.empty() || bytes.size() > 8) continue;
       known.values[write.transfer.object] = from_little_endian(std::as_bytes(std::span{bytes}));

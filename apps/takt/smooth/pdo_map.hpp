@@ -47,8 +47,8 @@ struct PdoMap {
 
 /// Takes the PDOs and the boot of a network file.
 void add_plan(PdoMap& map, const BusPlan& plan);
-/// Takes what a recording shows: SDO transfers, and the device files for what they leave open. It
-/// takes precedence over what the map has.
+/// Adds the values of the SDO transfers in a recording. Values that the transfers do not show come
+/// from the device files. Both take precedence over the values that the map has.
 void add_learned(PdoMap& map, const learn::LearnedBus& bus, const learn::DeviceFiles& files);
 /// Takes a PDO in the form `0x205=6040,607A`, the value of option --pdo. An object that is not of
 /// CiA 402 needs its width: `2000:01/16`. The error is a sentence.

@@ -69,7 +69,7 @@ class Reader {
     return false;
   }
 
-  /// Reads one of two or three words. Leaves `value` where the key is missing.
+  /// Reads one of two or three words. Leaves `value` unchanged if the key is missing.
   template <class Value, std::size_t Size>
   bool read_word(const Json& line, const char* key, Value& value,
                  const std::array<std::pair<std::string_view, Value>, Size>& words) {

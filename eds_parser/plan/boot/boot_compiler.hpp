@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// What the boot of one node needs of the network.
+/// The data of the network that the compilation of one boot needs.
 struct BootContext {
   const MasterSpec& master;
   const BusPlan& plan;   ///< complete except for the boots
@@ -21,7 +21,7 @@ struct BootContext {
 };
 
 /// Compiles the boot of one node into a linear program: reset, probe, identity, restore, heartbeat,
-/// SYNC, configuration values, PDOs, start. CiA 302-2, part E of the reference.
+/// SYNC, configuration values, PDOs, start. CiA 302-2.
 BootPlan compile_boot(const NodePdos& node, const BootContext& context, NetworkReport& report);
 
 /// Returns true if the device has object 0x1017 and the master can write it.

@@ -50,7 +50,7 @@ class HomingSteps : BootPart {
     write(axis_object(axis, 0x607C), "offset", homing.offset);
   }
 
-  /// Without 0x6502 nobody knows.
+  /// Warns if the drive has no homing mode by its 0x6502. Without 0x6502 its modes are not known.
   void judge_mode(unsigned axis, const AxisHomingSpec& homing) {
     const auto modes = value_of(axis_object(axis, 0x6502));
     if (!*homing.required || !modes || *modes == 0 || (*modes & homing_mode) != 0) return;

@@ -25,13 +25,13 @@ std::optional<double> quotient(const NodeSource& node, std::uint16_t index) {
 }
 
 /// Returns the length of one turn of the shaft in the unit of the position, or std::nullopt if this
-/// unit is none of angles.
+/// unit is not a unit of angles.
 std::optional<double> full_turn(const std::string& unit) {
   if (unit == "rad") return 2 * std::numbers::pi;
   return unit == "deg" ? std::optional{360.0} : std::nullopt;
 }
 
-/// Returns the counts of the position in a turn of the motor.
+/// Returns the number of position counts in one turn of the motor.
 double counts_per_turn(const NodeSource& node, double turn) {
   const auto& unit = node.spec->units.position;
   const double scale = unit ? *unit->scale : 1;

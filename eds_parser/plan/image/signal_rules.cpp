@@ -19,8 +19,8 @@ constexpr std::chrono::milliseconds default_time_to_live{50};
 enum class Role : std::uint8_t { other, controlword, mode, position_target, rate_target };
 
 Role role_of(ObjectKey object) {
-  // These are the target velocity (vl), the target torque, the offsets of position, velocity and
-  // torque, and the target velocity.
+  // These are the target velocity of mode vl, the target torque, the offsets of position, velocity
+  // and torque, and the target velocity of the modes pv and csv.
   constexpr std::array<std::uint16_t, 6> rates{0x6042, 0x6071, 0x60B0, 0x60B1, 0x60B2, 0x60FF};
   const std::uint16_t index = first_axis(object.index);
   if (index == 0x6040) return Role::controlword;

@@ -11,8 +11,8 @@
 namespace takt {
 namespace {
 
-/// Commands to an inverter live for so long if the network file says nothing: an application may
-/// stall for a moment, and the drive stops along its ramp afterwards.
+/// Time to live of the commands to an inverter if the network file states none. An application may
+/// stall for this time before the drive stops along its ramp.
 constexpr std::chrono::milliseconds speed_time_to_live{500};
 
 class SpeedAxisCompiler {
@@ -103,7 +103,8 @@ class SpeedAxisCompiler {
     plan_.speed_axes.push_back(std::move(axis));
   }
 
-  /// A unit that `units:` of the network file gives to the object takes precedence.
+  /// Returns the scale of a speed. If `units:` of the network file gives the object a unit, that
+  /// unit and its scale take precedence over `spec`.
   double scale_of(const SpeedValueSpec& spec, SignalIndex signal, std::string& unit) const {
     const Signal& what = plan_.layout.signals[signal];
     if (what.unit.empty() && what.scale == 1.0) return spec.scale;
@@ -111,8 +112,9 @@ class SpeedAxisCompiler {
     return what.scale;
   }
 
-  /// An RPDO is sent when each of its outputs has a value. So the first command of a program is
-  /// sent at once, further words that share an RPDO with those of the axis begin with 0.
+  /// The master sends an RPDO only when each of its outputs has a value. Further words that share
+  /// an RPDO with those of the axis therefore begin with 0, so that the first command of a program
+  /// is sent at once.
   void complete_rows(const SpeedAxisPlan& axis) {
     const auto& signals = plan_.layout.signals;
     const std::array rows{signals[axis.control].row, signals[axis.set_speed].row};

@@ -123,7 +123,7 @@ std::string_view loss_name(LossReaction reaction) {
   return name_of(reaction, names);
 }
 
-/// The axes whose homing the network file has something about.
+/// Returns the axes for which the network file has `homing:`.
 Json homing_json(const NodePlan& node) {
   Json axes = Json::array();
   for (const AxisPlan& axis : node.axes) {

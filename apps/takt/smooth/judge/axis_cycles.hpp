@@ -12,10 +12,10 @@ struct Cycle {
   Time begin{};
   Time end{};               ///< SYNC at which the set-point takes effect
   bool whole = true;        ///< false: a SYNC is missing between begin and end
-  std::uint32_t count = 0;  ///< number of set-points that came
-  Time first_arrival{};     ///< of the first one; only if count is not 0
-  Time arrival{};           ///< of the last one; only if count is not 0
-  std::int64_t value = 0;   ///< the last one, or that of the cycle before
+  std::uint32_t count = 0;  ///< number of set-points in this cycle
+  Time first_arrival{};     ///< of the first set-point; only if count is not 0
+  Time arrival{};           ///< of the last set-point; only if count is not 0
+  std::int64_t value = 0;   ///< the last set-point up to `end`
   bool varied = false;      ///< the set-points of the cycle differ from each other
   bool active = false;      ///< enabled and in a cyclic mode, as far as the recording shows it
   bool moving = false;      ///< active, and set-points change within a few cycles
@@ -38,8 +38,8 @@ struct AxisCycles {
   /// Returns true if the cycles [first, last] are in motion without a gap, and each has exactly one
   /// set-point.
   bool clean(std::size_t first, std::size_t last) const noexcept;
-  /// Returns for how many cycles from `at` on the value stays away although the axis was moving, if
-  /// one step then makes up for all of them. Returns 0 otherwise.
+  /// Returns the number of cycles from `at` on in which the value stays the same although the axis
+  /// was moving, if one large step follows that makes up for them. Returns 0 otherwise.
   std::size_t stall(std::size_t at) const noexcept;
   /// Velocity in increments per second of a step.
   double velocity(double step) const noexcept;

@@ -22,11 +22,11 @@ enum class Cause : std::uint8_t {
   clock_beat,            ///< the sender has another clock than SYNC
   bus_load,              ///< other frames delay set-points beyond the next SYNC
   late,                  ///< set-points arrive behind the SYNC for which they were meant
-  early,                 ///< set-points arrive before the SYNC in front of that one
+  early,                 ///< set-points arrive before the SYNC that precedes that one
   skipped,               ///< no set-point between two SYNCs
   overwritten,           ///< two set-points between two SYNCs
   slow_values,           ///< the value changes only every n-th cycle
-  value_beat,            ///< values are computed with a clock of their own
+  value_beat,            ///< values are computed with another clock than SYNC
   duplicated,            ///< a value is sent twice
   value_skipped,         ///< a value is left out
   velocity_jump,         ///< the velocity jumps from one cycle to the next

@@ -10,7 +10,7 @@
 namespace takt::smooth {
 namespace {
 
-/// What happened how often, and when first.
+/// How often something happened, and when it happened first.
 struct Tally {
   std::uint64_t count = 0;
   Time first{};
@@ -20,7 +20,7 @@ struct Tally {
   }
 };
 
-/// Deviations from one set-point in each cycle in motion.
+/// Deviations from the rule that each cycle in motion gets one set-point.
 struct Arrivals {
   Tally late;                            // no set-point, and two in the next cycle
   Tally early;                           // two set-points, and none in the next cycle
@@ -64,7 +64,7 @@ Arrivals count_arrivals(const std::vector<Cycle>& cycles) {
   return out;
 }
 
-/// How the times of the set-points lie beside SYNC.
+/// How the times of the set-points relate to SYNC.
 struct Rhythm {
   Time period{};       // of the set-points
   double slips = 0;    // periods by which set-points and SYNC diverge in the recording

@@ -16,7 +16,7 @@ double acceleration(const AxisCycles& cycles, std::size_t at) {
   return static_cast<double>(cycles.step(at) - cycles.step(at - 1));
 }
 
-/// Returns true if the velocity before the cycle and behind it is steady, and jumps in it.
+/// Returns true if the velocity jumps in this cycle, and is steady before and after it.
 bool is_jump(const AxisCycles& cycles, std::size_t at) {
   if (at < 4 || at + 2 >= cycles.cycles.size()) return false;
   for (std::size_t i = at - 2; i <= at + 2; ++i) {
@@ -58,8 +58,8 @@ void add_jumps(const AxisView& view, Findings& findings) {
        .first = first});
 }
 
-/// Returns the size of what is not smooth in the steps, in increments: their fourth difference,
-/// which is zero for any cubic curve, by its median, so that single jumps do not count.
+/// Returns the roughness of the steps in increments, from the median of their fourth differences.
+/// The fourth difference is zero for any cubic curve, and single jumps do not change the median.
 double roughness(const AxisCycles& cycles) {
   constexpr std::array weights{1, -4, 6, -4, 1};
   const double of_noise = 1.4826 / std::sqrt(70.0);

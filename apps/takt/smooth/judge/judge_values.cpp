@@ -12,11 +12,11 @@ namespace {
 constexpr std::size_t around = 4;  // cycles before and after; their steps are the usual ones
 constexpr std::uint64_t fewest_of_beat = 6;
 
-/// Cycles in motion whose values are not one step ahead.
+/// Cycles in motion whose value is not one usual step after the previous one.
 struct Strange {
-  std::vector<std::size_t> repeats;  // the value again, and then the usual step
-  std::vector<std::size_t> doubles;  // the value again, and then a step that makes up for it
-  std::vector<std::size_t> skips;    // a double step
+  std::vector<std::size_t> repeats;  // the value is repeated, and then the usual step follows
+  std::vector<std::size_t> doubles;  // the value is repeated, and a larger step makes up for it
+  std::vector<std::size_t> skips;    // the step is twice the usual one
 };
 
 /// Returns the usual step around a cycle, or std::nullopt if the cycles there are not clean.
@@ -29,7 +29,7 @@ std::optional<double> usual_step(const AxisCycles& cycles, std::size_t at) {
   return median(std::move(steps));
 }
 
-/// The step has to be so large that rounding cannot explain a repeated value.
+/// Returns true if the step is so large that rounding cannot explain a repeated value.
 bool is_large(const AxisCycles& cycles, double step) {
   return std::abs(step) > 6.0 * static_cast<double>(cycles.quantum) &&
          std::abs(step) > 0.05 * cycles.peak;
@@ -70,7 +70,7 @@ double regular_distance(const std::vector<std::size_t>& places) {
 /// Lengths of the runs of equal values in motion.
 struct Runs {
   std::size_t usual = 0;  // cycles
-  double share = 0;       // of the cycles in motion that repeat the value before
+  double share = 0;       // share of the cycles in motion that repeat the previous value
   double regular = 0;     // share of the runs that are as long as the usual one
 };
 

@@ -10,7 +10,8 @@
 
 namespace takt::smooth {
 
-/// Returns the value below which the share `part` (0..1) of all values is, or 0 of no values.
+/// Returns the value below which the share `part` (0..1) of all values is, or 0 if there are no
+/// values.
 template <class T>
 T quantile(std::vector<T> values, double part) {
   if (values.empty()) return T{};

@@ -158,7 +158,7 @@ void fit_ripple(const AxisCycles& cycles, const std::vector<Velocity>& velocitie
   }
   const double peak = std::abs(best.factor) * cycles.peak;
   if (best.values.empty() || peak == 0) return;
-  // The values are whole numbers, so they have errors of rounding; steps of positions have two.
+  // The values are whole numbers, so each has a rounding error. A step of positions has two.
   const double rounding = 0.5;
   out.ripple_units = std::sqrt(std::max(0.0, least - rounding * rounding));
   out.ripple = out.ripple_units / peak;

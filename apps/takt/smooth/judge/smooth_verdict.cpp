@@ -17,7 +17,7 @@ bool has(const Findings& findings, Cause cause) {
   return std::ranges::find(findings, cause, &Finding::cause) != findings.end();
 }
 
-/// What follows from a cause and is therefore no cause itself.
+/// The findings that follow from a cause and are therefore left out.
 struct Consequence {
   Cause cause{};
   std::initializer_list<Cause> follows{};
@@ -53,7 +53,7 @@ void leave_out_consequences(const Findings& of_bus, Findings& findings) {
       return std::ranges::find(rule.follows, finding.cause) != rule.follows.end();
     });
   }
-  // The drive is to blame only for what its set-points do not explain.
+  // The drive is the cause only of what its set-points do not explain.
   const auto is_of_set_points = [](const Finding& finding) {
     return finding.cause >= two_senders && finding.cause <= coarse;
   };

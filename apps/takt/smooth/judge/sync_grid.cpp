@@ -30,7 +30,8 @@ double steady_share(const std::vector<Time>& values, double part) {
   return static_cast<double>(near) / static_cast<double>(values.size());
 }
 
-/// Two producers of one period give intervals that alternate, while every second one is steady.
+/// Returns the usual period of SYNC. If two producers send with the same period, the intervals
+/// alternate, but the time over two intervals is steady.
 Time usual_period(std::span<const Time> syncs, std::optional<Time> planned) {
   const auto single = intervals_of(syncs, 1);
   const Time usual = median(single);
@@ -75,8 +76,9 @@ class GridBuilder {
   }
 
  private:
-  /// A SYNC may be late beside its place in an even grid, or beside the SYNC before. The smaller of
-  /// both differences counts, because some producers keep a grid and others only an interval.
+  /// Returns how far a SYNC is from its place in an even grid, or from one period after the
+  /// previous SYNC. The smaller of both differences counts, because some producers keep a grid and
+  /// others only an interval.
   Time off(Time when) const {
     return std::min(distance(when, place_ + grid_.period),
                     distance(when, grid_.ticks.back().when + grid_.period));
@@ -87,7 +89,7 @@ class GridBuilder {
     const bool too_early = when < place_ + grid_.period && off(when) > allowed;
     Tick& newest = grid_.ticks.back();
     if (too_early && newest.periods > 1 && newest.periods <= longest_gap) {
-      // The SYNC before was not the second one of a gap, but the first one and late.
+      // The previous SYNC was late: one SYNC less is missing before it.
       --newest.periods;
       --grid_.missing;
       grid_.ticks.push_back({when});

@@ -19,7 +19,7 @@ struct SyncGrid {
   Time period{};              ///< 0 if there is no SYNC
   std::vector<Tick> ticks;    ///< without the surplus SYNCs
   std::uint64_t missing = 0;  ///< periods without SYNC
-  std::uint64_t surplus = 0;  ///< SYNCs beside the others
+  std::uint64_t surplus = 0;  ///< SYNCs that come in addition to one in each period
   Time first_missing{};
   Time first_surplus{};
   Time jitter{};                 ///< 95 of 100 intervals differ less than this from the period
