@@ -7,7 +7,7 @@
 #   TAKT_JOBS    parallel jobs (number of processors)
 set -u
 cd "$(dirname "$0")/.." || exit 1
-sh share/install_packages.sh build run test || exit 1
+sh share/install_packages.sh build run wheel test || exit 1
 
 stages=${TAKT_STAGES:-format release asan tsan fuzz tidy}
 jobs=${TAKT_JOBS:-$(nproc)}

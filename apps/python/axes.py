@@ -5,8 +5,7 @@
 
 How to try it on the simulated bus of share/demo/two_axes.yaml:
 
-    python3 -m venv venv && venv/bin/pip install lcm
-    lcm-gen -p --ppath venv/lib/python3*/site-packages share/lcm/*.lcm    # makes the module takt
+    python3 -m venv venv && sh share/wheel.sh && venv/bin/pip install build/takt-*.whl
     taktd share/demo/two_axes.yaml --bus sim &
     venv/bin/python apps/python/axes.py demo
 
@@ -41,7 +40,7 @@ import sys
 import time
 
 import lcm
-from takt import command_t, event_t, image_t, layout_t, status_t  # made by lcm-gen -p
+from takt import command_t, event_t, image_t, layout_t, status_t  # types of LCM messages
 
 SCHEMA = 2  # of the LCM messages that this program knows
 GOOD, NOT_MOVED, WRONG_USE, NO_DAEMON = 0, 1, 2, 3  # exit codes
@@ -548,7 +547,7 @@ def connect(options, stop):
     envelopes, path = None, os.environ.get("TAKT_KEYS")
     check_images = os.environ.get("TAKT_CHECK_IMAGES") == "true"
     if path:
-        from envelopes import Envelopes, read_keys  # beside this file
+        from takt import Envelopes, read_keys
         try:
             envelopes = Envelopes(read_keys(path))
         except ValueError as wrong:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A first motion: two axes of the bus `demo` move to a point and back. takt_axes.py says how to try it."""
-from takt_axes import Axes
+"""A first motion: two axes of the bus `demo` move to a point and back. share/doc/python.md says how to try it."""
+from takt import Axes
 
 with Axes("demo", "shoulder", "elbow") as axes:
     axes.enable()

@@ -4,7 +4,7 @@
     motion.py BUS AXIS POSITION
     motion.py BUS AXIS --jog VELOCITY --for SECONDS
 
-takt_axes.py beside this program says how to try it. Ctrl-C stops the axis.
+share/doc/python.md says how to try it. Ctrl-C stops the axis.
 
 Exit codes: 0 the motion is done, 1 it was refused or has stopped, or the drive can't be enabled,
 2 wrong use, 3 no message of a daemon came.
@@ -12,7 +12,7 @@ Exit codes: 0 the motion is done, 1 it was refused or has stopped, or the drive 
 import argparse
 import sys
 
-from takt_axes import Axes, Obstacle
+from takt import Axes, Obstacle
 
 EXIT_CODES = {"wrong use": 2, "no bus": 3}
 LIMITS = ("velocity", "acceleration", "jerk")

@@ -7,10 +7,11 @@ get_property(libraries GLOBAL PROPERTY TAKT_LIBRARIES)
 install(TARGETS ${libraries} EXPORT takt-targets)
 install(TARGETS takt taktd takt-follow takt-home takt-jog takt-logic takt-move)
 
-install(PROGRAMS apps/python/axes.py apps/python/first_motion.py apps/python/first_speed.py apps/python/motion.py
+install(PROGRAMS apps/python/axes.py apps/python/first_bus.py apps/python/first_motion.py apps/python/first_speed.py
+                 apps/python/motion.py
         DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
-install(DIRECTORY apps/python/ DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python
-        FILES_MATCHING PATTERN envelopes.py PATTERN takt_*.py PATTERN __pycache__ EXCLUDE)
+install(FILES apps/python/takt_axes.py DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
+install(DIRECTORY apps/python/takt DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY share/devices share/eds share/demo DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)
 
 # The pages link only to each other and to CHANGELOG.md, which is installed beside them: the installed index has another link

@@ -15,11 +15,16 @@ prefix=$tmp/prefix
 cmake --install "$build" --prefix "$prefix" >/dev/null
 
 for file in bin/takt bin/taktd bin/takt-follow bin/takt-home bin/takt-jog bin/takt-logic bin/takt-move lib/systemd/system/taktd@.service lib/systemd/network/60-takt-can.link \
-  etc/security/limits.d/takt.conf share/takt/lcm/image_t.lcm share/takt/demo/two_axes.yaml share/doc/takt/index.md \
+  etc/security/limits.d/takt.conf share/takt/lcm/image_t.lcm share/takt/python/first_motion.py share/takt/python/takt_axes.py share/takt/python/takt/py.typed share/takt/demo/two_axes.yaml share/doc/takt/index.md \
   share/doc/takt/CHANGELOG.md; do
   [ -e "$prefix/$file" ] || { echo "not installed: $file" >&2; exit 1; }
 done
 ! grep -n '](\.\./' "$prefix"/share/doc/takt/*.md >&2 || { echo "an installed page links to a file of the tree" >&2; exit 1; }
+
+# The installed Python package needs only the types of lcm-gen, as the one of the tree does.
+lcm-gen -p --ppath "$tmp/types" "$prefix"/share/takt/lcm/*.lcm
+mkdir "$tmp/double" && echo 'class LCM: pass' >"$tmp/double/lcm.py"
+(cd / && PYTHONPATH=$prefix/share/takt/python:$tmp/types:$tmp/double python3 -c 'import takt; takt.Axes, takt.Bus, takt.image_t().encode()')
 
 # systemd tries a taktd again without limit, and understands each line.
 unit="$prefix/lib/systemd/system/taktd@.service"

@@ -253,7 +253,7 @@ def distance(unit):
     return code == GOOD, [raw * SCALE[unit] for raw in far]
 
 
-sys.path[:0] = [sys.argv[1], str(AXES.parent)]
+sys.path[:0] = [str(AXES.parent), sys.argv[1]]
 import takt  # noqa: E402  what lcm-gen made
 
 bus, code, told = run()

@@ -3,9 +3,9 @@ is the folder of what `lcm-gen -p` made."""
 import math
 import pathlib
 import sys
+import types
 
-sys.path[:0] = [sys.argv[1], str(pathlib.Path(__file__).resolve().parent.parent.parent / "apps/python")]
-import takt
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent.parent.parent / "apps/python"), sys.argv[1]]
 
 NEXT = {(0x250, 0x06): 0x231, (0x231, 0x07): 0x233, (0x233, 0x0F): 0x237, (0x237, 0x07): 0x233, (0x233, 0x06): 0x231,
         (0x231, 0x00): 0x250, (0x233, 0x00): 0x250, (0x237, 0x00): 0x250,
@@ -141,6 +141,7 @@ class Daemon:
         self.loses, self.mute_until, self.refuses_signs = lambda command: False, 0, False
         self.gears, self.streams, self.messages = [], [], 0  # messages of streams
         self.delay, self.late = 0, []  # of motion commands on their way here, in cycles
+        self.nmt = []  # command and node-ID of each request
         self.objects, self.mute = {}, False  # of the devices, by SDO: node-ID, index, sub
         self.refuses_targets, self.word_cycle = "", 0  # word_cycle: the cycle of the newest controlword
         self.io, self.io_life, self.stubborn = {0x6000: 0, 0x6411: 0}, 0, False  # stubborn: drives ignore controlwords
@@ -197,10 +198,12 @@ class Daemon:
     def answer(self, request):
         reply, key = takt.reply_t(), (request.node_id, request.index, request.sub)
         reply.schema, reply.session, reply.id, reply.sender = 2, 7, request.id, request.sender
-        reply.good = key in self.objects
+        reply.good = key in self.objects or request.service == "nmt"
+        if request.service == "nmt":
+            self.nmt.append((request.nmt_command, request.node_id))
         if reply.good and request.service == "sdo_download":
             self.objects[key] = bytes(request.data)
-        reply.data = self.objects[key] if reply.good else b""
+        reply.data = self.objects.get(key, b"")
         reply.size, reply.text = len(reply.data), "" if reply.good else "the device refused it: object does not exist"
         if not self.mute:
             self.waiting.append(("REPLY", reply))
@@ -333,7 +336,8 @@ class Daemon:
         status.diagnosis = takt.diagnosis_t()
         for drive in self.drives:
             node = takt.node_status_t()
-            node.node_id, node.boot_state, node.holder = drive.node, 2, self.holder or self.sender
+            node.node_id, node.name, node.boot_state, node.holder = drive.node, NAMES[drive.node], 2, self.holder or self.sender
+            node.nmt_state, node.heartbeat_age_ms = 5, 40
             node.emcys = [self.emcy] if self.emcy else []
             node.num_emcys = len(node.emcys)
             status.nodes.append(node)
@@ -353,13 +357,13 @@ def layout():
     return made
 
 
-sys.modules["lcm"] = Daemon()
-import takt_link
-from takt_axes import Axes, Obstacle
+sys.modules["lcm"] = types.ModuleType("lcm")
+import takt
+from takt import Axes, Obstacle, link
 
 
 def on_a_bus(*names, longest=LONG):
-    daemon = takt_link.lcm = takt_link.time = Daemon()
+    daemon = link.lcm = link.time = Daemon()
     return daemon, Axes("lift", *names, longest=longest)
 
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""python_motions_test.py TYPES - the motions of apps/python/takt_axes.py on the bus of python_daemon.py."""
+"""python_motions_test.py TYPES - the motions of takt.Axes on the bus of python_daemon.py."""
 import math
 import sys
 
 from python_daemon import LONG, PERIOD, SHORT, check, failures, jogs, obstacle, on_a_bus, takt
-from takt_axes import Axes, Obstacle
-from takt_stream import LEAD, StreamBuffer
+from takt import Axes, Obstacle
+from takt.stream import LEAD, StreamBuffer
 
 
 daemon, axes = on_a_bus()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""python_profiles_test.py TYPES - apps/python/takt_axes.py in the modes in which drives make their motions, on the bus
+"""python_profiles_test.py TYPES - takt.Axes in the modes in which drives make their motions, on the bus
 of python_daemon.py."""
 import sys
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""python_speed_test.py - the words that apps/python/takt_speed.py computes for speed axes."""
+"""python_speed_test.py TYPES - the words that takt.speed computes for speed axes."""
 import pathlib
 import sys
 import types
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent.parent / "apps/python"))
-import takt_speed
-from takt_speed import FAULT, OFF, READY, RUNNING, STANDING, SpeedAxis, SpeedDrives
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent.parent.parent / "apps/python"), sys.argv[1]]
+from takt import speed
+from takt.speed import FAULT, OFF, READY, RUNNING, STANDING, SpeedAxis, SpeedDrives
 
 PERIOD = 0.01
 failures = []
@@ -92,7 +92,7 @@ check("a drive that has left operation enabled by itself is not led back", drive
 
 axes = SpeedDrives([SpeedAxis(words(), {3: types.SimpleNamespace(data_type=6, bits=16)})])
 clock = types.SimpleNamespace(now=0.0)
-takt_speed.time = types.SimpleNamespace(monotonic=lambda: clock.now)
+speed.time = types.SimpleNamespace(monotonic=lambda: clock.now)
 ended = ""
 image = lambda cycle, stale=(): axes.step({0: 1, 1: 2000}, set(stale), cycle, PERIOD, 0.5, lambda: ended)
 axes.run([20.0], [0.0])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""python_verbs_test.py TYPES - what apps/python/takt_axes.py does beside motions, on the bus of python_daemon.py: Halt,
+"""python_verbs_test.py TYPES - what takt.Axes does beside motions, on the bus of python_daemon.py: Halt,
 quick stop, touch probe, SDO, inputs and outputs."""
 import sys
 

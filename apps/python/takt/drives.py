@@ -1,13 +1,12 @@
 """The states and modes of the drives of an Axes: enable, disable, reset, mode, Halt, quick stop.
-Used by takt_axes."""
+Used by Axes."""
 from __future__ import annotations
 
-from takt import command_t
-
-from takt_cia402 import (CONTROLWORD, CYCLIC_SYNCHRONOUS_POSITION, DISABLED, DISABLING, ENABLED,
-                         ENABLING, FAULTS, HALT, KEEPING, MODE, MODE_DISPLAY, POSITION, QUICK_STOP,
-                         QUICK_STOPPING, RESETTING, TARGET, Axis)
-from takt_link import Link, Obstacle
+from .cia402 import (CONTROLWORD, CYCLIC_SYNCHRONOUS_POSITION, DISABLED, DISABLING, ENABLED,
+                     ENABLING, FAULTS, HALT, KEEPING, MODE, MODE_DISPLAY, POSITION, QUICK_STOP,
+                     QUICK_STOPPING, RESETTING, TARGET, Axis)
+from .link import Link, Obstacle
+from .outputs import command, release
 
 NOT_ENABLED, MOVES, STOPS = 0, 2, 3  # axis_motion_t::state
 # What this program has made of the drives, and so whether it may move them.
@@ -258,21 +257,3 @@ def can_move(axis: Axis) -> bool:
 def moves(axis: Axis) -> bool:
     """True if taktd moves or stops the axis."""
     return axis.motion is not None and axis.motion.state in (MOVES, STOPS)
-
-
-def command(link: Link, values: dict[int, int], time_to_live: int = 0) -> None:
-    """Sends raw values by their places in the layout. `time_to_live` in cycles; 0: as
-    configured."""
-    message = command_t()
-    link.fill(message)
-    message.signals, message.values = list(values), list(values.values())
-    message.num_values, message.time_to_live = len(values), time_to_live
-    link.publish("COMMAND", message)
-
-
-def release(link: Link) -> None:
-    """Gives up all nodes that this program holds."""
-    message = command_t()
-    link.fill(message)
-    message.release = True
-    link.publish("COMMAND", message)

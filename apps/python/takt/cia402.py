@@ -1,4 +1,4 @@
-"""One axis of a CiA 402 drive: its objects, its state, and its controlwords. Used by takt_axes."""
+"""One axis of a CiA 402 drive: its objects, its state, and its controlwords. Used by Axes."""
 
 CONTROLWORD, STATUSWORD, MODE, MODE_DISPLAY = 0x6040, 0x6041, 0x6060, 0x6061
 POSITION, VELOCITY = 0x6064, 0x606C  # actual position and velocity

@@ -1,32 +1,30 @@
-"""Which axes of a bus a program commands. Used by takt_axes."""
+"""Which axes of a bus a program commands. Used by Axes."""
 from __future__ import annotations
 
-from takt_link import Link, Obstacle
+from .link import Link, Obstacle
 
 LAYOUT_TIME = 1.5  # seconds for the speed axes of a layout, which come once a second
 
 
 def find_axes(link: Link, names: tuple[str, ...]) -> list:
     """Leaves the axes with these names in link.axes, in their order; without names, all axes with
-    positions. If these are speed axes, returns their speed_axis_t, and link.axes becomes empty."""
+    positions. If these are speed axes, returns their speed_axis_t, and link.axes stays empty."""
     inverters = _inverters(link, names)
-    link.axes = [axis for axis in link.axes if axis.name not in inverters]
-    if inverters and (set(names) & set(inverters) if names else not link.axes):
+    with_position = [axis for axis in link.found_axes if axis.name not in inverters]
+    if inverters and (set(names) & set(inverters) if names else not with_position):
         chosen = list(names) or list(inverters)
         if len(set(chosen)) < len(chosen) or not set(chosen) <= set(inverters):
             raise Obstacle("wrong use", f"bus {link.bus} does not have all of these axes as speed "
                                         "axes, or one is named twice: use one Axes for speed axes "
                                         "and one for axes with positions")
-        link.axes = []
         return [inverters[name] for name in chosen]
-    known = {axis.name: axis for axis in link.axes}
+    known = {axis.name: axis for axis in with_position}
     for name in names:
         if name not in known or names.count(name) > 1:
             raise Obstacle("wrong use", f"bus {link.bus} has no axis '{name}', or it is named "
                                         "twice; the axes are: "
                                         f"{', '.join([*known, *inverters]) or 'none'}")
-    if names:
-        link.axes = [known[name] for name in names]
+    link.axes = [known[name] for name in names] if names else with_position
     if not link.axes:
         raise Obstacle("wrong use", f"bus {link.bus} has no axis: no node has 6040 and 6041 in its "
                                     "PDOs, or the words of an inverter")
@@ -35,7 +33,7 @@ def find_axes(link: Link, names: tuple[str, ...]) -> list:
 
 def _inverters(link: Link, names: tuple[str, ...]) -> dict:
     """The speed axes of the bus. Waits for them if they may be meant."""
-    with_position = {axis.name for axis in link.axes if axis.has_target}
+    with_position = {axis.name for axis in link.found_axes if axis.has_target}
     wanted, begin = set(names) - with_position if names else not with_position, link.now()
     while wanted and not link.speed_words() and link.now() < begin + LAYOUT_TIME:
         link.serve(0.05)

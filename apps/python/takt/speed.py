@@ -1,4 +1,4 @@
-"""Speed axes: inverters, and CiA 402 drives in velocity mode. takt_axes.Axes uses this module for axes without a position.
+"""Speed axes: inverters, and CiA 402 drives in velocity mode. Axes uses this module for axes without a position.
 
 A program computes the words of a speed axis from each image. taktd lets the drives stop along their ramps when no words come
 for the timeout of the program, or for the time of `on_timeout` in the network file.
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import time
 
-from takt_signals import raw_limits
+from .signals import raw_limits
 
 CIA402 = 1  # speed_axis_t::sequence
 LEVEL = 1  # speed_axis_t::fault_reset

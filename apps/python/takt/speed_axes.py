@@ -1,10 +1,11 @@
-"""The verbs of speed axes: enable, run, stop, disable, reset. Used by takt_axes."""
+"""The verbs of speed axes: enable, run, stop, disable, reset. Used by Axes."""
 from __future__ import annotations
 
-from takt_cia402 import Axis
-from takt_drives import HELD_STATUSES, command, release
-from takt_link import Link, Obstacle
-from takt_speed import FAULT, OFF, READY, STANDING, SpeedAxis, SpeedDrives
+from .cia402 import Axis
+from .drives import HELD_STATUSES
+from .link import Link, Obstacle
+from .outputs import command, release
+from .speed import FAULT, OFF, READY, STANDING, SpeedAxis, SpeedDrives
 
 WORDS_BEFORE_RELEASE = 3  # cycles in which the last words are sent
 

@@ -1,11 +1,11 @@
-"""Touch probes of drives, CiA 402-2, 0x60B8 to 0x60BD. Used by takt_axes."""
+"""Touch probes of drives, CiA 402-2, 0x60B8 to 0x60BD. Used by Axes."""
 from __future__ import annotations
 
-from takt_cia402 import AXIS_STEP, POSITION, PROBE_FUNCTION, PROBE_POSITION, PROBE_STATUS, Axis
-from takt_drives import WORD_CYCLES
-from takt_link import Link, Obstacle
-from takt_outputs import Outputs
-from takt_services import Services
+from .cia402 import AXIS_STEP, POSITION, PROBE_FUNCTION, PROBE_POSITION, PROBE_STATUS, Axis
+from .drives import WORD_CYCLES
+from .link import Link, Obstacle
+from .outputs import Outputs
+from .services import Services
 
 EDGES = ("rising", "falling")
 # Bits of 0x60B8 and 0x60B9 for input 1; those of input 2 are 8 bits above.

@@ -1,12 +1,12 @@
-"""What the newest messages say about the axes of an Axes. Used by takt_axes."""
+"""What the newest messages say about the axes of an Axes. Used by Axes."""
 from __future__ import annotations
 
-from takt_cia402 import POSITION, VELOCITY
-from takt_homing import HOMED
-from takt_link import Link
-from takt_motions import Motions
-from takt_profiles import Profiles
-from takt_speed_axes import SpeedAxes
+from .cia402 import POSITION, VELOCITY
+from .homing import HOMED
+from .link import Link
+from .motions import Motions
+from .profiles import Profiles
+from .speed_axes import SpeedAxes
 
 
 class View:
@@ -16,11 +16,6 @@ class View:
     _speed: SpeedAxes | None  # None: axes with positions, which have the other two
     _motions: Motions | None
     _profiles: Profiles | None
-
-    @property
-    def sender(self) -> str:
-        """The name of this object in events and in status_t."""
-        return self._link.sender
 
     @property
     def names(self) -> list[str]:

@@ -1,14 +1,14 @@
-"""Profile position mode, and the modes of velocities and torques, CiA 402-2. Used by takt_axes."""
+"""Profile position mode, and the modes of velocities and torques, CiA 402-2. Used by Axes."""
 from __future__ import annotations
 
-from takt_cia402 import (AXIS_STEP, CONTROLWORD, KEEPING, POSITION, PROBE_FUNCTION,
-                         PROFILE_POSITION, TARGET, TARGET_REACHED, TARGET_TORQUE, TARGET_VELOCITY,
-                         VELOCITY, Axis)
-from takt_drives import HALTED, READY, WORD_CYCLES, Drives
-from takt_link import Link, Obstacle
-from takt_outputs import Outputs
-from takt_services import Services
-from takt_signals import encode
+from .cia402 import (AXIS_STEP, CONTROLWORD, KEEPING, POSITION, PROBE_FUNCTION,
+                     PROFILE_POSITION, TARGET, TARGET_REACHED, TARGET_TORQUE, TARGET_VELOCITY,
+                     VELOCITY, Axis)
+from .drives import HALTED, READY, WORD_CYCLES, Drives
+from .link import Link, Obstacle
+from .outputs import Outputs
+from .services import Services
+from .signals import encode
 
 # Modes of operation (0x6060): profile and cyclic synchronous velocity, and torque.
 MODES_OF = {TARGET_VELOCITY: (3, 9), TARGET_TORQUE: (4, 10)}

@@ -1,21 +1,21 @@
-"""Signed envelopes for axes.py, where a bus has keys. share/doc/security.md describes them.
+"""Signed envelopes, where a bus has keys. share/doc/security.md describes them."""
+from __future__ import annotations
 
-A program that runs on a bus without keys does not need this file.
-"""
 import hashlib
 import hmac
 import os
 import random
 import stat
+import struct
 import time
 
-from takt import envelope_t  # made by lcm-gen -p
+from .messages import envelope_t
 
 MAC_SIZE = 32  # bytes, at the end of the encoded envelope
 OLDEST = 1_000_000  # microseconds between the clocks of sender and receiver
 
 
-def read_keys(path):
+def read_keys(path: str) -> dict[str, bytes]:
     """Returns {name: secret} of a key file. ValueError says why a file is refused, as taktd does."""
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
@@ -47,14 +47,15 @@ def read_keys(path):
 class Envelopes:
     """Seals messages with the first key, and opens those that one of the keys has signed."""
 
-    def __init__(self, keys):
+    def __init__(self, keys: dict[str, bytes]):
         self.keys = keys
         self.own_key = next(iter(keys))
         self.instance = random.SystemRandom().getrandbits(63)
         self.counter = 0  # increases with each envelope of this instance
-        self.counters = {}  # the newest counter of each sender, by key and instance
+        # The newest counter of each sender, by key and instance.
+        self.counters: dict[tuple[str, int], int] = {}
 
-    def seal(self, channel, session, message):
+    def seal(self, channel: str, session: int, message: bytes) -> bytes:
         """Returns the encoded envelope of an encoded message."""
         self.counter += 1
         envelope = envelope_t()
@@ -66,11 +67,11 @@ class Envelopes:
         signed = envelope.encode()[:-MAC_SIZE]
         return signed + mac_of(signed, self.keys[self.own_key])
 
-    def open(self, data):
+    def open(self, data: bytes) -> envelope_t | None:
         """Returns the envelope; None if it is forged, altered, repeated, too old or out of order."""
         try:
             envelope = envelope_t.decode(data)
-        except ValueError:
+        except (ValueError, struct.error):
             return None
         secret, sender = self.keys.get(envelope.key), (envelope.key, envelope.instance)
         signed = data[:-MAC_SIZE]
@@ -84,5 +85,16 @@ class Envelopes:
         return envelope
 
 
-def mac_of(signed, secret):
+def envelopes_of(path: str | None, check: bool | None) -> tuple[Envelopes | None, bool]:
+    """The envelopes of a program, and whether it accepts signed messages only. None: TAKT_KEYS and
+    TAKT_CHECK_IMAGES of the environment decide. ValueError says why a key file is refused."""
+    path = os.environ.get("TAKT_KEYS") if path is None else path
+    check = os.environ.get("TAKT_CHECK_IMAGES") == "true" if check is None else check
+    if check and not path:
+        raise ValueError("TAKT_CHECK_IMAGES and check_images need a key file: TAKT_KEYS=FILE or "
+                         "keys")
+    return Envelopes(read_keys(path)) if path else None, check
+
+
+def mac_of(signed: bytes, secret: bytes) -> bytes:
     return hashlib.blake2b(signed, key=secret, digest_size=MAC_SIZE).digest()

@@ -1,14 +1,13 @@
 """The motions of an Axes, which taktd runs: how they begin, how they stand, how they end. Used by
-takt_axes."""
+Axes."""
 from __future__ import annotations
 
 import random
 
-from takt import motion_command_t, motion_gear_t, motion_goal_t, motion_stream_t
-
-from takt_drives import STOPS, Drives, moves
-from takt_link import Link, Obstacle
-from takt_stream import StreamBuffer
+from .drives import STOPS, Drives, moves
+from .link import Link, Obstacle
+from .messages import motion_command_t, motion_gear_t, motion_goal_t, motion_stream_t
+from .stream import StreamBuffer
 
 LOCKED = 2  # axis_motion_t::gear
 DONE, STOPPED, REFUSED = 1, 2, 4  # axis_motion_t::outcome

@@ -1,9 +1,9 @@
-"""The points of a stream on their way to taktd: which of them to send in a cycle. Used by takt_axes.
+"""The points of a stream on their way to taktd: which of them to send in a cycle. Used by Axes.
 
 The time of the stream is known from the reports of taktd. Each message repeats the points that are not reached yet, so that a
 message that was lost does no harm. The stream begins when its points reach LEAD seconds ahead, or with `starts`.
 """
-from takt import motion_point_t
+from .messages import motion_point_t
 
 LEAD = 0.4  # seconds for which points are sent in advance
 LONGEST_STEP = 4.0  # seconds between two points; taktd takes no point more than 5 s in advance

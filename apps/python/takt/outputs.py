@@ -1,9 +1,9 @@
-"""Inputs and outputs of the nodes of a bus, by their names. Used by takt_axes."""
+"""Inputs and outputs of the nodes of a bus, by their names. Used by Axes."""
 from __future__ import annotations
 
-from takt_drives import command
-from takt_link import Link, Obstacle
-from takt_signals import decode, encode
+from .link import Link, Obstacle
+from .messages import command_t
+from .signals import decode, encode
 
 ANSWER_TIME = 2.0  # seconds after which a value that taktd has not taken is refused
 # The shortest time to live in cycles: a command needs some of them to arrive.
@@ -15,7 +15,9 @@ class Outputs:
     is the timeout of the program. After a longer silence they are not sent again."""
 
     def __init__(self, link: Link):
-        self._link, self._values, self._sent, self._lost = link, {}, 0.0, ""
+        self._link, self._sent, self._lost = link, 0.0, ""
+        self._has_nodes = False  # taktd may count nodes as held by this program
+        self._values: dict[int, int] = {}
         link.in_each_cycle.append(self._send)
 
     def signal(self, name: str) -> float:
@@ -26,7 +28,8 @@ class Outputs:
             raise Obstacle("blocked", f"{name}: its newest value has not come in time")
         return decode(link.signals[place], link.values[place])
 
-    def set(self, name: str, value: float) -> None:
+    def raw(self, name: str, value: float) -> dict[int, int]:
+        """The place and the raw number of a value for an output."""
         link, place = self._link, self._place(name)
         signal = link.signals[place]
         if not signal.output:
@@ -37,7 +40,7 @@ class Outputs:
         raw = encode(signal, value)
         if raw is None:
             raise Obstacle("wrong use", f"{name} can't hold {value} {signal.unit}".rstrip())
-        self.confirm({place: raw})
+        return {place: raw}
 
     def confirm(self, values: dict[int, int]) -> None:
         """Holds these values, and waits until taktd sends them. If it refuses one, none is held."""
@@ -56,7 +59,7 @@ class Outputs:
         if late or self.refusal(nodes):
             for place in values:
                 self._values.pop(place, None)
-            raise Obstacle("refused", self.refusal(nodes) or
+            raise Obstacle("refused", self.refusal(nodes) or link.refused_envelope("COMMAND") or
                            f"taktd has not taken {', '.join(late)}")
 
     def refusal(self, nodes: set[int]) -> str:
@@ -69,13 +72,19 @@ class Outputs:
         """Sends these values now and from each image."""
         self._drop_after_silence()
         self._values |= values
+        self._has_nodes = True
         self._sent = self._link.now()
         self._send()
 
+    def send_once(self, values: dict[int, int], cycles: int) -> None:
+        """Sends these values now; they end after this number of cycles. 0: as configured."""
+        self._has_nodes = True
+        command(self._link, values, cycles)
+
     def drop(self) -> bool:
         """Sends no value any longer. Returns whether some were sent."""
-        held, self._values = bool(self._values), {}
-        return held
+        had, self._has_nodes, self._values = self._has_nodes, False, {}
+        return had
 
     def _place(self, name: str) -> int:
         node, _, part = name.partition(".")
@@ -112,3 +121,21 @@ class Outputs:
         cycles = int(link.timeout / link.period) if link.period else 0
         command(link, self._values, max(SHORTEST_LIFE, cycles))
         self._sent = link.now()
+
+
+def command(link: Link, values: dict[int, int], time_to_live: int = 0) -> None:
+    """Sends raw values by their places in the layout. `time_to_live` in cycles; 0: as
+    configured."""
+    message = command_t()
+    link.fill(message)
+    message.signals, message.values = list(values), list(values.values())
+    message.num_values, message.time_to_live = len(values), time_to_live
+    link.publish("COMMAND", message)
+
+
+def release(link: Link) -> None:
+    """Gives up all nodes that this program holds."""
+    message = command_t()
+    link.fill(message)
+    message.release = True
+    link.publish("COMMAND", message)

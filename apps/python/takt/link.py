@@ -1,4 +1,4 @@
-"""The messages of one bus: what they say, and how a program waits for them. Used by takt_axes."""
+"""The messages of one bus: what they say, and how a program waits for them. Used by Axes."""
 from __future__ import annotations
 
 import os
@@ -6,12 +6,15 @@ import random
 import sys
 import time
 from collections.abc import Callable
+from typing import Any
 
 import lcm
-from takt import event_t, image_t, layout_t, motion_t, speed_axes_t, status_t
 
-from takt_cia402 import (AXIS_STEP, CONTROLWORD, FIRST_OBJECT, INTERPOLATION_TARGET, LAST_OBJECT,
-                         OBJECTS, STATUSWORD, Axis)
+from .cia402 import (AXIS_STEP, CONTROLWORD, FIRST_OBJECT, INTERPOLATION_TARGET, LAST_OBJECT,
+                     OBJECTS, STATUSWORD, Axis)
+from .envelopes import envelopes_of
+from .messages import (event_t, image_t, layout_t, motion_t, signal_t, speed_axes_t,
+                       status_t)
 
 SCHEMA = 2  # of the LCM messages that this module knows
 IMAGE_TIME = 2.0  # seconds without an image after which the bus is gone
@@ -32,22 +35,40 @@ class Link:
     """The newest messages of a bus, and the messages to it. The tables of functions at the end of
     __init__ are filled by those who use it."""
 
-    def __init__(self, bus: str, timeout: float, longest: float):
-        """Waits until the bus is heard, for `longest` seconds at most."""
+    def __init__(self, bus: str, timeout: float, longest: float, keys: str | None = None,
+                 check_images: bool | None = None):
+        """Waits until the bus is heard, for `longest` seconds at most. `keys` and `check_images`
+        are those of Bus."""
+        try:
+            self._envelopes, self._checks = envelopes_of(keys, check_images)
+        except ValueError as why:
+            raise Obstacle("wrong use", str(why)) from None
+        self._handlers: dict[str, list[Callable[[str, bytes], None]]] = {}
         self.bus, self.timeout, self.longest = bus.upper(), timeout, longest
         # A random number tells two senders apart, also in one process.
         self.instance = random.SystemRandom().randrange(1, 2**63)
         program = os.path.basename(sys.argv[0])[:32] or "python"
         self.sender = f"{program} {os.getpid()} {self.instance & 0xFFFF_FFFF:08x}"
         self.commanding = False  # this program commands nodes, and gives signs of life
-        self.axes = []  # first all axes of the bus with their words in PDOs, then the chosen ones
+        self.found_axes: list[Axis] = []  # all axes of the bus with their words in PDOs
+        self.axes: list[Axis] = []  # those of them that this program commands
         self.session, self.period, self.cycle, self.image_time = None, 0.0, -1, self.now()
-        self.values, self.signals, self.stale = {}, {}, set()  # by their places in the layout
+        # Of the newest image that has come in full, by the places of the layout.
+        self.values: dict[int, int] = {}
+        self.stale: set[int] = set()
+        self.signals: dict[int, signal_t] = {}
+        self.places: dict[str, int] = {}  # of the signals, by their names: "io.digital_input_1"
+        self.sync_time = 0.0  # of the newest image, seconds since 1970
         self.events, self.nodes = [], {}
         self.in_each_cycle, self.in_each_step, self.when_abandoned = [], [], []
         self._restarted, self._utime, self._hash = False, 0, None
-        self._found, self._layout_parts, self._image_parts, self._speed_parts = {}, set(), set(), {}
-        self._lcm = lcm.LCM()  # LCM_DEFAULT_URL, else LCM's default
+        self._found, self._layout_parts, self._image_parts, self._speed_parts = {}, set(), {}, {}
+        try:
+            self._lcm = lcm.LCM()  # LCM_DEFAULT_URL, else LCM's default
+        except RuntimeError as why:
+            raise Obstacle("no bus", f"no connection to LCM: {why}") from None
+        if self._checks:
+            self._lcm.subscribe(f"{self.bus}_SIGNED", self._on_signed)
         for channel, handler in (("SPEED_AXES", self._on_speed_axes), ("LAYOUT", self._on_layout),
                                  ("IMAGE", self._on_image), ("MOTION", self._on_motion),
                                  ("EVENT", self._on_event), ("STATUS", self._on_status)):
@@ -80,6 +101,10 @@ class Link:
         """The text of the newest event of this kind that contains `part`."""
         return next((event.text for event in reversed(self.events)
                      if event.kind == kind and part in event.text), "")
+
+    def refused_envelope(self, channel: str) -> str:
+        """What taktd has said about a message without the key of the bus. Empty: nothing."""
+        return self.event("envelope_refused", f" {self.bus}_{channel} ")
 
     def holder(self, axis: Axis) -> str:
         """The name of the program that holds the node of the axis."""
@@ -138,10 +163,16 @@ class Link:
     # Messages.
 
     def subscribe(self, channel: str, handler: Callable[[str, bytes], None]) -> None:
-        self._lcm.subscribe(f"{self.bus}_{channel}", handler)
+        name = f"{self.bus}_{channel}"
+        self._handlers.setdefault(name, []).append(handler)
+        if not self._checks:
+            self._lcm.subscribe(name, handler)
 
-    def publish(self, channel: str, message) -> None:
-        self._lcm.publish(f"{self.bus}_{channel}", message.encode())
+    def publish(self, channel: str, message: Any) -> None:
+        name, data = f"{self.bus}_{channel}", message.encode()
+        if self._envelopes:
+            data, name = self._envelopes.seal(name, self.session, data), f"{self.bus}_SECURED"
+        self._lcm.publish(name, data)
 
     def fill(self, message) -> None:
         """Writes what each command has. A move_by needs a later utime than each motion before."""
@@ -149,6 +180,11 @@ class Link:
         message.utime, message.schema = self._utime, SCHEMA
         message.session, message.cycle = self.session, self.cycle
         message.instance, message.sender = self.instance, self.sender
+
+    def _on_signed(self, channel: str, data: bytes) -> None:
+        envelope = self._envelopes.open(data)
+        for handler in self._handlers.get(envelope.channel, []) if envelope else []:
+            handler(envelope.channel, bytes(envelope.data))
 
     def _on_speed_axes(self, channel: str, data: bytes) -> None:
         message = speed_axes_t.decode(data)
@@ -169,11 +205,12 @@ class Link:
         if len(self._layout_parts) == layout.parts:
             self.session, self._hash = layout.session, layout.hash
             self.period = layout.period_ns * 1e-9
-            self.axes = [axis for _, axis in sorted(self._found.items())
-                         if CONTROLWORD in axis.places and STATUSWORD in axis.places]
+            self.found_axes = [axis for _, axis in sorted(self._found.items())
+                               if CONTROLWORD in axis.places and STATUSWORD in axis.places]
 
     def _add(self, place: int, signal) -> None:
         self.signals[place] = signal
+        self.places[f"{signal.node}.{signal.name}"] = place
         index = FIRST_OBJECT + signal.index % AXIS_STEP
         if (not FIRST_OBJECT <= signal.index <= LAST_OBJECT or
                 (index, bool(signal.output)) not in OBJECTS or
@@ -189,15 +226,17 @@ class Link:
         image = image_t.decode(data)
         if self.session is None or (image.session, image.layout_hash) != (self.session, self._hash):
             return
-        self.values.update(enumerate(image.values, image.first_signal))
-        if image.part == 0:
-            self._image_parts, self.stale = set(), set()
-        self.stale.update(image.stale)
-        self._image_parts.add(image.part)
+        if any(part.cycle != image.cycle for part in self._image_parts.values()):
+            self._image_parts = {}
+        self._image_parts[image.part] = image
         if len(self._image_parts) < image.parts:
             return
-        self.cycle, self.image_time = image.cycle, self.now()
-        for axis in self.axes:
+        for part in self._image_parts.values():
+            self.values.update(enumerate(part.values, part.first_signal))
+        self.stale = {place for part in self._image_parts.values() for place in part.stale}
+        self.cycle, self.sync_time = image.cycle, image.utime * 1e-6
+        self.image_time = self.now()
+        for axis in self.found_axes:
             if STATUSWORD in axis.places:
                 axis.statusword = self.values[axis.places[STATUSWORD]] & 0xFFFF
 
@@ -206,7 +245,7 @@ class Link:
         if motion.session != self.session:
             return
         reported = {(axis.node_id, axis.axis): axis for axis in motion.axes}
-        for axis in self.axes:
+        for axis in self.found_axes:
             if (axis.node_id, axis.number) in reported:
                 axis.motion, axis.motion_cycle = reported[axis.node_id, axis.number], motion.cycle
 
@@ -221,7 +260,7 @@ class Link:
             return
         self.nodes.update((node.node_id, node) for node in status.nodes)
         shown = {node.node_id for node in status.nodes}
-        for axis in self.axes:
+        for axis in self.found_axes:
             if axis.node_id in shown:
                 other = self.holder(axis) not in ("", self.sender)
                 axis.held = axis.held + 1 if other else 0

@@ -1,10 +1,10 @@
-"""Homing of the axes of an Axes by the methods of their drives, CiA 402-2. Used by takt_axes."""
+"""Homing of the axes of an Axes by the methods of their drives, CiA 402-2. Used by Axes."""
 from __future__ import annotations
 
-from takt_cia402 import (CONTROLWORD, CYCLIC_SYNCHRONOUS_POSITION, HOMING, HOMING_RESULT, KEEPING,
-                         START_HOMING, TARGET_REACHED, Axis)
-from takt_drives import NOT_ENABLED, WORD_CYCLES, Drives
-from takt_link import Link, Obstacle
+from .cia402 import (CONTROLWORD, CYCLIC_SYNCHRONOUS_POSITION, HOMING, HOMING_RESULT, KEEPING,
+                     START_HOMING, TARGET_REACHED, Axis)
+from .drives import NOT_ENABLED, WORD_CYCLES, Drives
+from .link import Link, Obstacle
 
 HOMED, HOMING_FAILED = 2, 3  # axis_motion_t::homing
 START_TIME = 1.0  # seconds for which a drive may show that it has not begun

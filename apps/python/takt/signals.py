@@ -1,4 +1,4 @@
-"""Values of signals: raw numbers of the image and numbers in units. Used by takt_axes."""
+"""Values of signals: raw numbers of the image and numbers in units. Used by Axes."""
 from __future__ import annotations
 
 import struct

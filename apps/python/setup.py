@@ -1,0 +1,29 @@
+"""What pyproject.toml can't say: the modules that are made of share/lcm and share/eds when the package is built."""
+import pathlib
+import subprocess
+import sys
+
+from setuptools import setup
+from setuptools.command.build_py import build_py
+
+HERE = pathlib.Path(__file__).resolve().parent
+SHARE = HERE.parent.parent / "share"
+sys.path.insert(0, str(HERE))
+from object_names import table_of  # noqa: E402
+
+
+class BuildWithTypes(build_py):
+    """Adds the types of the LCM messages, and the table of names of objects."""
+
+    def run(self):
+        super().run()
+        folder = pathlib.Path(self.build_lib)
+        package = folder / "takt"
+        own = (package / "__init__.py").read_bytes()
+        types = sorted((SHARE / "lcm").glob("*.lcm"))
+        subprocess.run(["lcm-gen", "-p", "--ppath", folder, *types], check=True)
+        (package / "__init__.py").write_bytes(own)  # lcm-gen appends the types, which takt.messages has
+        (package / "objects.py").write_text(table_of(sorted((SHARE / "eds").glob("*.eds"))))
+
+
+setup(cmdclass={"build_py": BuildWithTypes})
