@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """python_bus_test.py TYPES - takt.Bus on the bus of python_daemon.py: the image, set-points, events, nodes, SDO by names,
-NMT, keys."""
+NMT, keys. And what the pages say about the package."""
+import collections.abc
 import pathlib
+import re
 import sys
 import tempfile
 
@@ -33,6 +35,48 @@ check("a program that only listens commands nothing", not daemon.sender)
 with bus:
     pass
 check("and gives nothing up", daemon.released == 0)
+
+
+
+class InParts(Daemon):
+    """Its images come in two parts; `drops` says which parts are lost."""
+    @staticmethod
+    def drops(cycle, part):
+        return False
+
+    def image(self):
+        parts = [super(InParts, self).image() for _ in range(2)]
+        for part, image in enumerate(parts):
+            image.parts, image.part, image.first_signal, image.values = 2, part, 8 * part, image.values[8 * part:8 * part + 8]
+            image.num_values = len(image.values)
+            if not self.drops(self.cycle, part):
+                self.waiting.append(("IMAGE", image))
+        return takt.event_t()  # no image, which changes nothing
+
+
+daemon, bus = on_a_bus(InParts)
+check("an image may come in parts", bus.next_image()["io.switches"] == 0.0)
+daemon.drops = lambda cycle, part: (cycle + part) % 2
+daemon.io[0x6000], daemon.drives[0].position = 1, 3.0
+check("parts of two cycles are no image", obstacle(bus.next_image, 0.1)[0] == "time over" and
+      bus.signal("shoulder.position") == 0.0 and bus.signal("io.switches") == 0.0)
+daemon.drops = InParts.drops
+check("the next whole one is", bus.next_image()["shoulder.position"] == 3.0)
+
+daemon, bus = on_a_bus()
+for channel, kind in (("IMAGE", takt.image_t), ("STATUS", takt.event_t), ("EVENT", takt.event_t)):
+    for handler in daemon.handlers[channel]:
+        handler(f"LIFT_{channel}", kind().encode()[:20])
+        handler(f"LIFT_{channel}", b"what is this")
+check("messages that are cut off change nothing", bus.next_image().cycle > 0)
+
+
+class Newer(Daemon):
+    def pass_cycle(self):
+        self.waiting.append(("LAYOUT", takt.event_t()))
+
+
+check("a taktd of another version is told", "another layout_t" in obstacle(on_a_bus, Newer)[1], obstacle(on_a_bus, Newer))
 
 daemon, bus = on_a_bus()
 bus.set("io.valve", -1.5)
@@ -155,6 +199,16 @@ with tempfile.TemporaryDirectory() as folder:
     Locked.forged = True
     check("forged ones are not", obstacle(on_a_bus, Locked, keys=str(path), check_images=True)[0] == "no bus")
 check("signed images need a key", obstacle(Bus, "lift", check_images=True)[0] == "wrong use")
+
+pages = {name: (TREE / f"share/doc/{name}.md").read_text() for name in ("python", "axis_library", "application", "motion", "speed")}
+for kind in (Bus, takt.Axes, takt.Image):
+    for name in (name for name in dir(kind) if not name.startswith("_") and name not in dir(collections.abc.Mapping)):
+        told = any(re.search(rf"\b{name}\b", page) for page in pages.values())
+        check(f"{kind.__name__}.{name} has a docstring and a place in the pages", getattr(kind, name).__doc__ and told)
+for page, program in (("python", "first_motion"), ("python", "first_bus"), ("application", "first_motion"), ("motion", "first_motion"),
+                      ("speed", "first_speed")):
+    code = (TREE / f"apps/python/{program}.py").read_text().partition('"""\n')[2]
+    check(f"{page}.md shows {program}.py", f"```python\n{code}```\n" in pages[page])
 
 types = {path.stem for path in (TREE / "share/lcm").glob("*.lcm")}
 check("the package has each type of share/lcm", types == set(takt.messages.__all__), types ^ set(takt.messages.__all__))

@@ -37,8 +37,8 @@ class Bus:
         self._services, self._outputs = Services(self._link), Outputs(self._link)
         self._events: deque[event_t] = deque(maxlen=MOST_EVENTS)
         self._status: status_t | None = None
-        self._link.subscribe("EVENT", self._on_event)
-        self._link.subscribe("STATUS", self._on_status)
+        self._link.subscribe("EVENT", event_t, self._on_event)
+        self._link.subscribe("STATUS", status_t, self._on_status)
 
     def __enter__(self) -> Bus:
         return self
@@ -195,12 +195,10 @@ class Bus:
             raise Obstacle("wrong use", f"{value} needs more than {size} bytes") from why
         self.write(node, index, sub, data)
 
-    def _on_event(self, channel: str, data: bytes) -> None:
-        event = event_t.decode(data)
+    def _on_event(self, event: event_t) -> None:
         if event.session == self._link.session:
             self._events.append(event)
 
-    def _on_status(self, channel: str, data: bytes) -> None:
-        status = status_t.decode(data)
+    def _on_status(self, status: status_t) -> None:
         if status.session == self._link.session and status.part == 0:
             self._status = status

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import random
+import struct
 import sys
 import time
 from collections.abc import Callable
@@ -43,7 +44,7 @@ class Link:
             self._envelopes, self._checks = envelopes_of(keys, check_images)
         except ValueError as why:
             raise Obstacle("wrong use", str(why)) from None
-        self._handlers: dict[str, list[Callable[[str, bytes], None]]] = {}
+        self._handlers: dict[str, list[Callable[[str, bytes], None]]] = {}  # by channel
         self.bus, self.timeout, self.longest = bus.upper(), timeout, longest
         # A random number tells two senders apart, also in one process.
         self.instance = random.SystemRandom().randrange(1, 2**63)
@@ -69,10 +70,12 @@ class Link:
             raise Obstacle("no bus", f"no connection to LCM: {why}") from None
         if self._checks:
             self._lcm.subscribe(f"{self.bus}_SIGNED", self._on_signed)
-        for channel, handler in (("SPEED_AXES", self._on_speed_axes), ("LAYOUT", self._on_layout),
-                                 ("IMAGE", self._on_image), ("MOTION", self._on_motion),
-                                 ("EVENT", self._on_event), ("STATUS", self._on_status)):
-            self.subscribe(channel, handler)
+        self.subscribe("SPEED_AXES", speed_axes_t, self._on_speed_axes)
+        self.subscribe("LAYOUT", layout_t, self._on_layout)
+        self.subscribe("IMAGE", image_t, self._on_image)
+        self.subscribe("MOTION", motion_t, self._on_motion)
+        self.subscribe("EVENT", event_t, self._on_event)
+        self.subscribe("STATUS", status_t, self._on_status)
         end = self.now() + longest
         while self.cycle < 0:
             self.serve(0.05)
@@ -162,11 +165,24 @@ class Link:
 
     # Messages.
 
-    def subscribe(self, channel: str, handler: Callable[[str, bytes], None]) -> None:
+    def subscribe(self, channel: str, kind: Any, handler: Callable[[Any], None]) -> None:
+        """Hands over each message of this type. One that is incomplete, or of another type, changes
+        nothing."""
+        def decode(name: str, data: bytes) -> None:
+            try:
+                message = kind.decode(data)
+            except ValueError:  # the type has other fields
+                if kind is layout_t and self.session is None:
+                    raise Obstacle("wrong use", "taktd sends another layout_t than this package "
+                                                "knows: install that of its version") from None
+            except struct.error:
+                pass
+            else:
+                handler(message)
         name = f"{self.bus}_{channel}"
-        self._handlers.setdefault(name, []).append(handler)
+        self._handlers.setdefault(name, []).append(decode)
         if not self._checks:
-            self._lcm.subscribe(name, handler)
+            self._lcm.subscribe(name, decode)
 
     def publish(self, channel: str, message: Any) -> None:
         name, data = f"{self.bus}_{channel}", message.encode()
@@ -186,13 +202,11 @@ class Link:
         for handler in self._handlers.get(envelope.channel, []) if envelope else []:
             handler(envelope.channel, bytes(envelope.data))
 
-    def _on_speed_axes(self, channel: str, data: bytes) -> None:
-        message = speed_axes_t.decode(data)
+    def _on_speed_axes(self, message: speed_axes_t) -> None:
         if message.schema == SCHEMA:
             self._speed_parts[message.session, message.part] = message
 
-    def _on_layout(self, channel: str, data: bytes) -> None:
-        layout = layout_t.decode(data)
+    def _on_layout(self, layout: layout_t) -> None:
         if layout.schema != SCHEMA:
             raise Obstacle("wrong use", f"taktd speaks schema {layout.schema} of the messages, "
                                         f"this program {SCHEMA}")
@@ -222,8 +236,7 @@ class Link:
                                       Axis(name, signal.node, signal.node_id, number))
         axis.places[index], axis.signals[index] = place, signal
 
-    def _on_image(self, channel: str, data: bytes) -> None:
-        image = image_t.decode(data)
+    def _on_image(self, image: image_t) -> None:
         if self.session is None or (image.session, image.layout_hash) != (self.session, self._hash):
             return
         if any(part.cycle != image.cycle for part in self._image_parts.values()):
@@ -240,8 +253,7 @@ class Link:
             if STATUSWORD in axis.places:
                 axis.statusword = self.values[axis.places[STATUSWORD]] & 0xFFFF
 
-    def _on_motion(self, channel: str, data: bytes) -> None:
-        motion = motion_t.decode(data)
+    def _on_motion(self, motion: motion_t) -> None:
         if motion.session != self.session:
             return
         reported = {(axis.node_id, axis.axis): axis for axis in motion.axes}
@@ -249,13 +261,11 @@ class Link:
             if (axis.node_id, axis.number) in reported:
                 axis.motion, axis.motion_cycle = reported[axis.node_id, axis.number], motion.cycle
 
-    def _on_event(self, channel: str, data: bytes) -> None:
-        event = event_t.decode(data)
+    def _on_event(self, event: event_t) -> None:
         if event.session == self.session and event.severity > 0:
             self.events = self.events[1 - MOST_EVENTS:] + [event]
 
-    def _on_status(self, channel: str, data: bytes) -> None:
-        status = status_t.decode(data)
+    def _on_status(self, status: status_t) -> None:
         if status.session != self.session:
             return
         self.nodes.update((node.node_id, node) for node in status.nodes)

@@ -20,7 +20,7 @@ class Services:
         self._link = link
         self._number = random.randrange(1, 2**40)  # of the newest request
         self._reply: reply_t | None = None  # to it
-        link.subscribe("REPLY", self._on_reply)
+        link.subscribe("REPLY", reply_t, self._on_reply)
 
     def read(self, node: str, index: int, sub: int) -> bytes:
         return self._access("sdo_upload", node, index, sub, b"")
@@ -66,7 +66,6 @@ class Services:
                                         f"are: {', '.join(found)}")
         return found[name]
 
-    def _on_reply(self, channel: str, data: bytes) -> None:
-        reply = reply_t.decode(data)
+    def _on_reply(self, reply: reply_t) -> None:
         if (reply.schema, reply.sender, reply.id) == (SCHEMA, self._link.sender, self._number):
             self._reply = reply

@@ -19,6 +19,7 @@ class View:
 
     @property
     def names(self) -> list[str]:
+        """The names of the axes, in the order of all values: "shoulder", "gantry.2"."""
         return [axis.name for axis in self._link.axes]
 
     @property
