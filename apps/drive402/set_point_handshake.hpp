@@ -18,7 +18,7 @@ class SetPointHandshake {
   std::uint16_t step(std::uint16_t statusword) noexcept;
   /// Returns true if no handshake is running and none is to follow.
   bool done() const noexcept { return phase_ == Phase::idle && !again_; }
-  /// Returns true if the drive has taken all set-points. Its acknowledgement may still be there.
+  /// Returns true if the drive has taken all set-points. Bit 12 of the statusword may still be set.
   bool taken() const noexcept {
     return (phase_ == Phase::idle || phase_ == Phase::lowered) && !again_;
   }

@@ -96,9 +96,9 @@ void BusRun::watch_lateness() {
        fmt::format("SYNC was up to {} us late, but the limit is {} us", latest / 1us, limit / 1us));
 }
 
-/// Ends the run if the boot of a mandatory node fails before the node was ever ready, and the next
-/// try will not ask the node in another way. A node that was ready before is booted again by its
-/// plan, while the other nodes continue.
+/// Ends the run if the boot of a mandatory node fails before the node was ever ready. The run
+/// continues if the next attempt of the boot asks the node in another way. A node that was ready
+/// before is booted again by its plan, while the other nodes continue.
 void BusRun::on_notice(const Notice& notice) {
   front_.reporter.announce(network_.plan, notice);
   recorder_.on_fault(notice);

@@ -138,8 +138,8 @@ void Daemon::stop(Exit reason, const std::string& why) {
   for (const auto& bus : buses_) bus->stop(reason, why);
 }
 
-/// An ordered stop that was not confirmed overrides all others; else the first bus that did not end
-/// well decides.
+/// The exit code of an ordered stop that was not confirmed overrides all others. Otherwise the
+/// first bus that did not end well determines the exit code.
 Exit Daemon::result() const noexcept {
   Exit result = Exit::good;
   for (const auto& bus : buses_) {

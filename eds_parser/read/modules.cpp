@@ -225,9 +225,9 @@ class ModuleSections::Expansion {
     return highest;
   }
 
-  /// Warns if the file describes another number of sub-objects than the modules bring. A DCF may
-  /// hold the sub-objects of its modules as sections, which then are the same. If the numbers
-  /// differ, some of them were meant as different objects.
+  /// Warns if the file describes another number of sub-objects than the modules add. A DCF may
+  /// describe the sub-objects of its modules by sections; the numbers are then equal. If they
+  /// differ, some sections were meant for other sub-objects.
   void report_overlap(const Fill& fill) {
     if (fill.described == 0 || fill.sub == 0 || fill.described == fill.sub) return;
     report_.warning(find(fill.index)->pos, "module-sub-objects", "object ", Hex{fill.index},

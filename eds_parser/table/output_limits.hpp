@@ -84,8 +84,8 @@ struct OutputLimit {
 
 /// The field of OutputLimit that a value read from a device sets.
 enum class DeviceBound : std::uint8_t {
-  range,  ///< OutputLimit::low, with OutputLimit::high from the next sub-index; INTEGER32
-  size,   ///< both, as a symmetric magnitude; UNSIGNED32
+  range,  ///< sets `low` from this object and `high` from the next sub-index; INTEGER32
+  size,   ///< sets `low` and `high` to -value and +value; UNSIGNED32
   rate,   ///< OutputLimit::rate; UNSIGNED32
   bend,   ///< OutputLimit::bend; UNSIGNED32
 };

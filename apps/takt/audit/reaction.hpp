@@ -22,7 +22,7 @@ struct Reaction {
   Failsafe verdict = Failsafe::unspecified;
   std::string text{};
   std::vector<std::string> remedy{};  ///< entries of `sdo:` in the network file
-  /// Objects that would have to change, but by the EDS take no value that helps.
+  /// Objects that would have to change, but for which the EDS permits no suitable value.
   std::vector<ObjectKey> fixed{};
 };
 

@@ -97,7 +97,7 @@ class Adviser {
   }
 
   /// Returns true if the boot writes a value into this entry with which the device does not watch
-  /// the master. `sdo` of the network file does that. A value of a DCF gives way to the boot's own
+  /// the master. `sdo` of the network file does that. The boot replaces a value of a DCF by its own
   /// value.
   bool is_overwritten(std::uint8_t sub) const {
     return std::ranges::any_of(node_.boot_plan.steps, [&](const BootStep& step) {

@@ -73,7 +73,7 @@ bool LearnedNode::is_there() const noexcept {
 
 std::optional<std::uint8_t> LearnedBus::master() const {
   constexpr std::uint8_t usual = 127;
-  std::vector<std::uint8_t> silent;  // nodes that live, but that nobody addresses
+  std::vector<std::uint8_t> silent;  // nodes that send frames, but to which nobody sends
   for (const auto& [id, node] : nodes) {
     const bool reported =
         node.requests != 0 || node.answers != 0 || node.addressed || node.guarded();

@@ -101,7 +101,7 @@ struct LearnedBus {
   std::uint64_t error_frames = 0;
   std::optional<double> seconds;
   std::map<CobId, LearnedTraffic> traffic;  ///< SYNC, EMCY, PDOs and unknown frames
-  std::uint64_t more_traffic = 0;           ///< frames with identifiers beyond the limit
+  std::uint64_t more_traffic = 0;           ///< frames that the full list `traffic` could not take
   PeriodMeter time;                         ///< TIME, 0x100
   std::uint64_t lss = 0;                    ///< frames with the identifiers 0x7E4 and 0x7E5
   bool started_all = false;                 ///< true after an NMT start by broadcast

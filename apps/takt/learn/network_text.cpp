@@ -28,7 +28,7 @@ constexpr std::int64_t longest_time_ms = 86'400'000;
 constexpr std::uint8_t least_overflow = 2;  // the value 1 is reserved; CiA 301, 7.5.2.22
 constexpr std::uint8_t most_overflow = 240;
 
-/// Properties of SYNC by the SDO writes and the frames.
+/// Properties of SYNC that the SDO writes and the frames show.
 struct SyncFacts {
   std::uint32_t cob_id = 0x80;
   std::int64_t period_us = 0;  ///< 0 means no SYNC

@@ -132,9 +132,9 @@ class NodeText {
     }
   }
 
-  /// Writes the heartbeat consumer by the entries of 0x1016. The defaults hold for an entry with
-  /// the node-ID of the master, except for `heartbeat_multiplier` if its time differs. Without such
-  /// an entry, the key is `heartbeat_consumer: false`. An entry with another node-ID becomes a
+  /// Writes the heartbeat consumer by the entries of 0x1016. An entry with the node-ID of the
+  /// master needs no key, except `heartbeat_multiplier` if its time is not the default. Without
+  /// such an entry, the key is `heartbeat_consumer: false`. An entry with another node-ID becomes a
   /// comment.
   void watch_master() {
     bool watches = false;

@@ -15,8 +15,8 @@ namespace takt::learn {
 /// above 2^63 - 1.
 std::optional<std::string> sdo_value_text(std::span<const std::uint8_t> bytes, DataType type);
 
-/// Returns true if the bytes of a number beyond the width of its type are more than zeros or the
-/// sign. Some masters send four bytes whatever the type is.
+/// Returns true if a number has bytes beyond the width of its type that are neither zeros nor the
+/// extension of its sign. Some masters send four bytes whatever the type is.
 bool is_longer_than(std::span<const std::uint8_t> bytes, DataType type);
 
 }  // namespace takt::learn

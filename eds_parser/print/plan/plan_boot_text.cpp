@@ -35,7 +35,7 @@ void add_sdo_access(PlanLines& lines, const SdoAccess& sdo) {
   if (sdo.block == SdoBlockUse::off) lines.line("  SDO block transfer is never used");
 }
 
-/// Returns the number of the next step of a jump, or the value of the object.
+/// Returns the number of the step to which a jump leads, or the value of the object.
 std::string step_value(const BootStep& step) {
   const bool jumps =
       step.action == BootAction::skip_if_same || step.action == BootAction::await_alive;

@@ -31,7 +31,7 @@ std::string text_of(const Add& add) {
   return std::move(out).str();
 }
 
-/// Removes positions, which shift if a line comes or goes:
+/// Removes positions, which shift if a line is added or removed:
 /// `    12 in  arm.x` becomes `  in  arm.x`.
 std::string without_numbers(const std::string& text) {
   std::string out;

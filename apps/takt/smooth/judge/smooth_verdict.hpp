@@ -36,7 +36,7 @@ struct Verdict {
   std::vector<Finding> findings{};  ///< of SYNC
   std::vector<AxisVerdict> axes{};
   std::vector<std::string> remarks{};
-  /// Returns true if there is a finding of gravity error.
+  /// Returns true if there is a finding of severity `error`.
   bool rough() const;
 };
 
