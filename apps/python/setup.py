@@ -9,11 +9,12 @@ from setuptools.command.build_py import build_py
 HERE = pathlib.Path(__file__).resolve().parent
 SHARE = HERE.parent.parent / "share"
 sys.path.insert(0, str(HERE))
+from message_stubs import stub_of  # noqa: E402
 from object_names import table_of  # noqa: E402
 
 
 class BuildWithTypes(build_py):
-    """Adds the types of the LCM messages, and the table of names of objects."""
+    """Adds the types of the LCM messages with their hints, and the table of names of objects."""
 
     def run(self):
         super().run()
@@ -22,6 +23,8 @@ class BuildWithTypes(build_py):
         own = (package / "__init__.py").read_bytes()
         types = sorted((SHARE / "lcm").glob("*.lcm"))
         subprocess.run(["lcm-gen", "-p", "--ppath", folder, *types], check=True)
+        for path in types:
+            (package / f"{path.stem}.pyi").write_text(stub_of(path.stem, path.read_text()))
         (package / "__init__.py").write_bytes(own)  # lcm-gen appends the types, which takt.messages has
         (package / "objects.py").write_text(table_of(sorted((SHARE / "eds").glob("*.eds"))))
 

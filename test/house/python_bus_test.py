@@ -8,6 +8,7 @@ import sys
 import tempfile
 
 from python_daemon import PERIOD, SHORT, Daemon, check, failures, obstacle, takt
+import message_stubs
 from takt import Bus, Envelopes, link, read_keys
 
 TREE = pathlib.Path(__file__).resolve().parent.parent.parent
@@ -211,5 +212,11 @@ for page, program in (("python", "first_motion"), ("python", "first_bus"), ("app
     check(f"{page}.md shows {program}.py", f"```python\n{code}```\n" in pages[page])
 
 types = {path.stem for path in (TREE / "share/lcm").glob("*.lcm")}
+for name in sorted(types):
+    fields = [field for field, _ in message_stubs.fields_of((TREE / f"share/lcm/{name}.lcm").read_text())]
+    check(f"the hints of {name} have its fields", fields == getattr(takt, name).__slots__, fields)
+hints = dict(message_stubs.fields_of((TREE / "share/lcm/envelope_t.lcm").read_text()))
+hints |= dict(message_stubs.fields_of((TREE / "share/lcm/layout_t.lcm").read_text()))
+check("with types", (hints["utime"], hints["key"], hints["mac"], hints["signals"]) == ("int", "str", "bytes", "list[signal_t]"), hints)
 check("the package has each type of share/lcm", types == set(takt.messages.__all__), types ^ set(takt.messages.__all__))
 sys.exit(1 if failures else 0)
