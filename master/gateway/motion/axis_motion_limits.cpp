@@ -11,12 +11,14 @@
 namespace takt {
 namespace {
 
-/// A limit without unit is in counts, as the positions are then.
+/// Returns true if `unit` is a rate of positions in the unit `position`, such as mm/s for mm. A
+/// limit without a unit is in counts, and so are positions without a unit.
 bool is_rate_of(const std::string& unit, const std::string& position) {
   return unit.empty() ? position.empty() : unit.starts_with(position + "/");
 }
 
-/// Takes the limit of the command, which must not exceed that of the file.
+/// Returns the limit of the command, or `of_file` if the command has none (0). The limit of the
+/// command must not exceed `of_file`, the limit of the network file or of the drive.
 std::expected<double, std::string> limit(double wanted, std::optional<double> of_file,
                                          std::string_view name) {
   if (!std::isfinite(wanted) || wanted < 0.0) {
@@ -46,7 +48,7 @@ std::expected<double, std::string> limit(double wanted, std::optional<double> of
   return wanted;
 }
 
-/// The positions that the target position can hold.
+/// Returns the positions that an INTEGER32 target position can hold.
 motion::PositionRange range_of_integer32(const Signal& target) {
   constexpr double counts = std::numeric_limits<std::int32_t>::max();
   const double one = target.offset - counts * target.scale;
@@ -109,7 +111,7 @@ void AxisMotionLimits::add(const BusPlan& plan, const LimitLine& line) {
   }
 }
 
-/// See LimitLine::scale.
+/// LimitLine::scale and LimitLine::offset convert the value of the drive to the unit of the limit.
 void AxisMotionLimits::learn(const BusPlan& plan, std::size_t place, std::int64_t read) {
   if (place >= plan.limits.lines.size()) return;
   LimitLine line = plan.limits.lines[place];

@@ -24,24 +24,27 @@ class AxisMotionLimits {
 
   explicit AxisMotionLimits(const BusPlan& plan);
 
-  /// The motions keep this limit from now on, which was read from a drive. `line` is a position in
-  /// LimitsPlan::lines, `value` that of its object; of a range, the lower end is in the upper half.
+  /// Takes a limit that the master has read from a drive; motions keep it from now on. `line` is an
+  /// index into LimitsPlan::lines, `value` is the value of its object. For a range, the lower end
+  /// is in the upper half of `value`.
   void learn(const BusPlan& plan, std::size_t line, std::int64_t value);
-  /// Returns the limits of a motion, or why there are none. `axis` is a position in motion_axes().
+  /// Returns the limits of a motion. The error says why there are none. `axis` is an index into
+  /// motion_axes().
   std::expected<motion::Limits, std::string> of(std::size_t axis, const motion_goal_t& goal) const;
-  /// Returns the largest following error of a motion, or why there is none; infinite if neither the
-  /// command nor the file has one.
+  /// Returns the largest following error of a motion; infinite if neither the command nor the file
+  /// limits it. The error says why the command is refused.
   std::expected<double, std::string> following_error(std::size_t axis,
                                                      const motion_goal_t& goal) const;
-  /// A rotary axis whose range is not shorter than its turn has none.
+  /// Returns the range of positions of the axis. The range has no ends if the axis is rotary and
+  /// its range is not shorter than its turn.
   const motion::PositionRange& range(std::size_t axis) const noexcept { return axes_[axis].range; }
-  /// The length of a turn of such an axis, in its unit; 0 for another one.
+  /// Returns the length of a turn of such a rotary axis, in its unit; 0 for any other axis.
   double turn(std::size_t axis) const noexcept { return axes_[axis].turn; }
 
  private:
   struct Axis {
     std::optional<double> velocity{};
-    std::optional<double> step_velocity{};  ///< of a limit of the step from cycle to cycle
+    std::optional<double> step_velocity{};  ///< velocity that keeps the limit of the step
     std::optional<double> acceleration{};
     std::optional<double> jerk{};
     std::optional<double> following_error{};

@@ -29,7 +29,7 @@ std::optional<std::size_t> node_of(const BusPlan& plan, const std::string& name)
   return std::nullopt;
 }
 
-/// The axis whose commanded position leads.
+/// Returns the task for a leader that is the commanded position of an axis.
 Task commanded_leader(const motion_gear_t& gear, std::size_t node,
                       std::span<const std::size_t> axes, const KnownAxes& known) {
   const int number = std::max<int>(gear.leader_axis, 1) - 1;

@@ -19,10 +19,10 @@ struct KnownAxes {
   const AxisMotionLimits& limits;
 };
 
-/// Turns the leader, the ratios and the phase of a gear into a task for each of its axes, or says
-/// why it is refused. `axes` are those of its goals, as positions in motion_axes(). A measured
-/// leader is two cycles older than the effect of a set-point: its position is sampled by the SYNC
-/// of the cycle, and a set-point of the cycle is reached two SYNCs later.
+/// Turns the leader, the ratios and the phase of a gear into a task for each of its axes. The error
+/// says why the gear is refused. `axes` are the axes of its goals, as indices into motion_axes(). A
+/// measured leader is two cycles older than the effect of a set-point: the SYNC of a cycle samples
+/// its position, and the axis reaches a set-point of this cycle two SYNCs later.
 std::expected<std::vector<motion::GearTask>, MotionRefusal> gear_tasks(
     const motion_gear_t& gear, std::span<const std::size_t> axes, const KnownAxes& known);
 

@@ -14,32 +14,32 @@
 
 namespace takt {
 
-/// Tells applications and people how motions have ended. The same notice comes at most once in a
+/// Reports to applications and users how motions have ended. The same notice is sent at most once a
 /// second. Front thread.
 class MotionAnswers {
  public:
-  /// `axes` are the motion_axes() of the plan. Keeps references to both.
+  /// Keeps references to `plan` and `axes`. `axes` are the motion_axes() of the plan.
   MotionAnswers(const BusPlan& plan, const std::vector<MotionAxis>& axes, NoticeSink announce)
       : plan_{plan}, axes_{axes}, announce_{std::move(announce)}, shown_(axes.size()) {}
 
-  /// Refuses a message. `axes` are the positions of its axes in motion_axes().
+  /// Refuses a message. `axes` are its axes, as indices into motion_axes().
   void refuse(const MotionName& motion, std::span<const std::size_t> axes,
               const MotionRefusal& refusal, const CommandContext& context);
   void refuse(const MotionJob& job, const MotionRefusal& refusal, const CommandContext& context);
-  /// The motion with this id of the axis was stopped.
+  /// Reports that the motion with this id was stopped.
   void stopped(std::size_t axis, std::int32_t id, const motion::Stop& stop,
                const CommandContext& context);
-  /// Tells people that a homing run has ended, or that the home position is lost.
+  /// Reports to users that a homing run has ended, or that the home position is lost.
   void homing_changed(std::size_t axis, motion::HomingState before, motion::HomingState now,
                       const CommandContext& context);
   void ended(std::size_t axis, std::int32_t id, ShownMotion::Ended ended) {
     shown_[axis].ended_id = id;
     shown_[axis].ended = ended;
   }
-  /// The motion with this id runs; 0 for none.
+  /// Notes that the motion with this id runs on the axis; 0 means that no motion runs.
   void runs(std::size_t axis, std::int32_t id) { shown_[axis].id = id; }
 
-  /// What motion_t says, by axis.
+  /// Returns what motion_t reports about the motions of each axis.
   const std::vector<ShownMotion>& shown() const noexcept { return shown_; }
 
  private:

@@ -12,7 +12,7 @@
 namespace takt {
 namespace {
 
-/// The fields that a motion has in common with a command of outputs.
+/// Returns the fields that a motion has in common with a command of outputs.
 command_t header_of(const motion_command_t& command) {
   command_t header{};
   header.schema = command.schema;
@@ -23,7 +23,7 @@ command_t header_of(const motion_command_t& command) {
   return header;
 }
 
-/// Returns true if the message is a motion, and no stop or sign of life.
+/// Returns true if the message commands a motion, and is neither a stop nor a sign of life.
 bool is_motion(const motion_command_t& command) {
   return command.kind == "move" || command.kind == "move_by" || command.kind == "jog";
 }
@@ -53,7 +53,8 @@ void MotionCommands::refuse(const motion_command_t& command, const MotionRefusal
   answers_.refuse(motion_name(command), {}, refusal, context);
 }
 
-/// A jog goes on only if its sender names its axes.
+/// Tells the bus thread that the sender is alive. A jog goes on only while its sender names its
+/// axes, so the message names them too.
 void MotionCommands::tell_heard(const motion_command_t& command, std::span<const std::size_t> named,
                                 std::uint8_t sender) {
   const auto cycle = static_cast<motion::CycleNumber>(command.cycle);
@@ -67,8 +68,8 @@ void MotionCommands::tell_heard(const motion_command_t& command, std::span<const
   }
 }
 
-/// Returns the positions of the goals' axes. Empty if one of them is unknown; a stop is for the
-/// others then.
+/// Returns the axes of the goals, as indices into motion_axes(). Returns std::nullopt if an axis is
+/// unknown or named twice. A stop skips such goals and stops the other axes.
 std::optional<std::vector<std::size_t>> MotionCommands::axes_of(const motion_command_t& command,
                                                                 const CommandContext& context) {
   const bool is_stop = command.kind == "stop";
@@ -99,8 +100,8 @@ std::optional<std::vector<std::size_t>> MotionCommands::axes_of(const motion_com
   return found;
 }
 
-/// The nodes of the axes. A sign of life without goals is for all nodes that the sender holds and
-/// that are ready.
+/// Returns the nodes of the axes. A sign of life without goals concerns all nodes that the sender
+/// holds and that are ready.
 std::vector<std::size_t> MotionCommands::nodes_of(const motion_command_t& command,
                                                   std::span<const std::size_t> axes,
                                                   const CommandContext& context) const {
@@ -209,7 +210,7 @@ void MotionCommands::take(const motion_stream_t& stream, const CommandContext& c
   if (refused) refuse(command, *refused, context);
 }
 
-/// Sends the orders of a stream, before its points. Returns false if it is refused.
+/// Sends the orders of a stream, before its points. Returns false if the stream is refused.
 bool MotionCommands::begin_stream(const motion_stream_t& stream, const motion_command_t& command,
                                   std::span<const std::size_t> axes, std::uint8_t sender,
                                   const CommandContext& context) {
@@ -236,7 +237,8 @@ bool MotionCommands::has_timeout(const motion_command_t& command, const CommandC
   return false;
 }
 
-/// Finds out whether the sender may have the nodes of the axes. Empty if not, which is reported.
+/// Returns what the sender gets if it may have the nodes of the axes. Otherwise reports the refusal
+/// and returns std::nullopt.
 std::optional<MotionCommands::Claim> MotionCommands::claim_of(const motion_command_t& command,
                                                               std::span<const std::size_t> axes,
                                                               const CommandContext& context) {
@@ -258,8 +260,8 @@ std::optional<MotionCommands::Claim> MotionCommands::claim_of(const motion_comma
   return claim;
 }
 
-/// Gives the nodes to the sender, and tells the bus thread that it is alive. A motion that is
-/// refused takes no node, and is no sign of life.
+/// Gives the nodes to the sender, and tells the bus thread that the sender is alive. A motion that
+/// is refused takes no node, and is no sign of life.
 void MotionCommands::hold(const motion_command_t& command, std::span<const std::size_t> axes,
                           const Claim& claim, const CommandContext& context) {
   const command_t header = header_of(command);
@@ -279,8 +281,9 @@ void MotionCommands::note_motion(MotionJob& job, const motion_command_t& command
   for (const std::size_t axis : axes) sequences_[axis].moved(command);
 }
 
-/// Cycles for which the message holds its nodes from now on. Its timeout counts from the cycle of
-/// the image that its sender has seen, and includes the last cycle. Empty if it is over.
+/// Returns the number of cycles for which the message holds its nodes from now on. The timeout
+/// counts from the cycle of the image that the sender has seen, and includes the last cycle.
+/// Returns std::nullopt if the timeout is over.
 std::optional<std::uint32_t> MotionCommands::lease_of(const motion_command_t& command,
                                                       const CommandContext& context) const {
   const auto seen = static_cast<std::uint64_t>(command.cycle);
@@ -290,7 +293,8 @@ std::optional<std::uint32_t> MotionCommands::lease_of(const motion_command_t& co
   return static_cast<std::uint32_t>(whole - age);
 }
 
-/// Each axis stops whose node its sender holds, whatever the other nodes are.
+/// Stops each named axis whose node no other sender holds. The nodes of the other axes do not
+/// matter.
 void MotionCommands::take_stop(const motion_command_t& command, std::span<const std::size_t> axes,
                                const CommandContext& context) {
   const command_t header = header_of(command);
@@ -309,7 +313,7 @@ void MotionCommands::take_stop(const motion_command_t& command, std::span<const 
   tell_heard(command, {}, *sender);
 }
 
-/// A motion that a later message has overtaken is refused, and so is a copy from before a stop.
+/// Refuses a motion that a later message has overtaken, and a copy of a message from before a stop.
 /// More points for a stream that runs can't be overtaken, not even by a motion that was refused.
 bool MotionCommands::is_newest(const motion_command_t& command, std::span<const std::size_t> axes,
                                const CommandContext& context) {

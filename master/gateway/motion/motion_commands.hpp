@@ -29,43 +29,44 @@ class MotionCommands {
  public:
   MotionCommands(const BusPlan& plan, Commands& commands, SubmitMotion submit, NoticeSink announce);
 
-  /// Call this in each round. Where an axis has to be homed, the bus thread reads the axes from the
-  /// begin on, because another program may home it.
+  /// Must be called in each round. If an axis has to be homed, the bus thread reads the axes from
+  /// the beginning, because another program may home the axis.
   void begin() {
     if (std::ranges::any_of(axes_, &MotionAxis::needs_homing)) watch();
   }
-  /// From the first message of this session on, the bus thread reads the axes: the target position
-  /// of an axis that nobody has moved follows its actual position while its drive is not enabled.
+  /// Takes a message. From the first message of this session on, the bus thread reads the axes: the
+  /// target position of an axis that nobody has moved follows its actual position while its drive
+  /// is not enabled.
   void take(const motion_command_t& command, const CommandContext& context);
   void take(const motion_gear_t& gear, const CommandContext& context);
   void take(const motion_stream_t& stream, const CommandContext& context);
-  /// Takes the newest reports, and plans what waits for them.
+  /// Takes the newest reports, and plans the jobs that wait for them.
   void observe(const MotionSnapshot& snapshot, const CommandContext& context);
-  /// Does what waits for time and not for reports: stops that the bus thread could not take, jobs
-  /// that did not begin in time, and senders that have lost a node. Call it also right after a
-  /// release, because a later sign of life of the sender would take the node again.
+  /// Does the work that waits for time and not for reports: stops that the bus thread could not
+  /// take, jobs that did not begin in time, and senders that have lost a node. Must also be called
+  /// right after a release, because a later sign of life of the sender would take the node again.
   void serve(const CommandContext& context);
-  /// See AxisMotionLimits::learn().
+  /// Takes a limit that was read from a drive, see AxisMotionLimits::learn().
   void learn(std::size_t line, std::int64_t value) { limits_.learn(plan_, line, value); }
   /// Takes the end of an order.
   void take(const motion::MotionEnd& end, const CommandContext& context);
 
   /// Returns true once the bus thread reads the axes.
   bool watches() const noexcept { return watched_; }
-  /// Returns true once a command other than a stop, or a stream, has come from a sender that may
-  /// hold the nodes. No motion_t is sent before.
+  /// Returns true once a command other than a stop, a gear or a stream has come from a sender that
+  /// may hold the nodes. No motion_t is sent before that.
   bool active() const noexcept { return active_; }
-  /// The messages about the newest reports. The caller sets `utime` and `session`.
+  /// Returns the messages about the newest reports. The caller sets `utime` and `session`.
   std::vector<motion_t> messages() const {
     return motion_messages(plan_, axes_, jobs_.snapshot(), answers_.shown());
   }
 
  private:
-  /// What the sender of a message takes.
+  /// What the sender of a message gets.
   struct Claim {
     std::vector<std::size_t> nodes{};
-    std::uint32_t cycles = 0;  ///< for which it holds them
-    std::uint8_t sender = 0;   ///< its number for the bus thread
+    std::uint32_t cycles = 0;  ///< number of cycles for which the sender holds the nodes
+    std::uint8_t sender = 0;   ///< number of the sender for the bus thread
   };
 
   std::optional<std::vector<std::size_t>> axes_of(const motion_command_t& command,

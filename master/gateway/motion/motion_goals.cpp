@@ -45,7 +45,7 @@ std::expected<motion::AxisGoal, MotionRefusal> axis_goal(const motion_goal_t& go
       .max_following_error = *following_error};
 }
 
-/// The fields that a message of another type has in common with a command.
+/// Returns a command with the fields that a message of another type has in common with a command.
 template <class T>
 motion_command_t command_of(const T& message, const std::string& kind) {
   motion_command_t command{};

@@ -17,21 +17,20 @@ Time motion_timeout_of(const motion_command_t& command) noexcept;
 /// Returns the number of periods that begin in this time, at least 1.
 std::uint64_t cycles_in(Time span, Time period) noexcept;
 
-/// Returns the command that a message of a stream is, without its points: it has the kind "stream",
-/// and its goals are at the first point.
+/// Returns the message of a stream, without its points, as a command of the kind "stream". The
+/// goals of the command are the positions of the first point.
 motion_command_t command_of(const motion_stream_t& stream);
-/// Returns the command that a message of a gear is: it has the kind "gear" and the goals of the
-/// message.
+/// Returns the message of a gear as a command of the kind "gear" with the same goals.
 motion_command_t command_of(const motion_gear_t& gear);
 
-/// Turns a move, jog or stream into a job, of which the caller sets `until` and the number of the
-/// sender. `axes` are those of its goals, as positions in motion_axes(); `period` is that of the
-/// cycle.
+/// Turns a command into a job. The caller sets `until` and the number of the sender. `axes` are the
+/// axes of the goals, as indices into motion_axes(); `period` is the period of the cycle.
 std::expected<MotionJob, MotionRefusal> motion_job(const motion_command_t& command,
                                                    std::span<const std::size_t> axes,
                                                    const AxisMotionLimits& limits, Time period);
 
-/// Turns the first message of a stream into a job in the same way. `command` is that of the stream.
+/// Turns the first message of a stream into a job, as motion_job() does. `command` is the command
+/// of this message.
 std::expected<MotionJob, MotionRefusal> stream_job(const motion_stream_t& stream,
                                                    const motion_command_t& command,
                                                    std::span<const std::size_t> axes,

@@ -11,15 +11,15 @@
 
 namespace takt {
 
-/// Refuses absolute motions of axes that have to be homed first, and tells people how homing runs
-/// have ended. Front thread.
+/// Refuses absolute motions of axes that have to be homed first, and reports to users how homing
+/// runs have ended. Front thread.
 class MotionHoming {
  public:
   /// Keeps references to both arguments. `axes` are the motion_axes() of the plan.
   MotionHoming(const std::vector<MotionAxis>& axes, MotionAnswers& answers)
       : axes_{axes}, answers_{answers}, states_(axes.size(), motion::HomingState::none) {}
 
-  /// Returns why axes must not go to absolute positions now; empty if they may.
+  /// Returns why axes must not go to absolute positions now; std::nullopt if they may.
   std::optional<MotionRefusal> objection(std::span<const std::size_t> axes) const;
   /// Takes the newest reports.
   void observe(const MotionSnapshot& snapshot, const CommandContext& context);

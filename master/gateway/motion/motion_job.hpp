@@ -14,30 +14,30 @@ namespace takt {
 /// Hands a message to the bus thread. Returns false if too many wait.
 using SubmitMotion = std::function<bool(const motion::MotionMessage& message)>;
 
-/// A motion as people know it.
+/// Identifies a motion in reports to users.
 struct MotionName {
-  std::int32_t id = 0;  ///< of the application
+  std::int32_t id = 0;  ///< id that the application has chosen
   std::string sender{};
 };
 
-/// Why a motion is refused, and the axis that it concerns, as a position in motion_axes().
+/// Why a motion is refused, and the axis that caused the refusal, as an index into motion_axes().
 struct MotionRefusal {
   std::string why{};
   std::optional<std::size_t> axis{};
 };
 
-/// A move, a jog or a gear on its way to the bus thread.
+/// A move, a jog, a gear or the begin of a stream that the bus thread has not begun yet.
 struct MotionJob {
   MotionName name{};
-  std::int64_t instance = 0;  ///< of its sender
-  Time until{};               ///< it is refused if it has no orders by then
+  std::int64_t instance = 0;  ///< instance of the sender
+  Time until{};  ///< after this time, the job is refused unless its orders may still begin
   motion::GroupGoal group{};
   std::vector<motion::AxisGoal> goals{};
-  std::vector<motion::GearTask> gears{};      ///< of a gear: one for each goal; else empty
-  std::vector<motion::MotionOrder> orders{};  ///< planned, and not sent yet
+  std::vector<motion::GearTask> gears{};      ///< tasks of a gear, by goal; empty for other jobs
+  std::vector<motion::MotionOrder> orders{};  ///< orders that are planned and not sent yet
   unsigned tries = 0;
-  std::uint32_t order = 0;        ///< id of its orders; 0 while it waits to be planned
-  motion::CycleNumber begin = 0;  ///< of its orders
+  std::uint32_t order = 0;        ///< id of the orders; 0 while the job waits to be planned
+  motion::CycleNumber begin = 0;  ///< first cycle of the orders
 };
 
 }  // namespace takt

@@ -9,12 +9,13 @@
 namespace takt {
 namespace {
 
-/// The bus thread takes an order in the next cycle, so two cycles more are enough if this thread is
-/// in time.
+/// Number of cycles from the plan of an order to its first cycle. The bus thread takes an order in
+/// the next cycle, so two further cycles are enough if this thread runs in time.
 constexpr motion::CycleNumber lead_cycles = 3;
 constexpr unsigned most_tries = 100;  ///< also limits the wait for the first report
 
-/// The order was planned too late or from another state: a new plan can succeed.
+/// Returns true if a new plan can succeed, because the order was too late or began in another
+/// state.
 bool can_be_planned_again(motion::Outcome outcome) {
   return outcome == motion::Outcome::too_late || outcome == motion::Outcome::other_start ||
          outcome == motion::Outcome::second_in_cycle ||
@@ -48,8 +49,8 @@ void MotionJobs::drop(std::size_t axis) {
   });
 }
 
-/// A newer command of an axis ends the wait of an older one. One that is refused does not: the
-/// orders of the older one may be on their way, see take_lost().
+/// Drops the older jobs of the axes, because a newer command ends their wait. A command that is
+/// refused does not end it: the orders of the older job may be on their way, see take_lost().
 void MotionJobs::drop_replaced(const MotionJob& job) {
   for (const motion::AxisGoal& goal : job.goals) drop(goal.axis);
 }
@@ -71,7 +72,8 @@ motion::CycleNumber MotionJobs::next_begin(const CommandContext& context) const 
   return planner_.cycle() + since + lead_cycles;
 }
 
-/// Returns false if the job is refused. It has no orders if it has to wait for the next report.
+/// Plans a job. Returns false if the job is refused. The job has no orders if it has to wait for
+/// the next report.
 bool MotionJobs::plan(MotionJob& job, const CommandContext& context) {
   const motion::CycleNumber begin = next_begin(context);
   const auto orders = job.gears.empty()
@@ -90,8 +92,8 @@ bool MotionJobs::plan(MotionJob& job, const CommandContext& context) {
   return false;
 }
 
-/// A motion can only be planned from a state that is known in advance, so the gears of its axes end
-/// before it begins.
+/// Ends the gears of the axes. A motion can only be planned from a state that is known in advance,
+/// so the gears must end before the motion begins.
 void MotionJobs::release_gears(const MotionJob& job) {
   for (const motion::AxisGoal& goal : job.goals) {
     submit_({.kind = motion::MessageKind::release, .axis = goal.axis});
@@ -121,7 +123,7 @@ void MotionJobs::send(MotionJob& job) {
   job.orders.clear();
 }
 
-/// Plans a job that waits. Returns false if it is refused.
+/// Plans a job that waits, and sends its orders. Returns false if the job is refused.
 bool MotionJobs::plan_again(MotionJob& job, const CommandContext& context) {
   if (!plan(job, context)) return false;
   send(job);
@@ -143,8 +145,9 @@ bool MotionJobs::holds(const MotionJob& job, const CommandContext& context) cons
   });
 }
 
-/// Orders on their way can't be called back, so the bus thread decides whether they begin. It also
-/// knows whether their sender is silent. An order that the bus thread could not take has no answer.
+/// Returns true if the orders of the job may still begin. Orders that were sent can't be called
+/// back: the bus thread decides whether they begin, and knows whether their sender is silent. An
+/// order that the bus thread could not take gets no answer, so the wait is limited.
 bool MotionJobs::has_begin_ahead(const MotionJob& job, const CommandContext& context) {
   return job.order != 0 && context.cycle <= job.begin + lead_cycles;
 }

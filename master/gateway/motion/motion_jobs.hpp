@@ -12,8 +12,8 @@
 
 namespace takt {
 
-/// Brings moves, jogs and gears to the bus thread: it plans them, and plans them again if their
-/// orders came too late. Front thread.
+/// Hands moves, jogs, gears and the begins of streams to the bus thread. It plans them, and plans
+/// them again if their orders came too late. Front thread.
 class MotionJobs {
  public:
   /// Keeps references to the arguments except the last one. `axes` are the motion_axes() of the
@@ -21,30 +21,31 @@ class MotionJobs {
   MotionJobs(const BusPlan& plan, const std::vector<MotionAxis>& axes, const Commands& commands,
              MotionAnswers& answers, SubmitMotion submit);
 
-  /// Plans a new job, which replaces older ones of its axes. Returns false if it is refused.
+  /// Plans a new job, which replaces older jobs of its axes. Returns false if the job is refused.
   bool prepare(MotionJob& job, const CommandContext& context);
-  /// The same for a job that begins a stream. It is planned only once: its points belong to one
-  /// begin.
+  /// Plans a job that begins a stream. The job is planned only once, because its points count from
+  /// its first cycle. Returns false if the job is refused.
   bool prepare_stream(MotionJob& job, const CommandContext& context);
   /// Sends the orders of a job that was prepared, or lets it wait for the next report.
   void start(MotionJob job);
   /// Forgets the job of the axis, because a stop replaces it.
   void drop(std::size_t axis);
-  /// Takes the newest reports, and plans what waits for them. Before this, take_lost().
+  /// Takes the newest reports, and plans the jobs that wait for them. Call take_lost() first.
   void observe(const MotionSnapshot& snapshot, const CommandContext& context);
-  /// The bus thread has refused an order. All orders of its group are refused then.
+  /// Notes that the bus thread has refused an order. It then refuses all orders of the group.
   void on_refused(const motion::MotionEnd& end, const CommandContext& context);
-  /// An order has begun, and has ended.
+  /// Notes that an order has begun and ended.
   void on_ended(std::uint32_t order) {
     std::erase_if(jobs_, [&](const MotionJob& job) { return job.order == order; });
   }
-  /// Takes out a job whose sender has lost a node meanwhile: it must not begin, and its orders may
-  /// be on their way. Empty if there is none.
+  /// Removes and returns a job whose sender has lost a node since. The job must not begin, and its
+  /// orders may be on their way. Returns std::nullopt if there is no such job.
   std::optional<MotionJob> take_lost(const CommandContext& context);
   /// Refuses the jobs that did not begin in time.
   void expire(const CommandContext& context);
 
-  /// The order of the axis with this id. Null if it is unknown, see MotionPlanner::order().
+  /// Returns the order of the axis with this id, or nullptr if it is unknown, see
+  /// MotionPlanner::order().
   const motion::TaggedOrder* order(std::size_t axis, std::uint32_t id) const noexcept {
     return planner_.order(axis, id);
   }

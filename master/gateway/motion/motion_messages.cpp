@@ -13,7 +13,8 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t axes_a_message = 13;  // 92 bytes each
 
-/// `turn` is that of the positions in their unit. A rotary axis shows them inside its turn.
+/// Makes the message about one axis. `turn` is the turn of the positions in their unit: the
+/// positions of a rotary axis are reported inside its turn.
 axis_motion_t to_message(const MotionAxis& axis, const Turn& turn, const motion::AxisReport& report,
                          const ShownMotion& shown, double period) {
   axis_motion_t message{};

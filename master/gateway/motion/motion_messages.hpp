@@ -8,17 +8,17 @@
 
 namespace takt {
 
-/// What the gateway knows of the motions of one axis, in the numbers of the application.
+/// What motion_t reports about the motions of one axis, with the ids of the application.
 struct ShownMotion {
-  /// How a motion has ended; the numbers of axis_motion_t::outcome.
+  /// How a motion has ended. The numbers are those of axis_motion_t::outcome.
   enum class Ended : std::uint8_t { none, done, stopped, replaced, refused };
 
-  std::int32_t id = 0;        ///< of the motion that runs
-  std::int32_t ended_id = 0;  ///< of the one that ended last
+  std::int32_t id = 0;        ///< id of the motion that runs; 0 means none
+  std::int32_t ended_id = 0;  ///< id of the motion that has ended last
   Ended ended = Ended::none;
 };
 
-/// The messages about the motions of one cycle. The caller sets `utime` and `session`.
+/// Makes the messages about the motions of one cycle. The caller sets `utime` and `session`.
 std::vector<motion_t> motion_messages(const BusPlan& plan, const std::vector<MotionAxis>& axes,
                                       const MotionSnapshot& snapshot,
                                       const std::vector<ShownMotion>& shown);

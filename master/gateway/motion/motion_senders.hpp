@@ -10,14 +10,15 @@
 
 namespace takt {
 
-/// Numbers the senders of motions for the bus thread. A number is given to another sender only when
-/// its sender has been silent for so long that all of its motions have ended. Front thread.
+/// Gives the senders of motions numbers for the bus thread. A number is given to another sender
+/// only when its previous sender has been silent for so long that all of its motions have ended.
+/// Front thread.
 class MotionSenders {
  public:
   /// Longest timeout of a motion. See motion_command_t::timeout_ms.
   static constexpr Time longest_timeout = std::chrono::seconds{10};
 
-  /// Returns the number of the sender with this instance. Empty if all numbers are taken.
+  /// Returns the number of the sender with this instance, or std::nullopt if all numbers are taken.
   std::optional<std::uint8_t> number_of(std::int64_t instance, Time now) {
     auto found = std::ranges::find(slots_, instance, &Slot::instance);
     if (found == slots_.end()) {
@@ -32,7 +33,7 @@ class MotionSenders {
 
  private:
   struct Slot {
-    std::int64_t instance = 0;  ///< 0: free
+    std::int64_t instance = 0;  ///< 0 means that the number is free
     Time heard{};
   };
   std::array<Slot, motion::max_axes> slots_{};

@@ -6,9 +6,9 @@
 
 namespace takt {
 
-/// The newest messages that one axis has taken. A copy of an older one, or one that has come in
-/// another order, must not move the axis. LeaseTable refuses those of an earlier cycle than the
-/// newest one; this class orders those of the same cycle. Front thread.
+/// The newest messages that one axis has taken. A copy of an older message, or a message that
+/// arrives in another order, must not move the axis. LeaseTable refuses messages of an earlier
+/// cycle than the newest one; this class orders the messages of the same cycle. Front thread.
 class MotionSequence {
  public:
   void stopped(const motion_command_t& stop) noexcept {
@@ -17,7 +17,7 @@ class MotionSequence {
     stop_ = {.instance = stop.instance, .cycle = cycle, .utime = stop.utime};
     newest_stop_ = {.instance = stop.instance, .cycle = stop.cycle, .utime = stop.utime};
   }
-  /// Returns true if the stop that has come last was the same. A copy of it must not stop a motion
+  /// Returns true if the newest stop was the same message. A copy of a stop must not stop a motion
   /// that has begun since.
   bool is_copy(const motion_command_t& stop) const noexcept {
     return newest_stop_.instance == stop.instance && newest_stop_.cycle == stop.cycle &&
@@ -27,14 +27,14 @@ class MotionSequence {
     move_ = {.instance = move.instance, .cycle = move.cycle, .utime = move.utime, .id = move.id};
   }
 
-  /// A stream has begun.
+  /// Notes that a stream has begun.
   void streamed(const motion_command_t& stream) noexcept {
     stream_ = {.instance = stream.instance, .id = stream.id};
   }
 
-  /// Returns why a message is refused that would move the axis in spite of a stop; empty if it is
-  /// not. `now` is the present cycle: a later one cannot judge, because the clock goes back if SYNC
-  /// stood still.
+  /// Returns why a message must not move the axis after a stop; an empty text if it may. `now` is
+  /// the present cycle. A stop of a later cycle does not count, because the cycle by the clock goes
+  /// back after SYNC was missing.
   std::string_view stop_objection(const motion_command_t& move, std::int64_t now) const noexcept {
     if (stop_.instance == move.instance && stop_.cycle <= now + 1 && move.cycle <= stop_.cycle) {
       return "it is not newer than the stop of its sender: both are from the same image, or the "
@@ -42,8 +42,9 @@ class MotionSequence {
     }
     return {};
   }
-  /// The same for a message that begins a motion. A `move_by`, a gear or the begin of a stream must
-  /// be newer than each motion from the same image, because a copy of it would move the axis again.
+  /// Returns why a message must not begin a motion; an empty text if it may. A `move_by`, a gear or
+  /// the begin of a stream must be newer than each motion from the same image, because a copy of it
+  /// would move the axis again.
   std::string_view objection(const motion_command_t& move, std::int64_t now) const noexcept {
     if (const std::string_view why = stop_objection(move, now); !why.empty()) return why;
     if (move_.instance != move.instance || move_.cycle != move.cycle) return {};
@@ -57,22 +58,23 @@ class MotionSequence {
     }
     return {};
   }
-  /// Returns true if this is the stream that has begun last. Its points must not begin it again.
+  /// Returns true if this is the stream that has begun last. Its further points must not begin it
+  /// again.
   bool has_streamed(const motion_command_t& stream) const noexcept {
     return stream_.instance == stream.instance && stream_.id == stream.id;
   }
 
  private:
   struct Message {
-    std::int64_t instance = 0;  ///< 0: none has come
+    std::int64_t instance = 0;  ///< 0 means that no message has come
     std::int64_t cycle = 0;
     std::int64_t utime = 0;
     std::int32_t id = 0;
   };
-  Message stop_;         ///< its cycle is the latest one of all stops of its sender
-  Message newest_stop_;  ///< the one that has come last
+  Message stop_;         ///< its cycle is the latest cycle of all stops of its sender
+  Message newest_stop_;  ///< the stop that came last
   Message move_;
-  Message stream_;  ///< without its cycle and time
+  Message stream_;  ///< only the instance and the id are set
 };
 
 }  // namespace takt

@@ -8,8 +8,8 @@
 
 namespace takt {
 
-/// Hands stops to the bus thread, and tells it which senders have lost their nodes. A stop is never
-/// lost: if the bus thread can't take it now, serve() tries again. Front thread.
+/// Hands stops to the bus thread, and reports to it which senders have lost their nodes. A stop is
+/// never lost: if the bus thread can't take it now, serve() tries again. Front thread.
 class MotionStops {
  public:
   /// Keeps references to the first two arguments. `axes` are the motion_axes() of the plan.
@@ -24,7 +24,7 @@ class MotionStops {
     waiting_[axis] =
         !submit_({.kind = motion::MessageKind::stop, .axis = static_cast<std::uint8_t>(axis)});
   }
-  /// This motion has begun.
+  /// Notes that this motion has begun.
   void began(const motion::TaggedOrder& motion) {
     Owner& owner = owners_[motion.order.axis];
     if (owner.order == motion.order.id) return;
@@ -39,12 +39,12 @@ class MotionStops {
   }
 
  private:
-  /// The sender of a motion, as the nodes and as the bus thread know it.
+  /// The sender of a motion: the instance that holds the node, and its number for the bus thread.
   struct Owner {
     std::uint32_t order = 0;
     std::int64_t instance = 0;  ///< 0: nobody, or the bus thread knows that it has left
     std::uint8_t number = 0;
-    bool has_left = false;  ///< the bus thread has to be told, whoever holds the node now
+    bool has_left = false;  ///< the bus thread does not know yet that the sender has lost the node
   };
 
   void tell_lost(std::size_t axis, const CommandContext& context) {
@@ -63,7 +63,7 @@ class MotionStops {
   const Commands& commands_;
   SubmitMotion submit_;
   std::vector<Owner> owners_;  ///< by axis: the sender of the motion that began last
-  std::vector<bool> waiting_;  ///< by axis: a stop has to be handed over
+  std::vector<bool> waiting_;  ///< by axis: a stop waits to be handed over
 };
 
 }  // namespace takt

@@ -62,7 +62,8 @@ bool MotionStreams::has_axes(std::int64_t instance, std::int32_t id,
   return stream != nullptr && std::ranges::equal(stream->goals, axes, {}, &motion::AxisGoal::axis);
 }
 
-/// An order begins exactly in its cycle, or never. A stream is delayed where beats are missing.
+/// Drops the streams that have ended or did not begin. An order begins exactly in its cycle, or
+/// never. Missing beats delay a stream that runs.
 void MotionStreams::observe(const MotionSnapshot& snapshot) {
   std::erase_if(streams_, [&](Stream& stream) {
     const motion::AxisReport& axis = snapshot.axes[stream.goals.front().axis];
@@ -139,7 +140,7 @@ std::optional<MotionRefusal> MotionStreams::add_point(Stream& stream, const moti
   return std::nullopt;
 }
 
-/// The ways of all axes are checked first, because the stops take much longer.
+/// Checks the curves of all axes first, because the check of the stops takes much longer.
 std::optional<MotionRefusal> MotionStreams::defect_of(
     const Stream& stream, std::span<const motion::StreamPoint> next) const {
   for (const auto check : {motion::defect_of_way, motion::defect_of_stops}) {
@@ -153,7 +154,7 @@ std::optional<MotionRefusal> MotionStreams::defect_of(
   return std::nullopt;
 }
 
-/// Puts the messages that are being filled behind those that wait.
+/// Appends the messages that are being filled to those that wait.
 void MotionStreams::close(Stream& stream) {
   for (motion::MotionMessage& message : stream.filling) {
     if (message.points.size != 0) stream.waiting.push_back(message);

@@ -15,8 +15,8 @@
 
 namespace takt {
 
-/// The streams that run or are about to begin: checks their points, and hands them to the bus
-/// thread as fast as it takes them. Front thread.
+/// The streams that run or are about to begin. This class checks their points, and hands them to
+/// the bus thread as fast as it takes them. Front thread.
 class MotionStreams {
  public:
   /// Points may be at most this far in the future, in s.
@@ -25,10 +25,11 @@ class MotionStreams {
   /// time that the check of a point takes.
   static constexpr double longest_step = 20'000;
 
-  /// `period` is that of the cycle in s.
+  /// `period` is the period of the cycle in s.
   MotionStreams(double period, SubmitMotion submit) : period_{period}, submit_{std::move(submit)} {}
 
-  /// A stream whose orders are on their way, which `job` describes. It begins at its first point.
+  /// Adds the stream of `job`, whose orders are on their way. The stream begins at its first point,
+  /// which has the time `first_time`.
   void begin(const MotionJob& job, double first_time);
   /// Returns true if the stream with this id of this sender runs, or is about to begin.
   bool runs(std::int64_t instance, std::int32_t id) const noexcept {
@@ -37,19 +38,19 @@ class MotionStreams {
   /// Returns true if this stream has these axes, in this order.
   bool has_axes(std::int64_t instance, std::int32_t id,
                 std::span<const std::size_t> axes) const noexcept;
-  /// Takes the points of a message for a stream that runs. Points that it has already are skipped.
-  /// Returns why a point and all later ones are refused; those before it are taken. `cycle` is the
-  /// present one, `reported` that of the newest report: the bus thread has no more points than are
-  /// left then.
+  /// Takes the points of a message for a stream that runs, and skips points that the stream already
+  /// has. If a point is refused, all later points are refused too, and the result says why; the
+  /// points before it are taken. `cycle` is the present cycle, `reported` is the cycle of the
+  /// newest report: the bus thread holds at most the points that were left in that cycle.
   std::optional<MotionRefusal> add(const motion_stream_t& message, std::uint64_t cycle,
                                    std::uint64_t reported);
   /// Drops the streams that have ended and those that did not begin in their cycle.
   void observe(const MotionSnapshot& snapshot);
-  /// An order has ended or was refused.
+  /// Notes that an order has ended or was refused.
   void on_end(std::uint32_t order) {
     std::erase_if(streams_, [&](const Stream& stream) { return stream.order == order; });
   }
-  /// Hands over what the bus thread could not take before.
+  /// Hands over the points that the bus thread could not take before.
   void serve();
 
  private:
@@ -57,19 +58,19 @@ class MotionStreams {
     std::int32_t id = 0;
     std::int64_t instance = 0;
     std::uint32_t order = 0;
-    std::uint64_t begin = 0;                ///< cycle, see AxisReport::began
-    double first_time = 0.0;                ///< time of its first point in its messages, in s
-    std::vector<motion::AxisGoal> goals{};  ///< its axes and their limits
-    std::vector<double> turns{};  ///< of each axis: whole turns between its points and its motion
-    std::vector<motion::StreamPoint> last{};       ///< newest point of each of them
-    std::int64_t next = 1;                         ///< number of the next point
-    std::deque<double> times{};                    ///< of the points that the bus thread may hold
-    std::vector<motion::MotionMessage> filling{};  ///< of each axis, for the next points
-    std::deque<motion::MotionMessage> waiting{};   ///< for the bus thread
+    std::uint64_t begin = 0;  ///< first cycle, see AxisReport::began
+    double first_time = 0.0;  ///< time of the first point as the messages give it, in s
+    std::vector<motion::AxisGoal> goals{};  ///< the axes and their limits
+    std::vector<double> turns{};  ///< by axis: whole turns between the points and the motion
+    std::vector<motion::StreamPoint> last{};  ///< by axis: the newest point
+    std::int64_t next = 1;                    ///< number of the next point
+    std::deque<double> times{};               ///< times of the points that the bus thread may hold
+    std::vector<motion::MotionMessage> filling{};  ///< by axis: the message for the next points
+    std::deque<motion::MotionMessage> waiting{};   ///< messages that wait for the bus thread
   };
 
   const Stream* find(std::int64_t instance, std::int32_t id) const noexcept;
-  /// Time of the stream in a cycle, in s.
+  /// Returns the time of the stream in a cycle, in s.
   double time_of(const Stream& stream, std::uint64_t cycle) const noexcept {
     return static_cast<double>(cycle - std::min(cycle, stream.begin)) * period_;
   }

@@ -51,8 +51,9 @@ void AxisMotions::stop_all(StopCause cause) noexcept {
   for (std::size_t i = 0; i < runners_.size(); ++i) stop_axis(static_cast<std::uint8_t>(i), cause);
 }
 
-/// Two motions can have the same group while one of them replaces the other axis by axis. If both
-/// have a cause in the same cycle, all axes of the group stop.
+/// Makes the group of the axis stop in the next run(). Two motions can have the same group while
+/// one of them replaces the other axis by axis. If both have a cause to stop in the same cycle, all
+/// axes of the group stop.
 void AxisMotions::add_stop(std::size_t axis, StopCause cause) noexcept {
   GroupStop& stop = stops_[runners_[axis].group()];
   const std::uint32_t id = runners_[axis].newest();
@@ -76,9 +77,10 @@ std::span<const AxisReport> AxisMotions::run(CycleNumber cycle,
   return reports_;
 }
 
-/// A gear runs after its leader, whose state of this cycle it needs. The axes of a ring of gears
-/// have no such order: they run as if their leaders were lost. A ring of measured positions is one,
-/// too: each axis would follow its own movement, which grows if the ratios do not reduce it.
+/// Runs all axes. A gear runs after its leader, because it needs the state of the leader in this
+/// cycle. The axes of a ring of gears have no such order: they run as if their leaders were lost. A
+/// ring of measured positions counts as a ring, too: each axis would follow its own movement, which
+/// grows if the ratios do not reduce it.
 void AxisMotions::run_axes(CycleNumber cycle, std::span<const AxisInput> inputs) noexcept {
   std::bitset<max_axes> waiting;
   for (std::size_t i = 0; i < runners_.size(); ++i) {
@@ -108,7 +110,8 @@ void AxisMotions::run_axes(CycleNumber cycle, std::span<const AxisInput> inputs)
   }
 }
 
-/// If the axis has to stop, the others of its group do so in the next cycle.
+/// Makes a step of the gear of the axis. If the axis has to stop, the other axes of its group stop
+/// in the next cycle.
 void AxisMotions::follow(std::size_t axis, std::span<const AxisInput> inputs) noexcept {
   AxisRunner& runner = runners_[axis];
   const GearTask& task = runner.gear();
@@ -129,8 +132,9 @@ void AxisMotions::follow(std::size_t axis, std::span<const AxisInput> inputs) no
   if (cause != StopCause::none) add_stop(axis, cause);
 }
 
-/// All axes of a stream have the same last point. If one axis has ended while another has more
-/// points, these have come too late for the first one. The group stops in the next cycle.
+/// Stops groups in which one axis has ended its stream while another axis has more points. All axes
+/// of a stream have the same last point, so these points have come too late for the first axis. The
+/// group stops in the next cycle.
 void AxisMotions::stop_split_streams() noexcept {
   const auto is_done = [](const AxisRunner& runner) { return runner.has_done_stream(); };
   if (std::ranges::none_of(runners_, is_done)) return;
@@ -138,7 +142,7 @@ void AxisMotions::stop_split_streams() noexcept {
     std::uint32_t stream = 0;
     double until = 0.0;
   };
-  std::array<Moving, max_axes> moving{};  // of each group
+  std::array<Moving, max_axes> moving{};  // by group
   for (const AxisRunner& runner : runners_) {
     Moving& other = moving[runner.group()];
     const bool is_first = other.stream != runner.newest();
@@ -180,7 +184,7 @@ void AxisMotions::stop_groups() noexcept {
 /// An order begins if all orders of its group are due, have its id, and may begin.
 void AxisMotions::begin_orders(CycleNumber cycle) noexcept {
   std::array<Outcome, max_axes> objections{};
-  std::array<std::uint8_t, max_axes> ready{};  // orders of each group
+  std::array<std::uint8_t, max_axes> ready{};  // by group: number of orders that may begin
   const auto leads = [&](const MotionOrder& order) {
     if (order.group >= runners_.size()) return false;
     const MotionOrder* first = runners_[order.group].due(cycle);

@@ -33,7 +33,7 @@ StopCause cause_of(AxisCondition condition) noexcept {
   return StopCause::none;
 }
 
-/// Returns true if the drive follows set-points, or nobody knows that it does not.
+/// Returns true if the drive follows set-points, or possibly does.
 bool may_follow(AxisCondition condition) noexcept {
   return condition == AxisCondition::enabled || condition == AxisCondition::halted ||
          condition == AxisCondition::silent || condition == AxisCondition::unsent;
@@ -54,7 +54,8 @@ bool is_same(const State& a, const State& b, const Limits& limits) noexcept {
          has_same_motion(a, b, limits);
 }
 
-/// A stream ends with points that are not known yet, and a gear with a stop.
+/// Returns true if the profile ends as `ending` says. A stream ends with points that are not known
+/// yet, and a gear ends with a stop, so both have nothing to check.
 bool ends_as_it_says(const MotionOrder& order) noexcept {
   if (order.ending == Ending::points || order.ending == Ending::gear) return true;
   const State end = order.profile.end(order.from);
@@ -128,8 +129,8 @@ void AxisRunner::refuse(Outcome why) noexcept {
   waiting_.reset();
 }
 
-/// From one set-point to the next, a motion never advances by more than one period: a missing beat
-/// delays it by a period.
+/// Notes how much time has passed since the last set-point. From one set-point to the next, a
+/// motion never advances by more than one period: a missing beat delays the motion by a period.
 void AxisRunner::wait_for_drive(CycleNumber cycle, bool is_unsent) noexcept {
   const bool runs = report_.state == AxisState::moving || report_.state == AxisState::stopping;
   is_unsent_ = is_unsent;
@@ -184,8 +185,8 @@ StopCause AxisRunner::cause_of_motion(CycleNumber cycle, const Silence& silence)
   return StopCause::none;
 }
 
-/// An order that waits ends, too. If nothing moves, the stop that the report tells so far is that
-/// of an older motion.
+/// Notes a stop in the report, and ends an order that waits. If an order waits while nothing moves,
+/// a stop that is already in the report belongs to an older motion and is replaced.
 void AxisRunner::note(const Stop& stop) noexcept {
   const bool runs = report_.state == AxisState::moving || report_.state == AxisState::stopping;
   const bool is_first = report_.stop.cause == StopCause::none || (waiting_ && !runs);
@@ -218,8 +219,8 @@ void AxisRunner::leave_group() noexcept {
   report_.kept_alive = false;
 }
 
-/// Returns true if a stop that begins in this state stays inside the range of the gear. The bound
-/// of its length is enough where the ends are far away.
+/// Returns true if a stop that begins in this state stays inside the range of the gear. If the ends
+/// of the range are far away, an upper bound of the stopping distance is enough.
 bool AxisRunner::can_stop_from(const State& state) const noexcept {
   const Limits& limits = stop_limits_;
   const double least = std::min(limits.max_acceleration, -limits.min_acceleration);
@@ -231,14 +232,16 @@ bool AxisRunner::can_stop_from(const State& state) const noexcept {
   return stays_inside(range_, stop_profile(state, limits), state);
 }
 
-/// An axis that moves is in a state that only the bus thread knows, so a gear gets its jerk here.
+/// Returns the limits of a gear. Only the bus thread knows the state of an axis that moves, so the
+/// jerk of the gear is determined here.
 Limits AxisRunner::limits_of_gear(const MotionOrder& gear) const noexcept {
   if (report_.state != AxisState::moving) return gear.stop;
   return with_enough_jerk(gear.stop, report_.commanded, stop_limits_);
 }
 
-/// A gear replaces the limits of the motion before, so it may only begin where a stop along its own
-/// limits stays inside its range and a bounded time.
+/// Returns true if the axis can stop with the limits of this gear. A gear replaces the limits of
+/// the previous motion, so it may only begin if a stop along its own limits stays inside its range
+/// and takes a bounded time.
 bool AxisRunner::can_stop_with(const MotionOrder& gear) const noexcept {
   const State& state = report_.commanded;
   const Profile profile = stop_profile(state, limits_of_gear(gear));
@@ -308,8 +311,9 @@ void AxisRunner::end_or_count_down(CycleNumber cycle) noexcept {
   }
 }
 
-/// The acceleration at the end of a cubic curve is what results. The axis may jump to rest from it,
-/// as it may jump to that of the next curve.
+/// Returns true if the stream ends at rest. The acceleration at the end of a cubic curve follows
+/// from its other values. The axis may jump from it to rest, as it may jump to the acceleration of
+/// the next curve.
 bool AxisRunner::points_end_at_rest() const noexcept {
   const StreamPoint& last = stream_.last();
   State end = last.state;

@@ -13,13 +13,14 @@
 
 namespace takt::motion {
 
-/// Cycles since the sender of a motion was heard, and since it has named the axis.
+/// Number of cycles since the sender of a motion was heard (`sender`), and since the sender has
+/// named the axis (`jog`).
 struct Silence {
   CycleNumber sender = 0;
   CycleNumber jog = 0;
 };
 
-/// Numbers of signals; empty where there is none.
+/// Numbers of the signals of measured leaders; empty if there is none.
 using LeaderSignals = std::array<std::optional<std::uint16_t>, 2>;
 
 /// Runs the motions of one axis, cycle by cycle. Its states:
@@ -32,22 +33,25 @@ using LeaderSignals = std::array<std::optional<std::uint16_t>, 2>;
 /// | moving           | stopping  | stop()                                                    |
 /// | stopping         | standing  | the axis is at rest                                       |
 /// | moving, stopping | standing  | abandon()                                                 |
-/// | each other       | unpowered | the drive is certainly not enabled any longer             |
+/// | any other         | unpowered | the drive is certainly not enabled any longer             |
 ///
 /// A cycle calls observe(), then stop() if the group stops, then begin() or refuse() if an order is
-/// due, then run(). No call allocates; the bound of instructions is that of stop().
+/// due, then run(). No call allocates memory. The number of instructions of each call is bounded;
+/// stop() takes the most.
 class AxisRunner {
  public:
-  /// Difference of a start from the commanded state that counts as rounding, as a part of the limit
-  /// of velocity and acceleration, and of the position or of 1 where the position is smaller.
+  /// The largest difference between the start of an order and the commanded state that counts as
+  /// rounding. It is relative to the limits of velocity and acceleration. For the position, it is
+  /// relative to the position or to 1, whichever is larger.
   static constexpr double start_tolerance = 1e-9;
 
-  /// `period` is in s. An axis is in a group of its own until a motion begins.
+  /// `period` is in s. Until a motion begins, the axis is the only one in its group.
   AxisRunner(double period, std::uint8_t axis) noexcept
       : period_{period}, axis_{axis}, group_{axis} {}
 
-  /// The order waits for its first cycle. It replaces another one that waits. Returns a refusal if
-  /// it is unsound, or the second one since the last run().
+  /// Takes an order, which waits for its first cycle and replaces another order that waits. Returns
+  /// a refusal if the order is unsound, is the second one since the last run(), or begins a stream
+  /// while the axis follows one.
   Outcome wait(const MotionOrder& order) noexcept;
   /// Returns the order that waits.
   const MotionOrder* waiting() const noexcept { return waiting_ ? &*waiting_ : nullptr; }
@@ -60,18 +64,20 @@ class AxisRunner {
   /// Appends points to the stream of the order that waits or runs.
   void add_points(const StreamPoints& points) noexcept;
 
-  /// Takes what the drive tells. Returns the cause if the axis makes its group stop.
+  /// Takes the condition of the drive. Returns the cause if the axis makes its group stop.
   StopCause observe(CycleNumber cycle, const AxisInput& input, const Silence& silence) noexcept;
-  /// Starts the shortest stop from the commanded state of the cycle before. It also ends an order
-  /// that waits. An axis that doesn't move keeps its state.
+  /// Starts the shortest stop from the commanded state of the previous cycle. It also ends an order
+  /// that waits. An axis that does not move keeps its state.
   void stop(const Stop& stop) noexcept;
-  /// Ends the motion, and an order that waits, at once: the axis stands at its commanded position.
+  /// Ends the motion, and an order that waits, at once. The axis is then at rest at its commanded
+  /// position.
   void abandon(const Stop& stop) noexcept;
-  /// The axis is in a group of its own until its next motion, and is not kept alive.
+  /// Makes the axis the only one in its group until its next motion. The axis is no longer kept
+  /// alive.
   void leave_group() noexcept;
-  /// The sender counts as silent from now on.
+  /// Makes the sender count as silent from now on.
   void forget_sender() noexcept { sender_ = no_sender; }
-  /// The sender has named the axis.
+  /// Notes that the sender has named the axis.
   void renew_jog(const LifeSign& sign) noexcept {
     const bool is_older = named_.sender == sign.sender && named_.cycle > sign.cycle;
     if (!is_older) named_ = sign;
@@ -89,17 +95,17 @@ class AxisRunner {
   bool has_gear() const noexcept {
     return report_.state == AxisState::moving && source_ == Source::gear;
   }
-  /// Returns true if the gear of the axis was not released.
+  /// Returns true if the axis follows a leader, and its gear was not released.
   bool has_leader() const noexcept { return has_gear() && gear_.phase() != GearPhase::released; }
-  /// The gear that the axis follows.
+  /// Returns the gear that the axis follows.
   const GearTask& gear() const noexcept { return gear_.task(); }
-  /// The signals of measured leaders: of the gear that the axis follows, and of the order that is
-  /// due. Only begin() or refuse() decides which of them follow() needs.
+  /// Returns the signals of measured leaders: for the gear that the axis follows, and for the order
+  /// that is due. Only begin() or refuse() decides which of them follow() needs.
   LeaderSignals leader_signals(CycleNumber cycle) const noexcept;
-  /// Makes the next step of the gear, before run(). If the axis must stop, it begins its stop at
-  /// once, and the cause is returned.
+  /// Makes the next step of the gear, before run(). If the axis must stop, its stop begins at once,
+  /// and the function returns the cause.
   StopCause follow(const LeaderState& leader, const LeaderSample& sample) noexcept;
-  /// Gives the commanded state of the cycle.
+  /// Runs one cycle. The report contains the commanded state.
   const AxisReport& run(CycleNumber cycle) noexcept;
   /// Forgets which orders have ended. Called before the orders of the next cycle are taken.
   void forget_ended() noexcept { report_.ended.clear(); }
@@ -114,13 +120,13 @@ class AxisRunner {
     const auto is_done = [](const EndedOrder& order) { return order.outcome == Outcome::done; };
     return source_ == Source::points && std::ranges::any_of(report_.ended.orders(), is_done);
   }
-  /// Time of the last point of the stream, in s.
+  /// Returns the time of the last point of the stream, in s.
   double end_of_points() const noexcept { return stream_.last().time; }
-  /// Number of points that wait in the stream.
+  /// Returns the number of points that wait in the stream.
   std::size_t points() const noexcept { return stream_.size(); }
-  /// The sender of the newest motion, or `no_sender`.
+  /// Returns the sender of the newest motion, or `no_sender`.
   std::uint8_t sender() const noexcept { return sender_; }
-  /// Id of the newest motion that began; 0 for none.
+  /// Returns the id of the newest motion that began; 0 means none.
   std::uint32_t newest() const noexcept { return newest_; }
   /// Returns true if a drive with a motion has to stay enabled although no SYNC is sent. `silence`
   /// is the number of cycles since the sender was heard.
@@ -139,8 +145,8 @@ class AxisRunner {
 
  private:
   static constexpr std::uint8_t no_sender = max_axes;
-  static constexpr double longest_stop = 60.0;  // of a gear that begins in a motion, s
-  /// Where the states of a motion come from.
+  static constexpr double longest_stop = 60.0;  // s, for a gear that begins while the axis moves
+  /// The source of the states of a motion.
   enum class Source : std::uint8_t { profile, points, gear };
   static constexpr Source source_of(Ending ending) noexcept {
     if (ending == Ending::points) return Source::points;
@@ -169,10 +175,10 @@ class AxisRunner {
   AxisReport report_;
   Source source_ = Source::profile;
   ProfilePlayer player_;
-  StreamPlayer stream_;       ///< of the motion that runs, or of an order that waits
-  GearPlayer gear_;           ///< of the motion that runs
+  StreamPlayer stream_;       ///< stream of the motion that runs, or of an order that waits
+  GearPlayer gear_;           ///< gear of the motion that runs
   State geared_;              ///< the state of this cycle, while the axis follows a gear
-  PositionRange range_;       ///< of the gear
+  PositionRange range_;       ///< range of the gear
   LifeSign named_;            ///< the newest message that has named the axis
   CycleNumber last_run_ = 0;  ///< the cycle of the commanded state
   CycleNumber passed_ = 1;    ///< cycles by the clock since the last run()
@@ -182,9 +188,9 @@ class AxisRunner {
   double max_following_error_ = 0.0;
   std::optional<MotionOrder> waiting_;
   std::uint32_t newest_ = 0;
-  bool has_taken_ = false;  ///< an order since the last run()
+  bool has_taken_ = false;  ///< an order was taken since the last run()
   bool follows_ = false;    ///< the drive follows set-points in this cycle
-  bool is_unsent_ = false;  ///< the set-point of the beat before was not sent
+  bool is_unsent_ = false;  ///< the set-point of the previous beat was not sent
   std::uint8_t group_;
   std::uint8_t sender_ = 0;
 };

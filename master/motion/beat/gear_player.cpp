@@ -32,8 +32,8 @@ State GearPlayer::step(const State& from, const LeaderState& leader, const Leade
   return follow(from, {.state = estimate_.state(task_)}, period);
 }
 
-/// A rotary leader counts from the begin of its turn. A rotary axis goes to the nearest place of
-/// its phase.
+/// Adds whole turns to the offset. A rotary leader counts from the begin of its turn. A rotary axis
+/// moves to the nearest position that has the phase of the gear.
 void GearPlayer::choose_turns(const State& from, const State& leader) noexcept {
   if (task_.kind == LeaderKind::commanded && task_.modulo > 0.0) {
     offset_ -=

@@ -5,15 +5,15 @@
 
 namespace takt::motion {
 
-/// How far an axis has come with its gear.
+/// The progress of an axis that follows a leader.
 enum class GearPhase : std::uint8_t {
-  none,         ///< it has no gear
-  approaching,  ///< it is on the way to the moving state of its leader
-  locked,       ///< it has the position that the gear prescribes, up to the lock window
-  released,     ///< it keeps its velocity until the next motion takes over
+  none,         ///< the axis has no gear
+  approaching,  ///< the axis has not yet reached the position that the gear prescribes
+  locked,       ///< the axis has the position that the gear prescribes, within the lock window
+  released,     ///< the axis keeps its velocity until the next motion begins
 };
 
-/// The state of the leader in a cycle. A measured one has a sample instead.
+/// The state of the leader in a cycle. For a measured leader, a LeaderSample replaces `state`.
 struct LeaderState {
   State state;
   bool is_lost = false;
@@ -22,7 +22,7 @@ struct LeaderState {
 /// Makes an axis follow a leader, step by step. It allocates nothing.
 class GearPlayer {
  public:
-  /// The axis keeps its velocity for so many cycles after a release.
+  /// Number of cycles for which the axis keeps its velocity after a release.
   static constexpr std::uint8_t most_released = 20;
 
   void begin(const GearTask& task, const Limits& limits) noexcept;
@@ -32,18 +32,18 @@ class GearPlayer {
   /// all of this time, while the axis and a commanded leader have waited.
   State step(const State& from, const LeaderState& leader, const LeaderSample& sample,
              double elapsed, double period) noexcept;
-  /// The axis follows its leader no longer.
+  /// Ends the gear: the axis no longer follows its leader.
   void release() noexcept { phase_ = GearPhase::released; }
-  /// Returns the state one step after `from` of an axis that was released.
+  /// Returns the state of a released axis one step after `from`.
   State released(const State& from, double time) const noexcept {
     return servo_.step_to_cruise(from, time);
   }
 
   GearPhase phase() const noexcept { return phase_; }
-  double phase_error() const noexcept { return error_; }  ///< of the last step
+  double phase_error() const noexcept { return error_; }  ///< phase error of the last step
   /// Returns true if the leader was lost before the last step.
   bool has_lost_leader() const noexcept { return lost_; }
-  /// Returns true if the phase error is too large.
+  /// Returns true if the phase error is above its limit.
   bool is_off() const noexcept;
   /// Returns true if no motion has taken over in time after a release.
   bool is_forgotten() const noexcept { return released_ > most_released; }
@@ -65,7 +65,7 @@ class GearPlayer {
   GearServo servo_;
   LeaderEstimate estimate_;
   State last_;           ///< target of the last step
-  double offset_ = 0.0;  ///< of the positions
+  double offset_ = 0.0;  ///< prescribed position minus ratio * position of the leader
   double error_ = 0.0;
   GearPhase phase_ = GearPhase::none;
   bool matched_ = false;  ///< the offset is known

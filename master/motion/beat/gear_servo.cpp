@@ -7,8 +7,8 @@
 namespace takt::motion {
 namespace {
 
-/// Returns the acceleration after the next step with which the velocity comes to `end` soonest: the
-/// size of the acceleration falls by at most `step` in each later step, until it is 0.
+/// Returns the acceleration after the next step with which the velocity reaches `end` soonest. In
+/// each later step, the size of the acceleration falls by at most `step`, until it is 0.
 double acceleration_to(double end, const State& from, double step, double period) noexcept {
   const double change = (end - from.velocity) / period - from.acceleration / 2;
   const double size = std::abs(change);
@@ -16,7 +16,8 @@ double acceleration_to(double end, const State& from, double step, double period
   return std::copysign((size + step * steps * (steps + 1.0) / 2) / (steps + 1.0), change);
 }
 
-/// The velocity of an axis when its acceleration has fallen to 0, by at most `step` in each step.
+/// Returns the velocity of an axis after its acceleration has fallen to 0, by at most `step` in
+/// each step.
 double velocity_after_fall(const State& from, double step, double period) noexcept {
   const double size = std::abs(from.acceleration);
   const double steps = std::floor(size / step);
@@ -28,8 +29,8 @@ State step_with(const State& from, double acceleration, double period) noexcept 
   return advanced(from, period, (acceleration - from.acceleration) / period);
 }
 
-/// Returns the jerks of the three steps that lead an axis exactly to its target, which has the
-/// state `before` at the time of `from` and a constant jerk.
+/// Returns the jerks of the three steps that lead an axis exactly to its target. The target has the
+/// state `before` at the time of `from`, and a constant jerk.
 std::array<double, 3> three_steps(const State& from, const State& before, double target_jerk,
                                   double period) noexcept {
   const double cube = period * period * period;
@@ -42,7 +43,8 @@ std::array<double, 3> three_steps(const State& from, const State& before, double
 
 }  // namespace
 
-/// The jerk is always kept, also by an axis that begins outside its other limits.
+/// Returns the accelerations that the axis may have after the next step. The limit of jerk is
+/// always kept, even if the axis begins outside its other limits.
 GearServo::Room GearServo::room_after(const State& from, double period) const noexcept {
   const double step = limits_.jerk * period;
   const double high = acceleration_to(limits_.max_velocity, from, step, period);
@@ -84,8 +86,9 @@ double GearServo::distance_to_settle(double velocity, double acceleration) const
   return sign * (distance + peak * peak * peak / (6 * jerk * jerk));
 }
 
-/// Returns the acceleration after the next step. The distance that remains rises with it, so its
-/// root is found by the secant method in the bracket of the room.
+/// Returns the acceleration after the next step of a catch-up. The distance that then remains rises
+/// with this acceleration, so the secant method finds the acceleration for which it is 0, within
+/// `room`.
 double GearServo::catching_up(const State& from, const State& target, const Room& room,
                               double period) const noexcept {
   const double jerk = jerk_for_settling * limits_.jerk;
@@ -111,7 +114,7 @@ double GearServo::catching_up(const State& from, const State& target, const Room
     found = (low * above - high * below) / (above - below);
     const double error = remaining(found);
     if (std::abs(error) <= enough) break;
-    // If the same end of the bracket stays twice, its weight is halved.
+    // If the same end of the bracket is kept twice in a row, its weight is halved.
     if (error > 0.0) {
       high = found;
       above = error;
@@ -126,8 +129,8 @@ double GearServo::catching_up(const State& from, const State& target, const Room
   return found;
 }
 
-/// Returns true if the target uses almost the whole jerk, and the axis is close to it. Then little
-/// jerk is left for corrections: they must wait, or the axis would fall far behind.
+/// Returns true if the target uses almost the whole jerk, and the axis is close to it. Little jerk
+/// is then left for corrections, which must wait. Otherwise the axis would fall far behind.
 bool GearServo::is_led(const State& from, const State& before, double target_jerk,
                        double period) const noexcept {
   constexpr double whole = 0.8;

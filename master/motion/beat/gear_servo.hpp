@@ -4,22 +4,24 @@
 
 namespace takt::motion {
 
-/// The next step of an axis that catches up with a moving target. In each step the jerk is constant
-/// and inside its limit, so velocity, acceleration and jerk keep their limits between the steps,
-/// too. If the axis begins outside a limit, it returns inside as fast as the others permit.
+/// Computes the next step of an axis that catches up with a moving target. In each step the jerk is
+/// constant and inside its limit, so velocity, acceleration and jerk keep their limits between the
+/// steps as well. If the axis begins outside a limit, it returns inside as fast as the other limits
+/// permit.
 ///
-/// A step towards a position compares the axis with its target in the state in which both have come
-/// to the velocity that the target will have at the end of its acceleration, with a jerk that is
-/// `jerk_for_settling` of the limit: the distance that then remains must become 0, without a change
-/// of its sign. So the axis approaches in almost the shortest time and does not overshoot a target
-/// of constant velocity. As soon as three steps within the limits lead exactly to the target, the
-/// axis takes them. A target that moves within the limits is then followed without error.
+/// A step towards a position assumes that the acceleration of the target falls to 0 with a jerk of
+/// `jerk_for_settling` times the limit, and that the target then keeps its velocity. The step is
+/// chosen so that the distance between axis and target becomes 0, without a change of its sign,
+/// when the axis reaches this velocity. So the axis approaches in almost the shortest time and does
+/// not overshoot a target of constant velocity. As soon as three steps within the limits lead
+/// exactly to the target, the axis takes them. From then on, it follows a target that moves within
+/// the limits without error.
 ///
-/// Each step computes at most `most_trials` + 2 of these distances.
+/// Each step computes this distance at most `most_trials` + 2 times.
 class GearServo {
  public:
-  /// The parts of the limits with which the way of a catch-up is planned. The rest is for the
-  /// difference between steps and a continuous motion.
+  /// The fractions of the limits with which a catch-up is planned. The rest covers the difference
+  /// between steps and a continuous motion.
   static constexpr double jerk_for_settling = 0.9;
   static constexpr double acceleration_for_settling = 0.95;
   static constexpr int most_trials = 8;
@@ -28,7 +30,7 @@ class GearServo {
   explicit GearServo(const Limits& limits) noexcept : limits_{limits} {}
 
   /// Returns the state `period` seconds after `from`, at the time of `target`, on the way to the
-  /// position, velocity and acceleration of the target. `target_jerk` is that of the target.
+  /// position, velocity and acceleration of the target. `target_jerk` is the jerk of the target.
   State step_to_position(const State& from, const State& target, double target_jerk,
                          double period) const noexcept;
   /// Like step_to_position(), but on the way to the velocity and acceleration of the target alone.

@@ -13,32 +13,34 @@ enum class LeaderKind : std::uint8_t {
   measured,   ///< a position in the image of the bus
 };
 
-/// Whether a gear has a phase of its own.
+/// How the phase of a gear is determined.
 enum class PhaseMatch : std::uint8_t {
-  here,  ///< the velocities are matched, and the phase is the one that the axis has then
+  here,  ///< the velocities are matched first; the phase is the one that the axis has at that
+         ///< moment
   at,    ///< position = ratio * position of the leader + offset
 };
 
-/// What the bus thread needs to run a gear, besides the limits. Plain data.
+/// The data with which the bus thread runs a gear, besides the limits.
 struct GearTask {
   LeaderKind kind = LeaderKind::commanded;
   PhaseMatch match = PhaseMatch::here;
-  std::uint8_t leader_axis = 0xFF;  ///< of `commanded`; of `measured` one whose fault matters
-  std::uint16_t signal = 0;         ///< of `measured`: its number in the image
+  std::uint8_t leader_axis = 0xFF;  ///< the leader; if `measured`, the axis whose fault loses it
+  std::uint16_t signal = 0;         ///< `measured`: number of the signal in the image
   std::uint8_t bits = 32;           ///< width of this signal
-  /// Of `measured`: counts after which the signal wraps; 0: only at its width. Of `commanded`: the
-  /// length of a turn, which begins at `zero`, of a rotary leader; 0: it is not rotary.
+  /// `measured`: number of counts after which the signal wraps; 0 means that it wraps only at its
+  /// width. `commanded`: length of a turn of a rotary leader, which begins at `zero`; 0 means that
+  /// the leader is not rotary.
   double modulo = 0.0;
   double scale = 1.0;        ///< unit of the leader per count
-  double zero = 0.0;         ///< of `measured`: position of the leader at the count 0
-  double filter_time = 0.0;  ///< of `measured`, s, see LeaderEstimate
+  double zero = 0.0;         ///< `measured`: position of the leader at the count 0
+  double filter_time = 0.0;  ///< `measured`: s, see LeaderEstimate
   double lead = 0.0;         ///< s by which a measured position is older than the set-point
-  double ratio = 1.0;        ///< of the velocities
-  double offset = 0.0;       ///< of PhaseMatch::at
-  double turn = 0.0;         ///< of PhaseMatch::at: length of a turn of a rotary axis; 0: none
+  double ratio = 1.0;        ///< ratio of the velocities
+  double offset = 0.0;       ///< offset of the positions; only for PhaseMatch::at
+  double turn = 0.0;         ///< PhaseMatch::at: length of a turn of a rotary axis, or 0
   double lock_window = 0.0;  ///< phase error up to which the axis counts as locked
-  double max_phase_error = std::numeric_limits<double>::infinity();  ///< once it was locked
-  PositionRange range{};  ///< in which a stop must be possible at any time
+  double max_phase_error = std::numeric_limits<double>::infinity();  ///< once the axis was locked
+  PositionRange range{};  ///< range in which a stop must be possible at any time
 
   template <class Archive>
   void keep(Archive& state) noexcept {
@@ -56,7 +58,7 @@ inline bool is_sound(const GearTask& task) noexcept {
          task.lock_window >= 0.0 && task.max_phase_error > 0.0 && task.bits >= 1 && task.bits <= 64;
 }
 
-/// What the image says about a measured leader in a cycle.
+/// The value of a measured leader in the image of a cycle.
 struct LeaderSample {
   enum class Age : std::uint8_t {
     fresh,

@@ -5,20 +5,21 @@
 
 namespace takt::motion {
 
-/// What a drive shows in a beat, as far as homing is concerned.
+/// The values of a beat that show the progress of homing.
 struct HomingSigns {
-  bool heard = false;   ///< its node exchanges PDOs
+  bool heard = false;   ///< the node of the drive exchanges PDOs
   bool fresh = false;   ///< the statusword has arrived
-  bool homing = false;  ///< it is in homing mode and enabled, and bit 4 of the controlword is set
+  bool homing = false;  ///< homing mode, enabled, and bit 4 of the controlword is set
   std::uint16_t statusword = 0;
 };
 
-/// Finds out by the homing runs of a drive whether it knows its home position. CiA 402-2, homing
-/// mode: bits 10, 12 and 13 of the statusword.
+/// Finds out from the homing runs of a drive whether the drive knows its home position. CiA 402-2,
+/// homing mode: bits 10, 12 and 13 of the statusword.
 class HomingWatch {
  public:
-  /// A drive may still show the result of an earlier run in the first beats of a run, whose result
-  /// is not known then. A result that does not change for `patience` beats is that of this run.
+  /// In the first beats of a run, a drive may still show the result of an earlier run, so the
+  /// result of this run is not known yet. A result that does not change for `patience` beats is
+  /// that of this run.
   explicit HomingWatch(std::uint32_t patience) noexcept : patience_{patience} {}
 
   /// Takes the signs of a beat. The home position counts as lost when the node exchanges no PDOs
@@ -72,7 +73,7 @@ class HomingWatch {
   HomingState state_ = HomingState::none;
   Phase phase_ = Phase::none;
   std::uint16_t first_ = 0;  ///< result bits in the first beat of the run
-  std::uint32_t beats_ = 0;  ///< of the run in which they have not changed
+  std::uint32_t beats_ = 0;  ///< beats of the run in which the result bits have not changed
 };
 
 }  // namespace takt::motion

@@ -5,7 +5,8 @@
 
 namespace takt::motion {
 
-/// Adds the shortest way from the last sample to this one. Returns the counts since the first.
+/// Adds the shortest distance from the last sample to this one. Returns the number of counts since
+/// the first sample.
 double LeaderEstimate::counted(std::int64_t counts, const GearTask& task) noexcept {
   const unsigned unused = 64U - std::clamp<unsigned>(task.bits, 1U, 64U);
   const std::uint64_t raw = static_cast<std::uint64_t>(counts) - static_cast<std::uint64_t>(last_);

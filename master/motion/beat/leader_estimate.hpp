@@ -6,27 +6,27 @@
 
 namespace takt::motion {
 
-/// The position, velocity and acceleration of a leader from its counter, which may be coarse, noisy
-/// and may wrap. The estimate is a motion with a constant jerk in each cycle. It is a filter of
-/// fourth order with four equal time constants and one zero: without delay and without an error of
-/// the position at a constant velocity; at an acceleration a it lags by 6 a filter_time^2.
+/// Estimates the position, velocity and acceleration of a leader from its counter, which may be
+/// coarse and noisy and may wrap. The estimate is a motion with a constant jerk in each cycle. It
+/// is a filter of fourth order with four equal time constants and one zero. At a constant velocity,
+/// it has no delay and no error of position; at an acceleration a, it lags by 6 a filter_time^2.
 class LeaderEstimate {
  public:
   /// The shortest filter time, in cycles: a shorter one counts as this one.
   static constexpr double shortest_filter = 5.0;
-  /// A leader is lost if so many cycles in a row have no new position.
+  /// A leader is lost after this number of cycles in a row without a new position.
   static constexpr std::uint8_t most_missing = 3;
 
-  /// Begins at the next sample.
+  /// Starts again with the next sample.
   void begin() noexcept { *this = {}; }
   /// Takes the sample of this cycle, `time` seconds after the last one.
   void take(const LeaderSample& sample, const GearTask& task, double time, double period) noexcept;
-  /// Returns true if it knows the velocity. It measures it for one filter time first.
+  /// Returns true if the velocity is known. It is measured for one filter time first.
   bool is_ready() const noexcept { return ready_; }
   bool is_lost() const noexcept { return lost_ || missing_ >= most_missing; }
-  /// The state `task.lead` seconds after the sample, in the unit of the leader.
+  /// Returns the state `task.lead` seconds after the sample, in the unit of the leader.
   State state(const GearTask& task) const noexcept;
-  double jerk() const noexcept { return jerk_; }  ///< of the last cycle
+  double jerk() const noexcept { return jerk_; }  ///< jerk of the last cycle
 
   template <class Archive>
   void keep(Archive& state) noexcept {

@@ -7,7 +7,7 @@
 
 namespace takt::motion {
 
-/// What a message of the front thread is about.
+/// The subject of a message of the front thread.
 enum class MessageKind : std::uint8_t {
   heard,    ///< the sender is alive
   order,    ///< `order` waits for its first cycle
@@ -22,11 +22,11 @@ enum class MessageKind : std::uint8_t {
 /// A message of the front thread about motions. Plain data.
 struct MotionMessage {
   MessageKind kind = MessageKind::heard;
-  std::uint8_t sender = 0;  ///< of `heard`, `left` and `renew`
-  CycleNumber cycle = 0;    ///< of `heard` and `renew`: the cycle whose image the sender has seen
-  std::uint8_t axis = 0;    ///< of `stop`, `left`, `renew`, `release` and `points`
-  MotionOrder order{};      ///< of `order`
-  StreamPoints points{};    ///< of `points`
+  std::uint8_t sender = 0;  ///< used by `heard`, `left` and `renew`
+  CycleNumber cycle = 0;    ///< cycle whose image the sender has seen; for `heard` and `renew`
+  std::uint8_t axis = 0;    ///< used by `stop`, `left`, `renew`, `release` and `points`
+  MotionOrder order{};      ///< used by `order`
+  StreamPoints points{};    ///< used by `points`
 
   template <class Archive>
   void keep(Archive& state) noexcept {
@@ -36,11 +36,11 @@ struct MotionMessage {
   }
 };
 
-/// Tells the front thread how an order of an axis has ended.
+/// Reports to the front thread how an order of an axis has ended.
 struct MotionEnd {
   std::uint8_t axis = 0;
   EndedOrder order{};
-  Stop stop{};  ///< of an order that was stopped
+  Stop stop{};  ///< valid if the order was stopped
 };
 
 }  // namespace takt::motion

@@ -11,7 +11,8 @@ bool is_finite(const State& state) noexcept {
          std::isfinite(state.acceleration);
 }
 
-/// A comparison with NaN is false.
+/// Returns true if a stop along these limits is possible. A comparison with NaN is false, so NaN
+/// permits no stop.
 bool permit_stop(const Limits& limits) noexcept {
   return limits.jerk > 0.0 && limits.max_acceleration > 0.0 && limits.min_acceleration < 0.0 &&
          limits.max_velocity > 0.0 && limits.min_velocity < 0.0;

@@ -9,25 +9,27 @@
 
 namespace takt::motion {
 
-/// Number of a cycle. Motions advance in the cycles whose SYNC was sent, by the clock: these
-/// numbers jump where periods have no SYNC, so that their differences are times. They never wrap.
+/// Number of a cycle. Motions advance only in cycles whose SYNC was sent. The numbers follow the
+/// clock: they jump over periods without SYNC, so that their differences are times. They never
+/// wrap.
 using CycleNumber = std::uint64_t;
 
 /// Axes, groups and senders are numbered from 0. A bus has at most 127 nodes, and axes above this
 /// number can't be moved.
 inline constexpr std::size_t max_axes = 127;
 
-/// What an axis does when its motion has come to its end.
+/// The behaviour of an axis at the end of its motion.
 enum class Ending : std::uint8_t {
-  rest,    ///< it stands at the end position
-  cruise,  ///< it keeps the velocity of the end until it is stopped (jog)
-  points,  ///< it follows a stream of points instead of a profile, and ends with the last of them
-  gear,    ///< it follows a leader instead of a profile, until it is stopped
+  rest,    ///< the axis is at rest at the end position
+  cruise,  ///< the axis keeps the velocity of the end until it is stopped (jog)
+  points,  ///< the axis follows a stream of points instead of a profile, and ends with the last
+           ///< point
+  gear,    ///< the axis follows a leader instead of a profile, until it is stopped
 };
 
-/// The newest message of a sender: the cycle whose image it had seen.
+/// The newest message of a sender: the cycle whose image the sender had seen.
 struct LifeSign {
-  std::uint8_t sender = max_axes;  ///< max_axes: of nobody
+  std::uint8_t sender = max_axes;  ///< max_axes means nobody
   CycleNumber cycle = 0;
 
   template <class Archive>
@@ -40,22 +42,20 @@ struct LifeSign {
 /// A planned motion of one axis, which the bus thread runs from one cycle on. All orders of a group
 /// that have the same id begin together, or none does. Plain data.
 struct MotionOrder {
-  std::uint32_t id = 0;   ///< not 0
-  std::uint8_t axis = 0;  ///< less than max_axes
-  std::uint8_t group =
-      0;                  ///< the number of one axis of the group, for which there is an order, too
-  std::uint8_t axes = 1;  ///< number of orders with this id
+  std::uint32_t id = 0;     ///< not 0
+  std::uint8_t axis = 0;    ///< less than max_axes
+  std::uint8_t group = 0;   ///< number of one axis of the group, which must have an order as well
+  std::uint8_t axes = 1;    ///< number of orders with this id
   std::uint8_t sender = 0;  ///< less than max_axes
   Ending ending = Ending::rest;
   CycleNumber begin = 0;  ///< the motion begins in this cycle, in the state `from`
-  /// Must be what the axis is commanded in the cycle `begin`; not used with Ending::gear.
+  /// Must be the commanded state of the axis in the cycle `begin`; not used with Ending::gear.
   State from;
-  Profile profile;          ///< of the motion that starts at `from`; only of `rest` and `cruise`
-  GearTask gear{};          ///< of Ending::gear
-  Limits stop;              ///< of a stop
+  Profile profile;          ///< motion that starts at `from`; only for `rest` and `cruise`
+  GearTask gear{};          ///< only for Ending::gear
+  Limits stop;              ///< limits of a stop
   CycleNumber timeout = 0;  ///< periods for which the motion outlives the silence of its sender
-  /// The axis is stopped at the latest from the state that it has so many cycles after `begin`, see
-  /// cycles_with_stop().
+  /// The axis is stopped at the latest this number of cycles after `begin`, see cycles_with_stop().
   CycleNumber latest_stop = std::numeric_limits<CycleNumber>::max();
   /// Distance between commanded and actual position above which the group stops.
   double max_following_error = std::numeric_limits<double>::infinity();

@@ -5,8 +5,8 @@
 
 namespace takt::motion {
 
-/// Gives the states of a motion at times that only rise. It passes each segment once, so that a
-/// cycle costs as much for a long motion as for a short one.
+/// Gives the states of a motion at times that only increase. It passes each segment once, so that a
+/// cycle takes as long for a long motion as for a short one.
 class ProfilePlayer {
  public:
   ProfilePlayer() noexcept = default;
@@ -39,14 +39,15 @@ class ProfilePlayer {
   }
 
  private:
-  /// Rounding leaves a small acceleration at the end. It must be set to 0, or the axis drifts.
+  /// Sets the acceleration at the end to 0. Rounding leaves a small acceleration, with which the
+  /// axis would drift.
   void end() noexcept {
     start_.acceleration = 0.0;
     if (ending_ == Ending::rest) start_.velocity = 0.0;
   }
 
   Profile profile_;
-  State start_;  ///< of the segment
+  State start_;  ///< state at the begin of the segment
   double passed_ = 0.0;
   double duration_ = 0.0;
   std::size_t segment_ = 0;

@@ -35,7 +35,8 @@ Profile stop_profile(const State& from, const Limits& limits) noexcept {
 
 namespace {
 
-/// Cycles for which an axis can go on with this velocity, when a stop from `state` covers `stop`.
+/// Returns the number of cycles for which an axis can go on with this velocity, if a stop from
+/// `state` covers the positions `stop`.
 double cycles_of_cruise(const State& state, const PositionRange& stop, const PositionRange& range,
                         double period) noexcept {
   if (state.velocity == 0.0) return std::numeric_limits<double>::infinity();

@@ -11,15 +11,16 @@ namespace takt::motion {
 
 /// How the motion reaches a point of a stream.
 enum class Curve : std::uint8_t {
-  quintic,  ///< with the position, velocity and acceleration of the point
-  cubic,    ///< with its position and velocity; the acceleration follows, and jumps at the point
+  quintic,  ///< reaches the position, velocity and acceleration of the point
+  cubic,    ///< reaches its position and velocity; the acceleration follows from them, and jumps at
+            ///< the point
 };
 
-/// The state that an axis has to have at a time.
+/// The state that an axis must have at a given time.
 struct StreamPoint {
-  static constexpr std::size_t kept_words = 5;  ///< of keep()
+  static constexpr std::size_t kept_words = 5;  ///< number of words of keep()
 
-  double time = 0.0;  ///< s, after the begin of the stream
+  double time = 0.0;  ///< s since the begin of the stream
   State state;
   Curve curve = Curve::quintic;
 
@@ -35,8 +36,8 @@ inline bool is_finite(const StreamPoint& point) noexcept {
          std::isfinite(point.state.velocity) && std::isfinite(point.state.acceleration);
 }
 
-/// The motion from one point of a stream to the next. A state and its acceleration follow from both
-/// points alone, so that the front thread can check what the bus thread will do.
+/// The motion from one point of a stream to the next. Both points alone determine its states, so
+/// that the front thread can check what the bus thread will do.
 class StreamSegment {
  public:
   StreamSegment() noexcept = default;
@@ -55,7 +56,7 @@ class StreamSegment {
             .velocity = value_at(velocity, t),
             .acceleration = value_at(derivative_of(velocity), t)};
   }
-  /// The position as a function of the time since the begin of the segment.
+  /// Returns the position as a function of the time since the begin of the segment.
   const Polynomial& position() const noexcept { return position_; }
   double begin() const noexcept { return begin_; }        ///< s
   double duration() const noexcept { return duration_; }  ///< s
@@ -71,8 +72,8 @@ class StreamSegment {
   Polynomial position_{};
 };
 
-/// Returns the point `to` with the acceleration that the axis has there. Of a cubic curve, the
-/// point itself does not tell it.
+/// Returns the point `to` with the acceleration that the axis has there. The point of a cubic curve
+/// does not contain this acceleration.
 inline StreamPoint reached(const StreamPoint& from, const StreamPoint& to) noexcept {
   StreamPoint point = to;
   if (to.curve == Curve::cubic) {

@@ -7,14 +7,14 @@
 
 namespace takt::motion {
 
-/// Leads an axis from point to point of a stream, at times that only rise. It holds a bounded
-/// number of points, and allocates nothing.
+/// Leads an axis from point to point of a stream, at times that only increase. It holds a bounded
+/// number of points and allocates no memory.
 class StreamPlayer {
  public:
-  /// Points that it holds, besides the one that was passed last.
+  /// Number of points that it holds, besides the point that was passed last.
   static constexpr std::size_t capacity = 64;
 
-  /// Begins another stream, which is known by the id of its order.
+  /// Begins another stream, which the id of its order identifies.
   void begin(std::uint32_t order, const State& from) noexcept {
     order_ = order;
     passed_ = last_ = {.time = 0.0, .state = from};
@@ -22,15 +22,15 @@ class StreamPlayer {
     tail_ = Tail::open;
   }
   std::uint32_t order() const noexcept { return order_; }
-  /// Appends a point. Returns false if it is not later than the last one, if a number of it is not
-  /// finite, or if there is no room. The stream ends before such a point, and takes no later one:
-  /// nobody has checked the curve that would lead over the gap.
+  /// Appends a point. Returns false if it is not later than the last one, if one of its numbers is
+  /// not finite, or if there is no room. The stream then ends before this point and takes no later
+  /// point, because nobody has checked the curve over the gap.
   bool add(const StreamPoint& point) noexcept;
   /// Returns the state at a time; after the last point, the state at that point.
   State at(double time) noexcept;
-  /// The last point.
+  /// Returns the last point.
   const StreamPoint& last() const noexcept { return last_; }
-  /// Number of points that wait.
+  /// Returns the number of points that wait.
   std::size_t size() const noexcept { return size_; }
 
   /// Keeps only the points that wait, so the number of words changes with size().
@@ -43,7 +43,7 @@ class StreamPlayer {
   }
 
  private:
-  /// Whether the stream takes more points.
+  /// States whether the stream takes more points.
   enum class Tail : std::uint8_t { open, cut };
 
   std::uint32_t order_ = 0;  ///< 0 before the first stream
@@ -51,7 +51,7 @@ class StreamPlayer {
   StreamPoint last_;
   StreamSegment segment_;  ///< from the point that was passed to the first that waits
   std::array<StreamPoint, capacity> points_{};
-  std::size_t first_ = 0;  ///< of the points that wait, in a ring
+  std::size_t first_ = 0;  ///< first of the points that wait, in a ring
   std::size_t size_ = 0;
   Tail tail_ = Tail::open;
 };

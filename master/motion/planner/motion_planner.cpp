@@ -12,7 +12,7 @@ namespace {
 
 std::uint32_t id_of(const TaggedOrder& sent) noexcept { return sent.order.id; }
 
-/// `time` is that since the begin of the motion.
+/// Returns the state of an order `time` seconds after the begin of its motion.
 State state_of(const MotionOrder& order, double time) {
   ProfilePlayer player{order.profile, order.from, order.ending};
   return player.at(time);
@@ -28,7 +28,8 @@ bool is_start(const State& from, const AxisGoal& goal) noexcept {
          std::abs(goal.to.acceleration) <= tolerance * limits.max_acceleration;
 }
 
-/// Returns true if a jog of this velocity leads an axis from outside its range still farther out.
+/// Returns true if the axis is outside its range, and a jog with this velocity does not bring it
+/// back.
 bool leads_out(const PositionRange& range, double position, double velocity) noexcept {
   return (position < range.min && velocity <= 0.0) || (position > range.max && velocity >= 0.0);
 }
@@ -44,7 +45,8 @@ const TaggedOrder* MotionPlanner::Axis::find(std::uint32_t id) const noexcept {
   return found == sent.end() ? nullptr : &*found;
 }
 
-/// An order that did not begin in its cycle never does, and its end is known before the report.
+/// Takes the reports, and forgets orders that are over. An order that did not begin in its cycle
+/// never begins, and its end is known before the report.
 void MotionPlanner::observe(CycleNumber cycle, std::span<const AxisReport> reports) {
   cycle_ = cycle;
   for (std::size_t i = 0; i < axes_.size() && i < reports.size(); ++i) {
@@ -56,8 +58,8 @@ void MotionPlanner::observe(CycleNumber cycle, std::span<const AxisReport> repor
   }
 }
 
-/// The state that the axis will have in a cycle after the newest report, before the orders that
-/// begin in it.
+/// Returns the state that the axis will have in a cycle after the newest report, before the orders
+/// of that cycle begin.
 std::expected<State, PlanFault> MotionPlanner::state_at(const Axis& axis, CycleNumber cycle) const {
   switch (axis.report.state) {
     case AxisState::unpowered:
@@ -78,8 +80,8 @@ std::expected<State, PlanFault> MotionPlanner::state_at(const Axis& axis, CycleN
   return state_of(running->order, static_cast<double>(cycle - axis.report.began) * period_);
 }
 
-/// The state of an axis whose gear is released. An axis whose gear is not released yet counts as if
-/// it were, so that a motion that is impossible is refused before the gear ends.
+/// Returns the state of an axis whose gear is released. A gear that is not released yet counts as
+/// released, so that an impossible motion is refused before the gear ends.
 State MotionPlanner::released_at(const AxisReport& report, const Limits& limits,
                                  CycleNumber cycle) const {
   const GearServo servo{limits};
@@ -142,8 +144,9 @@ std::expected<void, PlanRefusal> MotionPlanner::set_tasks(const GroupGoal& group
       .fault = PlanFault::impossible, .axis = goals[refused.axis].axis, .defect = refused.defect}};
 }
 
-/// A motion to rest inside the range can be stopped inside it in each cycle: no motion from the
-/// same state with the same limits brakes earlier than the stop.
+/// Makes the orders of the planned motions. A motion to rest inside the range can be stopped inside
+/// it in each cycle, because no motion from the same state with the same limits brakes earlier than
+/// a stop.
 std::expected<void, PlanRefusal> MotionPlanner::set_orders(const GroupGoal& group,
                                                            std::span<const AxisGoal> goals,
                                                            CycleNumber begin) {
@@ -232,7 +235,8 @@ std::expected<std::span<const MotionOrder>, PlanRefusal> MotionPlanner::begin_st
   return number_orders(group.tag);
 }
 
-/// The leader of the newest gear of the axis. Empty if it follows none, or no axis.
+/// Returns the leader of the newest gear of the axis. Returns std::nullopt if the axis has no gear,
+/// or if its leader is no axis.
 std::optional<std::uint8_t> MotionPlanner::leader_of(std::uint8_t axis) const noexcept {
   const Axis& follower = axes_[axis];
   const MotionOrder* newest = follower.waiting(cycle_);
@@ -245,7 +249,7 @@ std::optional<std::uint8_t> MotionPlanner::leader_of(std::uint8_t axis) const no
                                                  : std::nullopt;
 }
 
-/// Returns the axis of the goals that the leader follows, directly or through other axes.
+/// Returns the axis among the goals that the leader follows, directly or through other axes.
 std::optional<std::uint8_t> MotionPlanner::axis_that_leads(
     std::uint8_t leader, std::span<const AxisGoal> goals) const noexcept {
   std::optional<std::uint8_t> next = leader;
@@ -291,7 +295,7 @@ std::expected<std::span<const MotionOrder>, PlanRefusal> MotionPlanner::begin_ge
   return number_orders(group.tag);
 }
 
-/// Remembers the orders, which have the next id.
+/// Uses the next id for the orders, and remembers them.
 std::span<const MotionOrder> MotionPlanner::number_orders(const MotionTag& tag) {
   ++id_;
   for (const MotionOrder& order : orders_) {

@@ -13,54 +13,56 @@
 
 namespace takt::motion {
 
-/// What an application wants of one axis.
+/// The goal of one axis, as an application commands it.
 struct AxisGoal {
   std::uint8_t axis = 0;
-  /// The position of a move. Of a jog, only the velocity counts. Of a stream, where it begins.
+  /// Move: the target position. Jog: only the velocity counts. Stream: the state in which it
+  /// begins.
   State to;
   Limits limits;
   PositionRange range{};
-  double turn = 0.0;  ///< of a rotary axis: it moves to the nearest place of its position; 0: none
+  double turn = 0.0;  ///< length of a turn of a rotary axis, which moves to the nearest place of
+                      ///< its target; 0 means not rotary
   /// Distance between commanded and actual position above which the group stops.
   double max_following_error = std::numeric_limits<double>::infinity();
 };
 
-/// Returns the length of the whole turns between the target of a rotary axis and the place of it
-/// that is nearest to `position`. Of two places that are half a turn away it is the upper one.
+/// Returns the length of the whole turns between the target of a rotary axis and the place of the
+/// target that is nearest to `position`. If two places are half a turn away, the upper one counts.
 inline double turns_to(const AxisGoal& goal, double position) noexcept {
   if (goal.turn <= 0.0) return 0.0;
   return goal.turn * std::floor((position - goal.to.position) / goal.turn + 0.5);
 }
 
-/// Whose motion it is, in the numbers of the caller, who finds it again by the order.
+/// Identifies the motion of an order, in the numbers of the caller.
 struct MotionTag {
   std::int32_t id = 0;
   std::int64_t instance = 0;
 };
 
-/// Where the target positions of a move count from.
+/// The zero of the target positions of a move.
 enum class Reference : std::uint8_t {
   origin,
   commanded,  ///< the position that the axis is commanded in the first cycle of the motion
 };
 
-/// What an application wants of a group of axes, which begin and stop together.
+/// The goal of a group of axes that begin and stop together.
 struct GroupGoal {
-  Goal goal = Goal::position;  ///< velocity: a jog
+  Goal goal = Goal::position;  ///< `velocity` means a jog
   Synchronisation synchronisation = Synchronisation::time;
-  Reference reference = Reference::origin;  ///< of the positions of a move
+  Reference reference = Reference::origin;  ///< zero of the positions of a move
   std::uint8_t sender = 0;
   CycleNumber timeout = 0;  ///< periods for which the motion outlives the silence of its sender
   MotionTag tag{};
 };
 
-/// An order that was planned, and whose it is.
+/// A planned order, and the motion to which it belongs.
 struct TaggedOrder {
   MotionOrder order;
   MotionTag tag;
 };
 
-/// Why there is no motion.
+/// Why a motion can't be planned.
 enum class PlanFault : std::uint8_t {
   no_axis,      ///< there is no such axis, or it is named twice
   no_report,    ///< the bus thread has not reported yet
@@ -72,7 +74,7 @@ enum class PlanFault : std::uint8_t {
   geared,       ///< the axis follows a gear: release it, and plan again after the next report
   moving,       ///< the axis must be at rest before it follows a stream
   ring,         ///< the leader of the gear follows this axis, perhaps through other axes
-  other_start,  ///< the stream does not begin where the axis stands, or not at rest
+  other_start,  ///< the stream does not begin at rest at the position of the axis
   impossible,   ///< see `defect`
   too_long,     ///< the motion, or the start of a jog, takes too many cycles
 };
@@ -80,45 +82,45 @@ enum class PlanFault : std::uint8_t {
 struct PlanRefusal {
   PlanFault fault{};
   std::uint8_t axis = 0;
-  Defect defect{};  ///< of PlanFault::impossible
+  Defect defect{};  ///< valid for PlanFault::impossible
 };
 
 /// Plans motions from the states that the axes will have in a future cycle. It knows these states
 /// from the newest reports and from the orders that it has planned before. One thread.
 class MotionPlanner {
  public:
-  /// Most cycles in which the axes of a jog reach their velocities, all axes added. It bounds the
-  /// time that plan() takes.
+  /// Largest number of cycles in which the axes of a jog reach their velocities, as the sum over
+  /// all axes. It limits the time that plan() takes.
   static constexpr double longest_jog_start = 20'000;
   static constexpr double longest_motion = 1e9;  ///< in cycles
   /// Largest difference between the first point of a stream and the state of the axis that counts
   /// as rounding. It is relative to the position (at least 1) and to the limits.
   static constexpr double start_tolerance = 1e-6;
 
-  /// `period` is that of the cycle in s.
+  /// `period` is the period of the cycle in s.
   MotionPlanner(std::size_t axes, double period) : period_{period}, axes_(axes) {}
 
   /// Takes the reports of all axes in this cycle.
   void observe(CycleNumber cycle, std::span<const AxisReport> reports);
   CycleNumber cycle() const noexcept { return cycle_; }
-  /// Returns the order of the axis with this id. Null if it is unknown, or older than the one that
-  /// runs. Valid until the next call of observe() or plan().
+  /// Returns the order of the axis with this id. Returns nullptr if the order is unknown, or older
+  /// than the one that runs. The result is valid until the next call of observe() or plan().
   const TaggedOrder* order(std::size_t axis, std::uint32_t id) const noexcept {
     return axes_[axis].find(id);
   }
 
-  /// Plans a motion that begins in `begin`, which must be later than the next cycle. If an order of
-  /// one of the axes waits, the motion begins in its cycle instead and replaces it. The orders have
-  /// the same new id. They are valid until the next call.
+  /// Plans a motion that begins in the cycle `begin`, which must be later than the next cycle. If
+  /// an order of one of the axes waits, the new motion begins in the cycle of that order instead
+  /// and replaces it. All orders have the same new id. The result is valid until the next call.
   std::expected<std::span<const MotionOrder>, PlanRefusal> plan(const GroupGoal& group,
                                                                 std::span<const AxisGoal> goals,
                                                                 CycleNumber begin);
-  /// Makes the orders of a stream of points, which begins in `begin` where the axes stand. They
-  /// have no motion yet: the points follow.
+  /// Makes the orders of a stream of points, which begins in the cycle `begin` at the positions of
+  /// the axes. The orders contain no motion: the points follow.
   std::expected<std::span<const MotionOrder>, PlanRefusal> begin_stream(
       const GroupGoal& group, std::span<const AxisGoal> goals, CycleNumber begin);
-  /// Makes the orders of a gear, which begins in `begin` in any state of the axes. `tasks` has one
-  /// element for each goal.
+  /// Makes the orders of a gear, which begins in the cycle `begin` in any state of the axes.
+  /// `tasks` has one element for each goal.
   std::expected<std::span<const MotionOrder>, PlanRefusal> begin_gear(
       const GroupGoal& group, std::span<const AxisGoal> goals, std::span<const GearTask> tasks,
       CycleNumber begin);
@@ -127,7 +129,7 @@ class MotionPlanner {
   struct Axis {
     static constexpr std::size_t most_sent = 6;
 
-    /// The order that begins after the newest report; null if there is none.
+    /// Returns the order that begins after the newest report; nullptr if there is none.
     const MotionOrder* waiting(CycleNumber cycle) const noexcept;
     const TaggedOrder* find(std::uint32_t id) const noexcept;
 

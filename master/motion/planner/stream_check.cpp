@@ -8,7 +8,7 @@
 namespace takt::motion {
 namespace {
 
-/// An excess that rounding explains, as a part of the limits.
+/// The largest excess that counts as rounding, relative to the limits.
 constexpr double rounding = 1e-9;
 
 bool is_inside(const Extremes& found, double min, double max, double size) noexcept {
@@ -85,8 +85,8 @@ std::optional<StreamDefect> defect_of_way(const StreamPoint& from, const StreamP
   return defect_of_course(course_of(segment), rules);
 }
 
-/// The cycle of `from` counts, too: the bus thread is on the new curve then, and a cubic one begins
-/// with another acceleration than the last one has ended with.
+/// The check includes the cycle of `from`: the bus thread is on the new curve in this cycle, and a
+/// cubic curve begins with another acceleration than the one with which the previous curve ended.
 std::optional<StreamDefect> defect_of_stops(const StreamPoint& from, const StreamPoint& to,
                                             const StreamRules& rules) noexcept {
   const StreamSegment segment{from, to};

@@ -14,21 +14,21 @@ enum class StreamDefect : std::uint8_t {
   not_later,      ///< its time is not later than that of the point before
   position,       ///< the axis would leave its range of positions
   velocity,       ///< on the way, the velocity would be outside the limits
-  acceleration,   ///< the same for the acceleration
-  jerk,           ///< the same for the jerk
+  acceleration,   ///< on the way, the acceleration would be outside the limits
+  jerk,           ///< on the way, the jerk would be outside the limits
   stop_position,  ///< a stop on the way would leave the range of positions
   stop_velocity,  ///< the velocity would be outside the limits during a stop on the way
 };
 
-/// What a stream of one axis has to keep.
+/// The rules that a stream of one axis has to keep.
 struct StreamRules {
   Limits limits;
   PositionRange range{};
-  double period = 0.0;  ///< of the cycle in s
+  double period = 0.0;  ///< period of the cycle in s
 };
 
-/// Checks the way from one point to the next. The first defect is returned; empty if there is none.
-/// All extremes of the curve count. Stops are not checked. Takes a short, constant time.
+/// Checks the curve from one point to the next, including all of its extremes, but without stops.
+/// Returns the first defect, or std::nullopt if there is none. Takes a short, constant time.
 std::optional<StreamDefect> defect_of_way(const StreamPoint& from, const StreamPoint& to,
                                           const StreamRules& rules) noexcept;
 /// Checks a stop from the state of each cycle in which the bus thread can begin one, and returns

@@ -13,13 +13,13 @@ namespace {
 using motion::AxisCondition;
 using motion::AxisState;
 
-constexpr std::int64_t halt = 0x100;  // of the controlword, CiA 402-2, 0x6040
+constexpr std::int64_t halt = 0x100;  // bit of the controlword, CiA 402-2, 0x6040
 
-/// CiA 402-2, 0x6041: the drive follows the target position (cyclic synchronous position), or the
-/// mode is active (interpolated position).
+/// Bit 12 of the statusword. In the mode cyclic synchronous position, the drive follows the target
+/// position; in the mode interpolated position, the mode is active. CiA 402-2, 0x6041.
 constexpr std::int64_t follows_command = 0x1000;
 
-/// CiA 402-2, 0x6041.
+/// Returns the condition that the statusword shows. CiA 402-2, 0x6041.
 AxisCondition condition_of(std::int64_t statusword) noexcept {
   if ((statusword & 0x6F) == 0x27) return AxisCondition::enabled;
   const std::int64_t state = statusword & 0x4F;
@@ -28,11 +28,11 @@ AxisCondition condition_of(std::int64_t statusword) noexcept {
 
 constexpr std::int64_t homing_mode = 6;  // CiA 402-2, 0x6061
 
-/// CiA 402-2, bit 4 of the controlword in these modes.
+/// Bit 4 of the controlword in the modes homing and interpolated position. CiA 402-2.
 constexpr std::int64_t homing_start = 0x10;
 constexpr std::int64_t enables_interpolation = 0x10;
 
-/// So long a drive may show the result of an earlier homing run.
+/// Longest time for which a drive may show the result of an earlier homing run.
 constexpr Time homing_patience = std::chrono::milliseconds{500};
 
 bool moves(const motion::AxisReport& report) noexcept {
@@ -85,7 +85,7 @@ DrivenAxis::Scale DrivenAxis::scale_of(const BusPlan& plan, SignalIndex signal) 
   return {.scale = plan.layout.signals[signal].scale, .offset = plan.layout.signals[signal].offset};
 }
 
-/// Returns std::nullopt for a number that INTEGER32 can't hold.
+/// Returns the raw value of a number, or std::nullopt if INTEGER32 can't hold it.
 std::optional<std::int64_t> DrivenAxis::Scale::raw(double number) const noexcept {
   const double counts = turn.inside(std::round((number - offset) / scale));
   constexpr double largest = std::numeric_limits<std::int32_t>::max();
@@ -94,8 +94,9 @@ std::optional<std::int64_t> DrivenAxis::Scale::raw(double number) const noexcept
   return static_cast<std::int64_t>(counts);
 }
 
-/// A frame that is sent in each n-th cycle, or after an inhibit time, waits until then. One frame
-/// may be missing, as one SYNC may.
+/// Returns the number of beats for which a set-point may wait for its frame. A frame that is sent
+/// in each n-th cycle, or after an inhibit time, waits until then. One frame may be missing, as one
+/// SYNC may be missing.
 std::uint32_t DrivenAxis::longest_wait_of(const BusPlan& plan, SignalIndex signal) noexcept {
   const PdoRow& pdo = plan.pdos.rpdos[plan.layout.signals[signal].row];
   if (pdo.cyclic()) return pdo.transmission;
@@ -131,8 +132,9 @@ AxisCondition DrivenAxis::condition(PdoExchange& pdos, bool exchanging) noexcept
   return halted ? AxisCondition::halted : found;
 }
 
-/// A drive in interpolated position mode takes points if bit 4 of the controlword is set. If its
-/// buffer runs empty, it ends the mode by itself, and clears bit 12 of its statusword.
+/// Returns false if the drive is in interpolated position mode and takes no points. It takes points
+/// if bit 4 of the controlword is set. If its buffer runs empty, it ends the mode by itself, and
+/// clears bit 12 of its statusword.
 bool DrivenAxis::interpolates(const WorkingImage& image, bool shows_activity) const noexcept {
   if (axis_.mode_of_motions != MotionMode::interpolated_position) return true;
   const bool wanted =
@@ -140,7 +142,8 @@ bool DrivenAxis::interpolates(const WorkingImage& image, bool shows_activity) co
   return wanted && (shows_activity || !tells_following_);
 }
 
-/// A target position that does not change needs no frame.
+/// Counts the beats in a row in which a new target position was not sent. A target position that
+/// does not change needs no frame.
 void DrivenAxis::count_unsent(const RpdoStatus& rpdo, std::int64_t target) noexcept {
   if (rpdo.sent != frames_) sent_target_ = target;
   frames_ = rpdo.sent;
@@ -155,7 +158,7 @@ AxisCondition DrivenAxis::without_statusword() noexcept {
   return may_follow && unsent_beats_ > longest_wait_ ? AxisCondition::unsent : last;
 }
 
-/// The controlword of the image is the one that was sent last.
+/// Returns the state of homing. The controlword of the image is the one that was sent last.
 motion::HomingState DrivenAxis::homing(const PdoExchange& pdos, bool exchanging) noexcept {
   const WorkingImage& image = pdos.image();
   in_homing_mode_ = axis_.mode && image.values[*axis_.mode] == homing_mode;
@@ -168,9 +171,9 @@ motion::HomingState DrivenAxis::homing(const PdoExchange& pdos, bool exchanging)
        .statusword = static_cast<std::uint16_t>(image.values[axis_.statusword])});
 }
 
-/// While the actual position is missing, the following error counts as unchanged. A rotary axis is
-/// inside its turn while nothing moves it; later, its positions are those next to the commanded
-/// one.
+/// While the actual position is missing, the following error counts as unchanged. The positions of
+/// a rotary axis are inside its turn while nothing moves the axis; later, they are the positions
+/// next to the commanded one.
 motion::AxisInput DrivenAxis::read(PdoExchange& pdos, bool exchanging,
                                    const motion::AxisReport& last) noexcept {
   const WorkingImage& image = pdos.image();
@@ -199,8 +202,8 @@ motion::AxisInput DrivenAxis::read(PdoExchange& pdos, bool exchanging,
   return input;
 }
 
-/// In the beat in which a motion ends, the output is still led: set-points that others have sent
-/// during the motion must not take effect after it.
+/// In the beat in which a motion ends, the motion still commands the output: set-points that others
+/// have sent during the motion must not take effect after it.
 bool DrivenAxis::write(PdoOutputs& outputs, const motion::AxisReport& report,
                        OutputMoment moment) noexcept {
   if (report.delay != 0) outputs.pass_over(axis_.target, report.delay, moment);
@@ -221,8 +224,8 @@ bool DrivenAxis::write(PdoOutputs& outputs, const motion::AxisReport& report,
   return true;
 }
 
-/// The torque of an acceleration at the limits of the motion may be above the limit of torque: the
-/// drive gets as much of it as is permitted.
+/// Returns the torque offset of a state. An acceleration at the limits of the motion may need more
+/// torque than the limit of torque; the drive then gets the largest torque that is permitted.
 std::int64_t DrivenAxis::torque(const motion::State& state) const noexcept {
   const FeedForwardPlan& plan = axis_.feed_forward;
   const double wanted =
@@ -239,7 +242,8 @@ bool DrivenAxis::lead_offsets(PdoOutputs& outputs, std::int64_t speed, std::int6
   return !axis_.torque_offset || outputs.lead(*axis_.torque_offset, torque, moment);
 }
 
-/// If a set-point is refused, the target position stands still, and so the velocity is 0.
+/// Commands the set-points of a motion. If a set-point is refused, the target position does not
+/// change, so the offsets become 0.
 bool DrivenAxis::lead(PdoOutputs& outputs, const motion::State& state,
                       OutputMoment moment) noexcept {
   const auto raw = target_.raw(state.position);
@@ -256,8 +260,8 @@ bool DrivenAxis::lead(PdoOutputs& outputs, const motion::State& state,
   return taken;
 }
 
-/// If the target position is that of the beat before, the axis stands at once, whatever its speed
-/// was: no limit can ask for anything else.
+/// Commands the last set-points of a motion. If the target position is that of the previous beat,
+/// the axis stands at once, whatever its speed was: no limit can demand anything else.
 bool DrivenAxis::end_motion(PdoOutputs& outputs, const motion::State& state,
                             OutputMoment moment) noexcept {
   if (target_.raw(state.position) == written_) {
@@ -270,7 +274,8 @@ bool DrivenAxis::end_motion(PdoOutputs& outputs, const motion::State& state,
   return true;
 }
 
-/// A drive that obeys a Halt has stopped elsewhere. When the Halt ends, it must not move back.
+/// Makes the target position follow the actual position. A drive that obeys a Halt has stopped
+/// elsewhere, and must not move back when the Halt ends.
 void DrivenAxis::follow_actual(PdoOutputs& outputs, const motion::AxisReport& report,
                                OutputMoment moment) noexcept {
   const auto raw = target_.raw(report.commanded.position);

@@ -9,27 +9,28 @@
 
 namespace takt {
 
-/// One axis between its motions and the image: it reads what the drive tells, and writes what the
-/// motion commands. Numbers of motions are in the units of the network file. Bus thread only.
+/// Connects the motions of one axis with the image: reads the state of the drive, and writes the
+/// set-points of the motion. Numbers of motions are in the units of the network file. Bus thread
+/// only.
 class DrivenAxis {
  public:
   DrivenAxis(const MotionAxis& axis, const BusPlan& plan);
 
   std::uint8_t node_index() const noexcept { return axis_.node_index; }
 
-  /// Returns what the drive tells in this beat. `exchanging` states whether its node exchanges
-  /// PDOs, `last` is the report of the beat before.
+  /// Returns the state of the drive in this beat. `exchanging` states whether its node exchanges
+  /// PDOs, `last` is the report of the previous beat.
   motion::AxisInput read(PdoExchange& pdos, bool exchanging,
                          const motion::AxisReport& last) noexcept;
-  /// Commands the target position, and the velocity and the torque as its offsets, while the axis
-  /// moves. While the
-  /// drive says that it does not follow its target position, this one follows the actual position
-  /// if a motion has commanded it last, or if nobody has, so that the drive does not jump when it
-  /// is enabled. In homing mode it does so whoever has commanded it: the coordinates of the drive
-  /// change. The same holds where a drive obeys a Halt, as bit 12 of its statusword tells. Returns
-  /// false if a set-point was not taken, see PdoOutputs::lead().
+  /// Commands the target position while the axis moves, and the velocity and the torque as its
+  /// offsets. While the drive does not follow its target position, the target position follows the
+  /// actual position if a motion has commanded it last, or if nobody has, so that the drive does
+  /// not jump when it is enabled. In homing mode this holds whoever has commanded it, because the
+  /// coordinates of the drive change. After a motion, the target position also follows the actual
+  /// position while the drive obeys a Halt, which bit 12 of its statusword shows. Returns false if
+  /// a set-point was not taken, see PdoOutputs::lead().
   bool write(PdoOutputs& outputs, const motion::AxisReport& report, OutputMoment moment) noexcept;
-  /// Returns true if no set-point is taken at present, because the master stops the axis itself.
+  /// Returns true if no set-point is taken at present, because the master itself stops the axis.
   bool is_overruled(const PdoOutputs& outputs) const noexcept {
     return outputs.is_overruled(axis_.target);
   }
@@ -49,30 +50,31 @@ class DrivenAxis {
   }
 
  private:
-  /// Who has commanded the target position last.
+  /// The origin of the newest target position.
   enum class Writer : std::uint8_t {
     others,     ///< set-points of applications, or a fallback
     motion,     ///< a motion that has ended
     in_motion,  ///< a motion that runs
-    refused,    ///< a motion, of which a later set-point was not taken
+    refused,    ///< a motion of which a later set-point was not taken
   };
-  /// One signal as a number in its unit.
+  /// Converts between the raw value of a signal and a number in its unit.
   struct Scale {
     double scale = 1.0;
     double offset = 0.0;
-    Turn turn{};  ///< of a rotary axis, whose motions count on over the turns
+    Turn turn{};  ///< turn of a rotary axis; its motions continue over several turns
 
     double number(std::int64_t raw) const noexcept {
       return static_cast<double>(static_cast<std::int32_t>(raw)) * scale + offset;
     }
-    /// Returns the number that is nearest to `reference`.
+    /// Returns the number of this raw value that is nearest to `reference`. The numbers of a rotary
+    /// axis differ by whole turns.
     double number_near(std::int64_t raw, double reference) const noexcept {
       return turn.in_unit(scale, offset).nearest(number(raw), reference);
     }
     std::optional<std::int64_t> raw(double number) const noexcept;
   };
   static Scale scale_of(const BusPlan& plan, SignalIndex signal) noexcept;
-  /// A drive whose statusword is missing in so many beats in a row is silent.
+  /// Number of beats in a row without the statusword after which a drive counts as silent.
   static constexpr std::uint8_t most_silent_beats = 3;
 
   static std::uint32_t longest_wait_of(const BusPlan& plan, SignalIndex signal) noexcept;
@@ -97,20 +99,21 @@ class DrivenAxis {
   Scale target_;
   Scale velocity_offset_;
   Scale torque_offset_;
-  std::int64_t lowest_torque_ = 0;  ///< of the torque offset, in counts
+  std::int64_t lowest_torque_ = 0;  ///< lower limit of the torque offset, in counts
   std::int64_t highest_torque_ = 0;
   std::vector<SignalIndex> node_outputs_;
   motion::AxisCondition condition_ = motion::AxisCondition::disabled;
-  std::size_t row_;                 ///< of the RPDO of the target position
+  std::size_t row_;                 ///< row of the RPDO that carries the target position
   std::uint32_t longest_wait_;      ///< beats in which a set-point may wait for its frame
-  std::uint32_t unsent_beats_ = 0;  ///< in a row
+  std::uint32_t unsent_beats_ = 0;  ///< beats in a row in which a new target position was not sent
   std::uint32_t frames_ = 0;        ///< frames of the RPDO until the last beat
-  std::int64_t sent_target_ = 0;    ///< target position of the last of them
+  std::int64_t sent_target_ = 0;    ///< target position in the newest of these frames
   std::uint8_t silent_beats_ = 0;
-  bool ignores_target_ = false;  ///< the words of this beat say so
+  bool ignores_target_ = false;  ///< the statusword or the mode of this beat shows that the drive
+                                 ///< ignores its target position
   bool in_homing_mode_ = false;
-  bool tells_following_ = false;  ///< bit 12 of the statusword was set: the drive uses it
-  bool obeys_halt_ = false;       ///< in this beat
+  bool tells_following_ = false;  ///< bit 12 of the statusword was set before: the drive uses it
+  bool obeys_halt_ = false;       ///< the drive obeys a Halt in this beat
   bool follows_actual_ = false;   ///< the target position follows the actual one in this beat
   std::int64_t written_ = 0;      ///< the last target position that a motion has commanded
   Writer writer_ = Writer::others;

@@ -47,7 +47,7 @@ class MotionStage {
     }
   }
 
-  /// Words of keep() that the points of streams need.
+  /// Returns the number of words of keep() that the points of streams need.
   std::size_t point_words() const noexcept {
     return motions_.points() * motion::StreamPoint::kept_words;
   }
@@ -57,8 +57,8 @@ class MotionStage {
   }
 
  private:
-  /// If SYNC is missing in more periods than this, the drives have stopped following, and a motion
-  /// that went on would jump.
+  /// Largest number of periods without SYNC in which a motion goes on. After more periods, the
+  /// drives have stopped following, and a motion that went on would jump.
   static constexpr motion::CycleNumber most_missed = 1;
 
   bool is_late(OutputMoment moment) const noexcept {
@@ -72,7 +72,8 @@ class MotionStage {
   }
   void accept(const motion::MotionMessage& message, motion::CycleNumber cycle) noexcept;
   void run_beat(OutputMoment moment, bool stopping) noexcept;
-  /// Not only in beats: a device may be switched off and on while there is no SYNC.
+  /// Forgets the home positions of nodes that do not exchange PDOs. This is done in each cycle,
+  /// because a device may be switched off and on while there is no SYNC.
   void forget_homes() noexcept {
     for (DrivenAxis& axis : axes_) {
       if (!bus_.exchanging[axis.node_index()]) axis.lose_home();
@@ -86,10 +87,10 @@ class MotionStage {
   std::vector<DrivenAxis> axes_;
   motion::AxisMotions motions_;
   std::vector<motion::AxisInput> inputs_;
-  motion::MotionMessage message_;     ///< the one that is taken
+  motion::MotionMessage message_;     ///< the message that is being taken
   std::uint64_t beats_ = 0;           ///< BusStatus::beats when a beat was run last
   motion::CycleNumber last_run_ = 0;  ///< the cycle in which a beat was run last
-  bool active_ = false;               ///< a message has come
+  bool active_ = false;               ///< a message about motions has come
 };
 
 template <FrontLink L, Services S>
@@ -151,7 +152,8 @@ void MotionStage<L, S>::run_beat(OutputMoment moment, bool stopping) noexcept {
   front_.exchange().motion_board.write(moment.cycle, reports);
 }
 
-/// The number of the signal comes from the front thread or from a recording, so it is checked.
+/// Returns the sample of a signal. The number of the signal comes from the front thread or from a
+/// recording, so it is checked.
 template <FrontLink L, Services S>
 motion::LeaderSample MotionStage<L, S>::sample_of(std::uint16_t signal) const noexcept {
   using Age = motion::LeaderSample::Age;
