@@ -22,9 +22,9 @@ done
 ! grep -n '](\.\./' "$prefix"/share/doc/takt/*.md >&2 || { echo "an installed page links to a file of the tree" >&2; exit 1; }
 
 # The installed Python package needs only the types of lcm-gen, as the one of the tree does.
-lcm-gen -p --ppath "$tmp/types" "$prefix"/share/takt/lcm/*.lcm
+lcm-gen -p --ppath "$tmp/python" "$prefix"/share/takt/lcm/*.lcm
 mkdir "$tmp/double" && echo 'class LCM: pass' >"$tmp/double/lcm.py"
-(cd / && PYTHONPATH=$prefix/share/takt/python:$tmp/types:$tmp/double python3 -c 'import takt; takt.Axes, takt.Bus, takt.image_t().encode()')
+(cd / && PYTHONPATH=$prefix/share/takt/python:$tmp/python:$tmp/double python3 -c 'import takt; takt.Axes, takt.Bus, takt.image_t().encode()')
 
 # systemd tries a taktd again without limit, and understands each line.
 unit="$prefix/lib/systemd/system/taktd@.service"
