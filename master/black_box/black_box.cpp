@@ -45,7 +45,7 @@ bool is_recording_of(const std::string& name, const std::string& bus) {
          std::isdigit(static_cast<unsigned char>(name[digits])) != 0;
 }
 
-/// Removes the files that an earlier run left behind when it ended while it was writing.
+/// Removes the unfinished files of an earlier run that ended while it wrote a recording.
 void forget_incomplete(const std::filesystem::path& folder, const std::string& bus) {
   std::set<std::filesystem::path> found;
   std::error_code error;
@@ -104,8 +104,8 @@ void BlackBox::on_fault(const std::string& kind, std::uint8_t node, const std::s
 
 void BlackBox::on_request(const std::string& reason, Time now) { ask(reason, now); }
 
-/// A new request never delays a recording that is already due. Only the distance to the previous
-/// recording does.
+/// Schedules a recording. A new request never delays a recording that is already due; only the
+/// minimum time since the previous recording does.
 void BlackBox::ask(const std::string& reason, Time at) {
   if (last_ != Time{}) at = std::max(at, last_ + distance);
   if (reason_.empty()) reason_ = reason;
@@ -167,7 +167,7 @@ bool BlackBox::finish_running(const std::string& reason, Time limit) {
   return write(*tape) && end_writer(until) && !failed_;
 }
 
-/// Starts the writer. Returns false, after a report, if no thread can be created; the tape is then
+/// Starts the writer. If no thread can be created, reports this and returns false; the tape is then
 /// no longer needed.
 bool BlackBox::write(const Tape& tape) {
   head_.reason = std::exchange(reason_, {});

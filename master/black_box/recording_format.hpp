@@ -14,7 +14,7 @@ inline constexpr const char* journal_ending = ".journal";
 inline constexpr const char* events_ending = ".events.json";
 inline constexpr std::string_view incomplete = ".part-";  ///< prefix of unfinished files
 
-// The fields of the file of events with their names.
+// The names of the fields in the events file.
 
 inline constexpr std::tuple head_fields{std::pair{"bus", &RecordingHead::bus},
                                         std::pair{"interface", &RecordingHead::interface},

@@ -54,8 +54,8 @@ class Replay {
     ++outcome_.cycles;
   }
 
-  /// Compares the events of one cycle. In a cycle, the port detects a difference before the events
-  /// do; the first event that differs then shows the consequence.
+  /// Compares the events of one cycle. If the port has found a difference in this cycle, that
+  /// difference comes first, and the first event that differs shows its consequence.
   void compare_events() {
     std::string event_differs;
     for (Event event; exchange_->events.pop(event);) {

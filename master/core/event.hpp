@@ -132,7 +132,7 @@ enum class EventKind : std::uint8_t {
   fallback_ended,  ///< value: signal
   outputs_held,  ///< An RPDO is not sent because a signal lacks a commanded, safe or seeded value.
                  ///< value: RPDO number; detail: index of the signal whose actual position a
-                 ///< limited set-point waits for, plus 1; 0 means it waits for none
+                 ///< limited set-point waits for, plus 1; 0 means that there is no such signal
   limit_exceeded,  ///< A command is not sent, and the outputs of its node take their fallback.
                    ///< value: the raw command; detail: signal << 8 | LimitKind, and held_set_point;
                    ///< bytes: the measured value and its limit, each a float in SI units

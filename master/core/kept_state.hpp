@@ -55,7 +55,8 @@ class KeptState {
     return static_cast<Words&>(*this).next(value);
   }
 
-  /// Sets a value. Only a reader changes the machine; the other archives leave it as it is.
+  /// Sets a value. Only StateReader changes the machine; StateSize and StateWriter leave it as it
+  /// is.
   template <class T>
   static void put(T& value, T read) noexcept {
     if constexpr (Words::restores) value = read;

@@ -19,7 +19,7 @@ enum class StopResult : std::uint8_t {
   none,         ///< No stop was requested.
   under_way,    ///< The result is not decided yet.
   confirmed,    ///< Every axis was seen at standstill and disabled, or was disabled before.
-  unconfirmed,  ///< At least one axis was neither.
+  unconfirmed,  ///< At least one axis was not seen at standstill and disabled.
 };
 
 }  // namespace takt

@@ -14,7 +14,8 @@
 namespace takt {
 namespace {
 
-// Longest time for which due states of the bus wait for an image. One state follows each image.
+// Number of image periods for which due states of the bus wait for an image, at most
+// `longest_wait`. One state follows each image.
 constexpr int most_images = 5;
 constexpr Time longest_wait = std::chrono::milliseconds{20};
 constexpr unsigned most_behind = 8;  // further images of a backlog go out without typed messages
@@ -130,7 +131,7 @@ bool Bridge::serve() {
   serve_requests();
   take_events();
   publish_states(some);
-  notice_gap();  // this thread may have stood still since it looked for messages
+  notice_gap();  // this thread may not have run for a while since it looked for messages
   gap_.sleeps_until(first_state().next);
   return some;
 }
@@ -194,11 +195,11 @@ void Bridge::publish_image(const ImageView& image, bool typed) {
 }
 
 void Bridge::publish_outputs() {
-  // Uses the time at which the age was judged, because this thread may have stood still since then.
+  // Uses the time at which the age was judged, because this thread may not have run since then.
   if (std::exchange(outputs_staged_, false)) master_.publish_outputs(judged_);
 }
 
-/// The bus thread renews the status less often than this thread needs it.
+/// Copies the status if the bus thread has renewed it since the last call.
 void Bridge::read_status() {
   const std::uint64_t version = master_.status_version();
   if (std::exchange(status_version_, version) != version) master_.status(snapshot_);
@@ -264,7 +265,7 @@ bool Bridge::command(const std::string& sender, std::span<const SignalIndex> sig
   command.session = options_.session;
   command.instance = instance_;
   command.sender = sender;
-  notice_gap();  // this thread may have stood still since it looked for the line of the client
+  notice_gap();  // this thread may not have run for a while since it looked for this line
   const Time now = clocks_.now();
   command.num_values = static_cast<std::int32_t>(signals.size());
   for (const SignalIndex signal : signals) {
@@ -275,7 +276,8 @@ bool Bridge::command(const std::string& sender, std::span<const SignalIndex> sig
     commands_.discard();
     return false;
   }
-  // The cycle by the clock goes back by one if an image comes late, but commands must not.
+  // The cycle by the clock goes back by one if an image comes late, but the cycles of commands must
+  // never go back.
   const std::uint64_t cycle = cycle_at(now);
   own_cycle_ = std::clamp(own_cycle_, cycle, cycle + 1);
   command.cycle = static_cast<std::int64_t>(own_cycle_);
@@ -368,7 +370,7 @@ void Bridge::send(Notice notice) {
   announce_(notice);
 }
 
-/// The speed axes come first: who has the layout then also knows them.
+/// Publishes the speed axes before the layout, so that a program that has the layout has both.
 void Bridge::publish_layout(Time now) {
   for (speed_axes_t& part : speed_messages_) publish(channels_.speed_axes, part, now);
   for (layout_t& part : layout_messages_) publish(channels_.layout, part, now);

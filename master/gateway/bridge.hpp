@@ -63,7 +63,8 @@ class Bridge {
   /// refused. Refusals are reported; commands that may have waited during a gap are only counted.
   bool command(const std::string& sender, std::span<const SignalIndex> signals,
                std::span<const std::int64_t> values);
-  /// Checks whether this thread stood still. If so, messages that waited meanwhile have no effect.
+  /// Checks whether this thread did not run for a while. Messages that waited meanwhile have no
+  /// effect.
   void notice_gap();
   /// Returns the number of gaps in which this thread did not run. Set-points that waited are
   /// discarded.
@@ -85,8 +86,9 @@ class Bridge {
   /// its kind.
   void announce(Notice notice);
 
-  /// Begins what `record` requests ask for, and returns why it can't begin. answer() must follow.
-  /// Without a handler, the bridge refuses these requests.
+  /// Sets the function that begins a recording for a `record` request, or returns why it can't
+  /// begin. After it has begun a recording, answer() must follow. Without this function, the bridge
+  /// refuses `record` requests.
   void record_with(Requests::Begin record) { record_ = std::move(record); }
   /// Answers a request that has begun.
   void answer(const request_t& request, bool good, const std::string& text);

@@ -18,9 +18,9 @@ template void Bridge::on_motion<motion_command_t>(std::string_view channel, Byte
 template void Bridge::on_motion<motion_gear_t>(std::string_view channel, Bytes data);
 template void Bridge::on_motion<motion_stream_t>(std::string_view channel, Bytes data);
 
-/// Plans what waits for the newest reports, and publishes them once a command has come. The bus
-/// thread tells the end of an order before its report, so the reports are read first: their ends
-/// are known then.
+/// Plans the motions that wait for the newest reports, and publishes the reports once a command has
+/// come. The bus thread hands over the end of an order before the report of that cycle. Therefore
+/// the reports are copied first: the ends of all orders in them can then be taken.
 void Bridge::serve_motions() {
   if (!options_.motions) return;
   motions_.begin();
@@ -36,8 +36,8 @@ void Bridge::serve_motions() {
   for (motion_t& part : motions_.messages()) publish(channels_.motion, part, now);
 }
 
-/// The bus thread has to know that an axis moves for nobody before its outputs are released, and
-/// before a later message of the same sender takes the node again.
+/// Reports to the bus thread which senders have released their nodes. This happens before the
+/// outputs are released, and before a later message of the same sender takes the node again.
 void Bridge::tell_released(const CommandContext& context) {
   if (motions_.watches()) motions_.serve(context);
 }

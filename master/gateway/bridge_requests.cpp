@@ -7,8 +7,8 @@
 namespace takt {
 namespace {
 
-constexpr Time longest_way = std::chrono::seconds{10};  // of a request on its way
-constexpr Time most_ahead = std::chrono::seconds{1};    // difference of the clocks of two machines
+constexpr Time longest_way = std::chrono::seconds{10};  // until a request arrives
+constexpr Time most_ahead = std::chrono::seconds{1};    // largest clock difference of two machines
 
 }  // namespace
 

@@ -29,9 +29,9 @@ class Slack {
         bus_{bus},
         time_{bus.plan.time} {}
 
-  /// While this thread stood still, it received nothing. By now it has received all frames that the
-  /// socket has kept. Frames that the socket could not keep must not count as silence of a device.
-  /// Call this once a cycle.
+  /// Extends the time-outs after this thread did not run. It received nothing during that time, but
+  /// has now received all frames that the socket has kept. Frames that the socket could not keep
+  /// must not count as silence of a device. Call this once a cycle.
   void extend_deadlines() noexcept {
     const Time away = beat_.take_absence();
     if (away == Time{}) return;
@@ -47,9 +47,9 @@ class Slack {
   /// Sleeps until the next round of a long cycle. Returns false if the outputs come next, or if a
   /// followed SYNC came early.
   bool rest_until_next_round() noexcept;
-  /// Cycles that are too full for a dialogue before the outputs must not keep nodes from booting.
-  /// After some of them, this sends one service frame directly behind SYNC; PDOs have priority over
-  /// it on the wire.
+  /// Sends one service frame directly behind SYNC after some cycles that were too full for a
+  /// dialogue before the outputs. Such cycles must not keep nodes from booting. PDOs have priority
+  /// over this frame on the wire.
   void relieve_services() noexcept;
 
   template <class Archive>
@@ -72,7 +72,7 @@ class Slack {
     Time outputs{};          ///< when the outputs are due
     Time last_look{};        ///< end of the wait for answers
     std::size_t budget = 0;  ///< frames that may still be handed over
-    std::size_t open = 0;    ///< dialogues of this round that are still unanswered
+    std::size_t open = 0;    ///< unanswered dialogues of this round
     bool idle = true;        ///< this round has handed over nothing so far
   };
   enum class Handed : std::uint8_t {
@@ -134,7 +134,8 @@ void Slack<P, S>::run_round() noexcept {
       round.idle && !bus_.service_frames.empty() && !before_stream_end(port_.now());
 }
 
-/// TIME carries the moment at which it is sent, so it never waits in a queue.
+/// Sends TIME if it is due. TIME carries the moment at which it is sent, so it never waits in a
+/// queue.
 template <Port P, Services S>
 void Slack<P, S>::send_time() noexcept {
   const Time now = port_.now();
@@ -161,7 +162,8 @@ auto Slack<P, S>::begin_round() noexcept -> Round {
   return round;
 }
 
-/// Lets the state machines write their frames. Returns false if this thread stood still.
+/// Lets the state machines write their frames. Returns false if this thread did not run for too
+/// long.
 template <Port P, Services S>
 bool Slack<P, S>::run_machines(const Round& round) noexcept {
   const Time now = port_.now();
@@ -175,8 +177,9 @@ bool Slack<P, S>::run_machines(const Round& round) noexcept {
   return true;
 }
 
-/// A node sends its event-driven PDOs as soon as it is started, often in this round, and not again
-/// until they change.
+/// Prepares to receive the first TPDOs of nodes that are being started. A node sends its
+/// event-driven PDOs as soon as it is started, often in this round, and not again until they
+/// change.
 template <Port P, Services S>
 void Slack<P, S>::expect_started_nodes() noexcept {
   if (!bus_.service_frames.has(nmt_cob_id)) return;

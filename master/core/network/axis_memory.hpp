@@ -41,7 +41,7 @@ class AxisMemory {
   void write(std::int64_t controlword) noexcept;
   /// Returns true if a service that writes a controlword may not be answered yet.
   bool awaits_answer() const noexcept { return word_ == ServiceWord::under_way; }
-  /// Notes that each service that can write a controlword is answered.
+  /// Notes that all services that can write a controlword are answered.
   void note_answer() noexcept {
     if (awaits_answer()) word_ = ServiceWord::standing;
   }
@@ -54,8 +54,8 @@ class AxisMemory {
   void note_quick_stop(QuickStop what) noexcept { quick_stop_ = what; }
 
   QuickStop quick_stop() const noexcept { return quick_stop_; }
-  /// Returns true if no enabling controlword can still be on its way to the drive, and none can be
-  /// effective that the drive has not answered yet.
+  /// Returns true if no enabling controlword is on its way to the drive, and the drive has had
+  /// enough time to react to each earlier one.
   bool quiet() const noexcept {
     return word_ == ServiceWord::harmless && quiet_ >= settling_cycles;
   }

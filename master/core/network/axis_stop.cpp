@@ -196,7 +196,7 @@ void AxisStop::step(Time now, const AxisSample& sample) noexcept {
   disabled_seen_ = disabled_seen_ || (sample.statusword && !powered_);
   note_motion(now, sample);
   if (!seen() && !sample.statusword) return;
-  // A velocity without a statusword does not tell whether the axis is enabled.
+  // A velocity without a statusword does not show whether the axis is enabled.
   const bool needs_word = state_ == AxisState::standing || state_ == AxisState::braking;
   if (needs_word && !sample.statusword && !standstill_.certain()) return;
   // An axis leaves `standing` only if its newest value lies outside the window. It stays in this

@@ -52,7 +52,8 @@ struct AxisSample {
   std::optional<std::int64_t> position;  ///< 0x6064
   /// The time at which the statusword was requested by SDO. Empty if a TPDO has carried it.
   std::optional<Time> word_asked{};
-  /// The same time for the velocity and the position.
+  /// The time at which velocity and position were requested by SDO. Empty if TPDOs have carried
+  /// them.
   std::optional<Time> motion_asked{};
 
   bool empty() const noexcept { return !statusword && !velocity && !position; }
@@ -111,7 +112,8 @@ class Standstill {
   std::int64_t velocity_ = 0;
   std::int64_t anchor_ = 0;  ///< Differences are measured from this position.
   Time anchor_at_{};
-  Time anchor_from_{};  ///< When the anchor was requested, else anchor_at_.
+  Time anchor_from_{};  ///< When the anchor was requested by SDO; anchor_at_ if a TPDO has carried
+                        ///< it.
   std::int64_t position_ = 0;
   std::optional<Time> position_at_;
   std::optional<Time> velocity_at_;  ///< The time of the newest 0x606C.
@@ -192,7 +194,8 @@ class AxisStop {
   std::int64_t controlword() const noexcept;
   /// Returns the time since the newest sample, or since the stop began.
   Time silence(Time now) const noexcept { return now - answered_; }
-  /// Returns the velocity when the axis was disabled, else the newest one.
+  /// Returns the velocity at which the axis was disabled, or the newest one if it was not disabled
+  /// while it moved.
   std::int64_t velocity() const noexcept;
   bool by_position() const noexcept { return standstill_.by_position(); }
   /// Returns the abort code of AxisVerdict::refused.
@@ -233,7 +236,7 @@ class AxisStop {
   bool disabled_seen_ = false;         ///< The axis was seen disabled during this stop.
   bool unproven_ = false;              ///< see AxisVerdict::unproven
   Motion motion_ = Motion::unknown;    ///< The motion while the axis was enabled.
-  std::int64_t velocity_enabled_ = 0;  ///< The velocity of Motion::moves.
+  std::int64_t velocity_enabled_ = 0;  ///< The velocity that belongs to motion_.
   Time entered_{};
   Time answered_{};
   std::int64_t velocity_then_ = 0;  ///< The velocity when the axis was disabled.

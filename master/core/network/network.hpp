@@ -36,8 +36,8 @@ enum class NmtStop : std::uint8_t {
 /// The state of the axes for which an NMT command has waited.
 enum class AxesAtRest : std::uint8_t {
   confirmed,    ///< Each axis was seen at standstill and disabled, or was disabled before.
-  unconfirmed,  ///< At least one axis was neither. The command is sent nevertheless, and its answer
-                ///< states this.
+  unconfirmed,  ///< At least one axis was not seen at standstill and disabled. The command is sent
+                ///< nevertheless, and its answer states this.
 };
 
 /// Options of a Network.
@@ -204,7 +204,7 @@ class Network {
   NmtStop nmt_stop_;
   std::optional<std::uint8_t> awaits_axes_;   // node of the command that waits for its axes
   std::optional<std::uint8_t> axes_at_rest_;  // node of the command that may be sent
-  AxesAtRest rest_ = AxesAtRest::confirmed;   // belongs to axes_at_rest_
+  AxesAtRest rest_ = AxesAtRest::confirmed;   // the state of the axes of that command
   bool stopping_ = false;
   bool boots_given_up_ = false;
   bool stops_drives_ = false;  // the loss of some node stops drives

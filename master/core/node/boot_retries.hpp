@@ -17,7 +17,7 @@ class BootRetries {
 
   /// Plans the next boot after the pause. It begins at `from`.
   void after_pause(BootRunner::From from, Time now) noexcept;
-  /// The planned boot begins at `now`, with the step with which it would have begun later.
+  /// Moves the planned boot to `now`; it begins with the same step.
   void without_pause(Time now) noexcept { at_ = now; }
   /// Cancels the planned boot.
   void cancel() noexcept { at_ = never; }

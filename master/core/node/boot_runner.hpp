@@ -103,7 +103,7 @@ class BootRunner {
     return course_ == BootCourse::probing_silent_node ? static_cast<std::uint16_t>(after_reset_)
                                                       : step_;
   }
-  /// When this boot began.
+  /// Returns the time at which this boot began.
   Time began() const noexcept { return began_; }
   /// Returns the NMT state of the node and the changes that this boot has made to it. After the NMT
   /// start, PDOs may be accepted, because their mapping is verified.

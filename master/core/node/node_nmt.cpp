@@ -42,7 +42,7 @@ void NodeSession::resume() noexcept {
   if (own_command_ == NmtCommand::stop) {
     own_command_.reset();  // NMT stop was not sent yet
   } else if (wanted_ == NmtState::stopped) {
-    own_command_ = NmtCommand::start;  // unless another command was sent since
+    own_command_ = NmtCommand::start;  // if no other command was sent since
   }
 }
 

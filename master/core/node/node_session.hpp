@@ -124,8 +124,8 @@ class NodeSession {
   bool take_loss() noexcept { return std::exchange(loss_to_report_, false); }
   /// Sends NMT stop; the node is not booted until an application resets or starts it.
   void halt() noexcept;
-  /// Does the same as halt(), but sends no command, because a broadcast has already stopped the
-  /// node.
+  /// Keeps the node from being booted until an application resets or starts it, as halt() does.
+  /// Sends no command, because a broadcast has already stopped the node.
   void await_command() noexcept;
 
   /// Ends the boot because an ordered stop has begun. The node is not booted any more, not even

@@ -66,7 +66,8 @@ struct AsciiCommand {
   AsciiType type{};
   std::vector<std::byte> value;  ///< value of an SDO write
   NmtCommand nmt = NmtCommand::start;
-  /// PDO, default, time-out in ms or first node-ID; 1 means enable.
+  /// The number that the verb needs: a PDO number, a default, a time-out in ms, the first node-ID,
+  /// or 1 for "enable".
   std::uint32_t number = 0;
   std::vector<std::int64_t> values;  ///< values of a PDO
   LssCommand lss{};

@@ -45,7 +45,7 @@ class AsciiGateway final : public FrontGuest {
   /// Refuses a line that waited while the front thread did not run for `gap`, whatever the line
   /// says.
   void refuse_waited(int client, std::string_view line, Time gap);
-  /// Refuses such a line if it sets outputs, and takes it otherwise.
+  /// Refuses a line that waited during such a gap if it sets outputs; otherwise takes the line.
   void refuse_waited_outputs(int client, std::string_view line, Time gap);
   /// Answers a line that was dropped because it was too long.
   void refuse_long_line(int client);

@@ -71,7 +71,7 @@ std::optional<AsciiServer::FileId> AsciiServer::file_at(const std::string& path)
   return FileId{.device = found.st_dev, .inode = found.st_ino};
 }
 
-/// Another program may have replaced the file meanwhile.
+/// Removes the socket file, unless another program has replaced it meanwhile.
 AsciiServer::~AsciiServer() {
   if (own_file_ && file_at(path_) == own_file_) ::unlink(path_.c_str());
 }
@@ -200,8 +200,8 @@ void AsciiServer::close_foreign(Client& client) {
   client.closed = true;
 }
 
-/// Closes a client that has given no command in time, because places are for clients that command.
-/// Everything it has sent was read before.
+/// Closes a client that has given no command in time, so that another client gets its place.
+/// Everything that the client has sent was read before.
 void AsciiServer::close_silent(Client& client) {
   const bool waits = !client.closed && !client.ended && !client.has_commanded;
   if (!waits || clock_() - client.since < first_line_limit) return;
@@ -210,7 +210,7 @@ void AsciiServer::close_silent(Client& client) {
   client.closed = true;
 }
 
-/// Returns true if the client has ended its writing side and will read nothing more.
+/// Returns true if the client has closed its writing side and will read nothing more.
 bool AsciiServer::is_through(const Client& client) const {
   if (!client.ended) return false;
   pollfd state{.fd = client.socket.get(), .events = 0, .revents = 0};
@@ -247,7 +247,8 @@ void AsciiServer::remove_closed() {
   std::erase_if(clients_, [](const auto& client) { return client->closed; });
 }
 
-/// For lines that wait for the next round, POLLOUT ends the wait.
+/// Lists the descriptors to wait for. For clients whose lines wait for the next round, POLLOUT ends
+/// the wait at once.
 void AsciiServer::watch(std::vector<pollfd>& descriptors) const {
   if (!accept_pause_.active(clock_())) {
     descriptors.push_back({.fd = listener_.get(), .events = POLLIN, .revents = 0});

@@ -32,16 +32,16 @@ class AsciiServer {
   struct Handler {
     std::function<void(int client)> connected;
     std::function<void(int client, std::string_view line)> line;
-    /// For lines marked by mark_waiting(). `gap` is the longest gap in which the line may have
-    /// waited.
+    /// Receives the lines that mark_waiting() has marked as old. `gap` is the longest gap in which
+    /// the line may have waited.
     std::function<void(int client, std::string_view line, Time gap)> old_line;
-    /// For a line that was too long and was dropped.
+    /// Reports that a client has sent a line that was too long and was dropped.
     std::function<void(int client)> too_long;
     std::function<void(int client)> gone;
     /// Returns true if an answer is due: a client that has ended its writing side stays until it
     /// has the answer.
     std::function<bool(int client)> awaits_reply;
-    /// For the user, about a trouble of the server itself. At most once in 10 s.
+    /// Receives a sentence for the user about a problem of the server itself, at most once in 10 s.
     std::function<void(const std::string& sentence)> warn = [](const std::string&) {};
   };
 
@@ -54,7 +54,7 @@ class AsciiServer {
 
   /// Sends a line and adds its end. Does nothing if the client has gone.
   void send(int client, std::string_view line);
-  /// Tells that the front thread did not run for `gap`. Every line that has begun to arrive by now
+  /// Notes that the front thread did not run for `gap`. Every line that has begun to arrive by now
   /// counts as old.
   void mark_waiting(Time gap);
   /// Accepts clients, takes their lines and sends as much as possible.
@@ -81,7 +81,7 @@ class AsciiServer {
     bool has_commanded = false;
     bool unhandled = false;  // whole lines wait for the next round
     bool skips = false;      // the rest of a line that was too long is skipped
-    bool ended = false;      // the client has ended its writing side
+    bool ended = false;      // the client has closed its writing side
     bool closed = false;
   };
 

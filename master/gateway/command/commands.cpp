@@ -203,7 +203,7 @@ std::optional<Commands::Objection> Commands::objection_to(std::size_t node_index
   return std::nullopt;
 }
 
-/// The same for the age of a message that is no command of outputs.
+/// Returns an objection if a message that is no command of outputs is too old for this node.
 std::optional<Commands::Objection> Commands::objection_of_age(std::size_t node_index,
                                                               const Received& from) const {
   if (freshness_of(from.command, from.context.cycle, shortest_limit(node_index)).fresh) return {};

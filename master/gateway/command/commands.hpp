@@ -37,7 +37,7 @@ enum class CommandRefusal : std::uint8_t {
   too_old,
   not_ready,  ///< the node has not booted, or is not operational
   held,       ///< another sender holds the node
-  waited,     ///< the command waited while the front thread stood still
+  waited,     ///< the command waited while the front thread did not run
   overtaken,  ///< a command computed from a later cycle, or a release from this one, came before
 };
 inline constexpr std::size_t command_refusals = 13;
@@ -70,20 +70,21 @@ class Commands {
   /// Checks the session, the sender and the cycle of a message that is no command of outputs, such
   /// as a motion. A refusal is reported.
   bool admits(const command_t& header, const CommandContext& context);
-  /// Returns true if the sender of such a message can get these nodes: it is not too old, and
-  /// nobody else holds one of them. A refusal is reported.
+  /// Returns true if the sender of a message that is no command of outputs can get these nodes: the
+  /// message is not too old, and nobody else holds one of the nodes. A refusal is reported.
   bool admits_lease(const command_t& header, std::span<const std::size_t> nodes,
                     const CommandContext& context);
-  /// Gives these nodes to the sender of such a message for `cycles`, if admits_lease().
+  /// Gives these nodes for `cycles` to the sender of the message, if admits_lease() permits it.
   bool lease(const command_t& header, std::span<const std::size_t> nodes, std::uint32_t cycles,
              const CommandContext& context);
-  /// Does the same for each of these nodes that it can give, and reports nothing. The message is a
-  /// sign of life, which keeps no release of its sender from taking effect.
+  /// Gives those of these nodes that the sender can get to the sender of a sign of life, and
+  /// reports no refusal. A sign of life does not prevent a release by the same sender from taking
+  /// effect.
   void renew(const command_t& header, std::span<const std::size_t> nodes, std::uint32_t cycles,
              const CommandContext& context);
-  /// Returns true if such a message may stop the axes of the node: it is not too old, and no other
-  /// sender holds the node. It does not matter whether the node is ready, or whether a later
-  /// message has overtaken this one. A refusal is reported.
+  /// Returns true if a message that is no command of outputs may stop the axes of the node: it is
+  /// not too old, and no other sender holds the node. The node need not be ready, and a later
+  /// message may have overtaken this one. A refusal is reported.
   bool admits_stop(const command_t& header, std::size_t node, const CommandContext& context);
   /// Returns true if the sender with this instance holds the node.
   bool holds(std::size_t node, std::int64_t instance, std::uint64_t cycle) const noexcept {

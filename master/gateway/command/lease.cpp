@@ -20,8 +20,9 @@ Freshness freshness(const CommandAge& age) noexcept {
 LeaseTable::LeaseTable(std::size_t nodes, std::uint32_t unlimited)
     : leases_(nodes), unlimited_{std::max(unlimited, 1U)} {}
 
-/// A later cycle that has not come yet cannot judge: the clock goes back if SYNC stood still. A
-/// command of the cycle in which its sender has released the node was sent before the release.
+/// Judges a command of a sender that may hold the node. A newest command from a cycle that has not
+/// come yet does not count, because the clock goes back after SYNC was missing. A command of the
+/// cycle in which its sender has released the node was sent before the release.
 LeaseVerdict LeaseTable::judge(const Lease& lease, std::int64_t instance,
                                const LeaseTerm& term) noexcept {
   if (lease.newest > term.now + 1) return LeaseVerdict::taken;

@@ -11,9 +11,10 @@ namespace takt {
 
 inline constexpr std::size_t longest_sender = 64;  ///< bytes of a sender's name
 
-/// Tells for how many cycles from cycle `now` on a command is valid. The shorter of the message's
-/// time to live and the configured limit applies. The limit counts from the cycle of the image that
-/// the command was computed from, so that a command that waited in a queue is old on arrival.
+/// States for how many cycles, from cycle `now` on, a command is valid. The shorter of the time to
+/// live of the message and the configured limit applies. The limit counts from the cycle of the
+/// image from which the command was computed, so a command that waited in a queue is old on
+/// arrival.
 struct Freshness {
   bool fresh = true;
   std::uint32_t cycles = 0;  ///< remaining cycles; 0 means no limit
@@ -45,18 +46,19 @@ enum class LeaseVerdict : std::uint8_t {
   released,   ///< the sender has released the node in the cycle from which it was computed
 };
 
-/// The cycles of a command, and for how many cycles it is valid; 0 means no limit.
+/// The cycles of a command. `cycles` is the number of cycles for which it is valid; 0 means no
+/// limit.
 struct LeaseTerm {
   std::uint64_t now = 0;
   std::uint32_t cycles = 0;
   std::uint64_t computed_from = 0;
-  bool is_sign_of_life = false;  ///< it orders nothing, so a release may overtake it
+  bool is_sign_of_life = false;  ///< a sign of life commands nothing, so a release may overtake it
 };
 
-/// Tells who may command the outputs of each node. The first sender holds the node until the time
-/// to live of each of its commands has expired or until it releases the node. The commands of a
-/// node do not go back: none may be computed from an earlier cycle than the newest accepted one.
-/// Times count in cycles. Front thread.
+/// Decides who may command the outputs of each node. The first sender holds the node until the time
+/// to live of each of its commands has expired, or until it releases the node. A command must not
+/// be computed from an earlier cycle than the newest accepted one of the node. Times count in
+/// cycles. Front thread.
 class LeaseTable {
  public:
   /// `unlimited` is the number of cycles for which a command without time to live holds its node.
@@ -65,17 +67,17 @@ class LeaseTable {
   /// Returns what take() would return.
   LeaseVerdict verdict(std::size_t node, const Sender& sender,
                        const LeaseTerm& term) const noexcept;
-  /// If the verdict is `taken`, `sender` holds the node now.
+  /// Gives the node to `sender` if the verdict is `taken`.
   LeaseVerdict take(std::size_t node, const Sender& sender, const LeaseTerm& term);
   /// Returns true if the sender with this instance holds the node.
   bool holds(std::size_t node, std::int64_t instance, std::uint64_t now) const noexcept;
   /// Frees a node that its holder gives up. A sign of life that has overtaken the release changes
-  /// nothing. Returns false if a later command has overtaken it, or if it is a copy of the last
-  /// one.
+  /// nothing. Returns false if a later command has overtaken the release, or if the release is a
+  /// copy of the last one.
   bool release(std::size_t node, std::uint64_t now, std::uint64_t computed_from) noexcept;
-  /// Name of the sender that holds the node; empty if nobody does.
+  /// Returns the name of the sender that holds the node; empty if nobody does.
   std::string_view holder(std::size_t node, std::uint64_t now) const noexcept;
-  /// Name of the sender that holds the node or held it last; empty if nobody did so far.
+  /// Returns the name of the sender that holds the node or held it last; empty if there was none.
   std::string_view last_holder(std::size_t node) const noexcept;
 
  private:
@@ -84,8 +86,8 @@ class LeaseTable {
     std::string sender;
     std::uint64_t end = 0;      // first cycle in which the node is free again
     std::uint64_t newest = 0;   // cycle from which the newest command was computed
-    std::uint64_t ordered = 0;  // the same for the newest one that is no sign of life
-    bool released = false;      // that one is a release
+    std::uint64_t ordered = 0;  // the same for the newest command except signs of life
+    bool released = false;      // that command is a release
   };
   static LeaseVerdict judge(const Lease& lease, std::int64_t instance,
                             const LeaseTerm& term) noexcept;

@@ -24,8 +24,8 @@ constexpr std::size_t most_known_requests = 256;
 constexpr std::size_t most_heard = 64;
 constexpr std::size_t most_pending = 64;
 constexpr std::size_t longest_service = 32;
-/// Time after the answer. It is longer than the 11 s for which a copy of a request can be accepted:
-/// from 1 s before its utime until 10 s after it.
+/// Time for which an answer is remembered. It is longer than the 11 s in which a copy of a request
+/// can be accepted: from 1 s before its utime until 10 s after it.
 constexpr Time remembered = 12s;
 
 bool same_message(const request_t& a, const request_t& b) {

@@ -39,8 +39,8 @@ class Requests {
   bool is_echo(const request_t& message, Time now);
   /// Returns an answer that is available at once, or std::nullopt if the answer comes later.
   std::optional<reply_t> take(const request_t& message, Time now);
-  /// Does the same for a request that the front thread serves. `begin` begins it, and returns why
-  /// it can't begin. finish() with the message and the answer must follow.
+  /// Takes a request that the front thread itself serves. `begin` begins it, or returns why it
+  /// can't begin. finish() with the message and the answer must follow.
   using Begin = std::function<std::optional<std::string>(const request_t& message)>;
   std::optional<reply_t> take(const request_t& message, Time now, const Begin& begin);
   void finish(const request_t& message, const reply_t& reply, Time now);

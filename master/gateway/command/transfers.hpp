@@ -20,9 +20,9 @@ namespace takt {
 /// request is under way. Front thread only.
 class Transfers {
  public:
-  static constexpr std::size_t part_bytes = 1024;       ///< in one message
-  static constexpr std::size_t most_bytes = 16U << 20;  ///< of one file
-  static constexpr std::size_t parts_at_once = 16;      ///< most answers to one "more"
+  static constexpr std::size_t part_bytes = 1024;       ///< bytes in one message
+  static constexpr std::size_t most_bytes = 16U << 20;  ///< bytes of one file
+  static constexpr std::size_t parts_at_once = 16;      ///< largest number of answers to one "more"
 
   struct Sinks {
     std::function<bool(const Request&)> submit;  ///< to the bus thread; false if it has no room

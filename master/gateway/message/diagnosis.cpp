@@ -22,7 +22,7 @@ bool is_ok(const BusPlan& plan, const NodePlan& node, const NodeStatus& status) 
   return !plan.start_nodes || status.nmt == NmtState::operational;
 }
 
-/// Returns a value that changes with every state, EMCY and fault worth a look.
+/// Returns a value that changes with the NMT and boot states, EMCYs and faults.
 std::uint64_t digest_of(const StatusSnapshot& snapshot) noexcept {
   std::uint64_t digest = 0xCBF2'9CE4'8422'2325;  // FNV-1a, 64 bit
   const auto add = [&](std::uint64_t value) { digest = (digest ^ value) * 0x0000'0100'0000'01B3; };

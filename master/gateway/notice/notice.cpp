@@ -7,7 +7,7 @@
 
 namespace takt {
 
-/// A kind in neither list is an error.
+/// Returns the severity of a kind of event. A kind that is in neither list is an error.
 Weight weight_of(EventKind kind) noexcept {
   using enum EventKind;
   static constexpr EventKind notes[] = {

@@ -21,8 +21,8 @@ struct Notice {
   std::string kind;       ///< "boot_failed"
   Weight weight = Weight::note;
   std::string text;
-  /// For boot_failed: the next attempt of this boot asks the node in another way, so the node does
-  /// not count as missing yet.
+  /// Only for boot_failed: the next boot probes the node in another way, so the node does not count
+  /// as missing yet.
   bool asks_on = false;
 };
 

@@ -22,7 +22,7 @@ std::expected<std::vector<EnvelopeKey>, std::string> parse_keys(const std::strin
 /// it unchanged.
 std::expected<void, std::string> make_key_file(const std::string& path, const std::string& name);
 
-/// Whoever uses a key file looks this often whether it has changed.
+/// Time between two checks whether a key file has changed.
 inline constexpr Time look_pause = std::chrono::seconds{1};
 
 /// A key file that may change while it is in use.
@@ -33,8 +33,8 @@ class WatchedKeyFile {
 
   const std::vector<EnvelopeKey>& keys() const noexcept { return keys_; }
   const std::string& path() const noexcept { return path_; }
-  /// Returns std::nullopt if the file is unchanged. Otherwise tells whether the file could be read
-  /// again; after an error the previous keys stay in use. If descriptors or memory are missing,
+  /// Returns std::nullopt if the file is unchanged. Otherwise states whether the file could be read
+  /// again; after an error, the previous keys stay in use. If descriptors or memory are missing,
   /// each further call tries again, and the error is returned only once.
   std::optional<std::expected<void, std::string>> reread();
 

@@ -28,7 +28,7 @@ SecuredTransport::SecuredTransport(Transport& inner, const Clocks& clocks, Watch
   use_keys();
 }
 
-/// The first key of the file signs messages.
+/// Signs messages with the first key of the file from now on.
 void SecuredTransport::use_keys() {
   guard_.set_keys(keys_.keys());
   if (options_.signs) seal_.emplace(keys_.keys().front(), random_number());

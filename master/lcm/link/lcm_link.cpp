@@ -39,7 +39,8 @@ LcmLink::LcmLink(LcmUrl url, Hub hub, std::vector<std::string> patterns, Say say
   }
 }
 
-/// With Hub::own (`broker: true`), the daemon serves its own hub or has none.
+/// Starts the hub of the daemon. With Hub::own (`broker: true`), the daemon serves its own hub or
+/// runs without a hub.
 void LcmLink::begin_hub() {
   next_try_ = std::chrono::steady_clock::now() + retry_pause;
   const std::uint16_t port = url_.scheme == "tcpq" ? url_.port : tcpq::default_port;

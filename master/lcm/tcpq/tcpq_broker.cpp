@@ -112,8 +112,8 @@ void TcpqBroker::close_unopened(Time now) {
   }
 }
 
-/// Closes connections that do not read. Their unsent messages, up to a megabyte each, would wait
-/// for ever.
+/// Closes connections that do not read. Otherwise their unsent messages, up to a megabyte each,
+/// would be kept for ever.
 void TcpqBroker::close_unread(Time now) {
   for (const auto& client : clients_) {
     const bool reads =

@@ -25,7 +25,7 @@ void Beat::record_skipped(std::uint64_t periods) noexcept {
   timing_.sync_lateness.record(static_cast<std::int64_t>(periods) * clock_.period());
 }
 
-/// Returns the number of periods without SYNC.
+/// Begins a cycle with the SYNC of another device. Returns the number of periods without SYNC.
 std::uint64_t Beat::begin_by_sync(bool was_locked) noexcept {
   sync_at_ = follower_.take();
   const Time off = std::chrono::abs(sync_at_ - clock_.deadline());
@@ -35,7 +35,8 @@ std::uint64_t Beat::begin_by_sync(bool was_locked) noexcept {
   return missed;
 }
 
-/// Returns the number of skipped periods.
+/// Begins a cycle although no SYNC of another device has come. Returns the number of skipped
+/// periods.
 std::uint64_t Beat::begin_without_sync(Time now, std::span<const NodeStatus> nodes,
                                        bool was_locked) noexcept {
   follower_.on_silence(now, nodes);

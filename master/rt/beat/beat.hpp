@@ -42,11 +42,11 @@ class Beat {
   Time window_end() const noexcept {
     return std::min(sync_at_ + plan_.receive_window, outputs_due());
   }
-  /// Returns true if this thread has stood still since SYNC. The time-outs must take this absence
-  /// into account before the state machines run again.
+  /// Returns true if this thread did not run for too long since SYNC. The time-outs must take this
+  /// absence into account before the state machines run again.
   bool stalled(Time now) const noexcept { return now - sync_at_ > longest_lapse * period(); }
-  /// Returns the time for which this thread stood still before this SYNC; 0 if it was so short that
-  /// time-outs need not take it into account. Call this once a cycle.
+  /// Returns the time for which this thread did not run before this SYNC; 0 if the time was so
+  /// short that time-outs need not take it into account. Call this once a cycle.
   Time take_absence() noexcept;
 
   /// Waits until SYNC is due, or until the SYNC of another device arrives. Then decides whether
@@ -71,9 +71,10 @@ class Beat {
   bool begins_cycle(const StampedFrame& stamped) noexcept;
   /// Returns true if a SYNC has come that begins the next cycle.
   bool next_sync_came() const noexcept { return follower_.arrived(); }
-  /// SYNC began this cycle.
+  /// Returns true if a SYNC began this cycle.
   bool began_by_sync() const noexcept { return began_ == Began::by_sync; }
-  /// This cycle has a SYNC: that which began it, or one that this thread has found too late.
+  /// Returns true if this cycle has a SYNC: the one that began it, or one that this thread has
+  /// found too late.
   bool has_sync() const noexcept { return began_ != Began::by_clock; }
   bool sync_lost() const noexcept { return follower_.lost(); }
 
@@ -148,7 +149,7 @@ inline void Beat::begin(Time now) noexcept {
   if (late > clock_.period() / 10) ++status_.cycles_late;
 }
 
-/// Periods that have passed are skipped.
+/// Waits for the time of SYNC by the clock of the master. Periods that have passed are skipped.
 template <Port P>
 void Beat::await_deadline(P& port) noexcept {
   port.sleep_precisely_until(clock_.deadline());
@@ -212,7 +213,7 @@ inline bool Beat::begins_cycle(const StampedFrame& stamped) noexcept {
   return follower_.arrived();
 }
 
-/// If earlier frames could not leave yet, no others may follow.
+/// Closes the wire for this cycle if earlier frames could not leave yet; otherwise opens it.
 inline void Beat::open_or_hold_wire(const PortCondition& condition) noexcept {
   wire_ = gate_.open(condition, sync_at_) ? Wire::open : Wire::held;
   if (wire_ == Wire::open) {

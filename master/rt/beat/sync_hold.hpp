@@ -33,7 +33,7 @@ class SyncHold {
     return open_;
   }
 
-  /// SYNC was permitted before.
+  /// Returns true if SYNC was permitted before.
   bool is_open() const noexcept { return open_; }
 
   template <class Archive>

@@ -29,8 +29,9 @@ struct TimingHistograms {
   Histogram command_age;  ///< time from SetPoints::publish() to the outputs that carry the command
 };
 
-/// Messages about motions that the bus thread takes in one cycle: an order for each axis, and a few
-/// more. The points of streams leave so many places of their ring to the other messages.
+/// Number of messages about motions that the bus thread takes in one cycle: an order for each axis,
+/// and a few more. The points of streams leave this number of places in their ring to the other
+/// messages.
 inline constexpr std::size_t motions_a_cycle = motion::max_axes + 8;
 
 /// Everything that the bus thread and the front thread share, without a lock between them. The

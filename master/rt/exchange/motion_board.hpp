@@ -11,7 +11,7 @@ namespace takt {
 
 /// The reports of all axes in one beat, which is the cycle of this number.
 struct MotionSnapshot {
-  std::uint64_t cycle = 0;  ///< 0: no motion message has come so far, so there are no reports
+  std::uint64_t cycle = 0;  ///< 0: no message about motions has come, so there are no reports
   std::vector<motion::AxisReport> axes{};  ///< in the order of motion_axes()
 };
 

@@ -32,7 +32,7 @@ class SpscRing {
 
   /// Producer. Returns true if the next push would be refused.
   bool full() noexcept { return !has_room(1); }
-  /// Producer. Returns true if the ring has room for so many items, at most N.
+  /// Producer. Returns true if the ring has room for this number of items, at most N.
   bool has_room(std::size_t items) noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_seen_ > N - items) tail_seen_ = tail_.load(std::memory_order_acquire);

@@ -12,7 +12,7 @@ namespace takt {
 
 namespace journal {
 
-/// Tells which parts of the condition follow, each in its own words.
+/// States which parts of the condition follow, each in its own words.
 enum ConditionPart : std::uint64_t { echo = 1, utc = 2, state = 4 };
 inline constexpr std::size_t state_words = 3;
 

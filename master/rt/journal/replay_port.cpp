@@ -23,7 +23,7 @@ void ReplayPort::begin_part() const noexcept {
   words_ = parts_[part_].words;
   frames_ = parts_[part_].frames;
   at_ = 0;
-  condition_ = {};  // each recording tells all that differs from this state
+  condition_ = {};  // each recording contains everything that differs from this state
 }
 
 void ReplayPort::differ(ReplayDifference difference) const noexcept {

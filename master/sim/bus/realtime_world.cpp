@@ -36,7 +36,7 @@ void RealtimeWorld::run() noexcept {
   start_ = monotonic();
   while (!stop_.load(std::memory_order_acquire)) {
     const Time behind = monotonic() - start_ - world_.now();
-    if (behind > longest_stall) start_ += behind;  // this process and the devices stood still
+    if (behind > longest_stall) start_ += behind;  // this process and the devices did not run
     const Time wait =
         std::clamp(world_.next_event() - (monotonic() - start_), Time{}, longest_wait);
     if (!carry_in(wait) || !carry_out()) break;

@@ -59,7 +59,7 @@ class VirtualBus {
   void set_bitrate(std::uint32_t bitrate) noexcept;
   const BusCounters& counters() const noexcept { return counters_; }
 
-  /// Returns a node that has gone bus-off or come back since the last call, or `nobody`.
+  /// Returns one node that has gone bus-off or has come back since the last call, or `nobody`.
   BusNodeIndex take_change() noexcept {
     if (changes_.empty()) return nobody;
     const BusNodeIndex index = changes_.back();

@@ -17,7 +17,8 @@ void Device::list_pdos() noexcept {
   list_live_pdos();
 }
 
-/// Most devices have many more PDOs than they use, and each SYNC visits those of these lists.
+/// Lists the PDOs that are in use. Most devices have many more PDOs than they use, and each SYNC
+/// visits the listed ones.
 void Device::list_live_pdos() noexcept {
   live_tpdos_.clear();
   live_rpdos_.clear();

@@ -23,7 +23,7 @@ class Brake {
   }
   bool exists() const noexcept { return torque_ > 0; }
   bool is_closed() const noexcept { return exists() && is_closed_; }
-  /// Torque that it can hold now, in N m.
+  /// Returns the torque that the brake can hold now, in N m.
   double torque() const noexcept { return is_closed_ ? torque_ : 0; }
 
  private:

@@ -10,7 +10,7 @@
 
 namespace takt::sim {
 
-/// What the controllers of a servo follow.
+/// What the controllers of a servo regulate.
 enum class ServoLoop : std::uint8_t {
   off,   ///< no torque; if the axis stands, it is held until its brake has closed
   hold,  ///< the position at which this loop began
@@ -23,7 +23,7 @@ enum class ServoLoop : std::uint8_t {
 struct ServoReference {
   ServoLoop loop = ServoLoop::off;
   double position = 0;
-  double velocity = 0;      ///< counts/s; in the loop `position`, that of the set-points
+  double velocity = 0;      ///< counts/s; in the loop `position`, the velocity of the set-points
   double velocity_add = 0;  ///< counts/s, added behind the position controller
   double torque = 0;        ///< N m, set-point or addition behind the velocity controller
 };
@@ -66,11 +66,11 @@ class Servo {
   double torque() const noexcept { return torque_; }         ///< N m
   double wanted_torque() const noexcept { return wanted_; }  ///< N m
   bool limited() const noexcept { return cascade_.limited(); }
-  /// The axis may move: it has no brake, or the brake is open.
+  /// Returns true if the axis may move: it has no brake, or the brake is open.
   bool released() const noexcept { return !brake_.is_closed(); }
-  /// Motor and load stand, and nothing will move them while there is no torque.
+  /// Returns true if motor and load stand, and nothing will move them while there is no torque.
   bool rests() const noexcept;
-  /// The axis turns by less than half a turn in a minute.
+  /// Returns true if the axis turns by less than half a turn in a minute.
   bool stands() const noexcept { return std::abs(encoder_.speed()) < standstill; }
   /// Returns how far ahead of the position the set-point is at this velocity (counts).
   double lead(double velocity) const noexcept { return cascade_.error_at(velocity); }

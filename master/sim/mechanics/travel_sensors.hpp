@@ -20,18 +20,19 @@ class TravelSensors {
   /// `turn` is a turn of the motor. `index` is the place of an index pulse if the table has none.
   TravelSensors(const TravelParameters& table, double turn, double index) noexcept;
 
-  /// Looks at the way since the last look.
+  /// Updates the switches and the index pulse for the way since the last call.
   void look(double motor, double load) noexcept;
 
   bool has(TravelSwitch which) const noexcept { return at(which).zone.has_value(); }
   bool active(TravelSwitch which) const noexcept { return at(which).active; }
-  /// The edge of a switch since the last look but one. If there was one, edge_at() is the position
+  /// Returns the edge of a switch in the last look(). If there was one, edge_at() is the position
   /// of the motor there.
   EdgeKind edge(TravelSwitch which) const noexcept { return at(which).edge; }
   double edge_at(TravelSwitch which) const noexcept { return at(which).edge_at; }
-  /// The position of the index pulse that the motor has crossed since the last look but one.
+  /// Returns the position of the index pulse that the motor has crossed in the last look().
   const std::optional<double>& index() const noexcept { return crossed_; }
-  /// The digital inputs 0x60FD: limits in bits 0 and 1, home in bit 2, probes in bits 16 and 17.
+  /// Returns the digital inputs 0x60FD: limits in bits 0 and 1, home in bit 2, probes in bits 16
+  /// and 17.
   std::uint32_t inputs() const noexcept;
 
  private:
@@ -54,7 +55,7 @@ class TravelSensors {
   std::optional<double> crossed_{};
   double motor_ = 0;
   double load_ = 0;
-  bool has_edges_ = false;  ///< the load has crossed an edge since the last look but one
+  bool has_edges_ = false;  ///< the load has crossed an edge in the last look()
   double edge_below_ = 0;   ///< the nearest edge of a switch that is not above the load
   double edge_above_ = 0;   ///< the nearest one above the load
 };

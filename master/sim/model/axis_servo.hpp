@@ -20,9 +20,9 @@ class AxisServo {
   AxisServo(AxisObjects& objects, const MechanicsTable& table, Random random) noexcept;
 
   void reset(Time now) noexcept;
-  /// Without torque, or held until the brake has closed.
+  /// Lets the axis rest without torque, or holds it until its brake has closed.
   void rest(Time until) noexcept { run({.loop = ServoLoop::off}, until); }
-  /// With torque at its place, for example until the brake has opened.
+  /// Holds the position with torque, for example until the brake has opened.
   void hold(Time until) noexcept { run({.loop = ServoLoop::hold}, until); }
   /// Follows positions; the velocity and torque offsets (0x60B1, 0x60B2) act if `has_offsets`.
   void follow_position(const Demand& demand, bool has_offsets, Time until) noexcept;
@@ -32,7 +32,7 @@ class AxisServo {
   void shift(double counts) noexcept { servo_.shift(counts); }
 
   const Servo& servo() const noexcept { return servo_; }
-  /// Positions of the sensors lack origin().
+  /// Returns the sensors, whose positions do not include origin().
   const TravelSensors& sensors() const noexcept { return sensors_; }
   double origin() const noexcept { return servo_.origin(); }
   /// True if the axis is at the end of its travel in a direction (1 or -1): on the limit switch, or

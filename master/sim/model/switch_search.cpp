@@ -104,14 +104,14 @@ SwitchSearch::Result SwitchSearch::seek(const TravelSensors& sensors) noexcept {
   return Result::running;
 }
 
-/// The axis stands, on the switch or behind a narrow one.
+/// Chooses the next stage when the axis stands, on the switch or behind a narrow one.
 void SwitchSearch::settle(const TravelSensors& sensors) noexcept {
   if (sensors.active(method_.seeks)) return approach_edge();
   direction_ = -direction_;
   step_ = Step::go_back;
 }
 
-/// The axis is on the switch.
+/// Chooses the next stage when the axis is on the switch.
 void SwitchSearch::approach_edge() noexcept {
   step_ = method_.enters ? Step::leave : Step::cross;
   direction_ = method_.enters ? -method_.last : method_.last;
