@@ -183,6 +183,11 @@ check("a wrong axis is named", "'wrist' is none of the axes" in obstacle(axes.se
 for place, (node, index, *words) in enumerate(LAYOUT):
     LAYOUT[place] = (node, 0x60C1 if index == 0x607A else index, *words)
 daemon, axes = on_a_bus("shoulder")
+daemon.drives[0].targets[0x60C1] = 5000
+axes.run(0.0)
+axes.enable()
+check("a point of a program that has died does not enable", daemon.drives[0].targets[0x60C1] == 0)
+daemon, axes = on_a_bus("shoulder")
 drive = daemon.drives[0]
 axes.enable()
 check("an axis without 607A moves in interpolated position", drive.mode == 7 and drive.controlword == 0x1F)

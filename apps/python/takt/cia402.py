@@ -77,13 +77,18 @@ class Axis:
     @property
     def has_target(self) -> bool:
         """taktd can give it positions."""
-        return TARGET in self.places or INTERPOLATION_TARGET in self.places
+        return self.target_object in self.places
+
+    @property
+    def target_object(self) -> int:
+        """The object of the target that taktd gives it."""
+        return TARGET if TARGET in self.places else INTERPOLATION_TARGET
 
     @property
     def motion_mode(self) -> int:
         """The mode in which taktd moves it: cyclic synchronous position, or interpolated position
         if 0x60C1:01 is in its RPDOs and 0x607A is not."""
-        interpolates = INTERPOLATION_TARGET in self.places and TARGET not in self.places
+        interpolates = self.has_target and self.target_object == INTERPOLATION_TARGET
         return INTERPOLATED_POSITION if interpolates else CYCLIC_SYNCHRONOUS_POSITION
 
     @property

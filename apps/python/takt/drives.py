@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .cia402 import (CONTROLWORD, CYCLIC_SYNCHRONOUS_POSITION, DISABLED, DISABLING, ENABLED,
                      ENABLING, FAULTS, HALT, KEEPING, MODE, MODE_DISPLAY, POSITION, QUICK_STOP,
-                     QUICK_STOPPING, RESETTING, TARGET, Axis)
+                     QUICK_STOPPING, RESETTING, Axis)
 from .link import Link, Obstacle
 from .outputs import command, release
 
@@ -224,7 +224,8 @@ class Drives:
 
     def _target_is_far(self, axis: Axis) -> bool:
         """A program that has died may have left a target position to which the drive would jump."""
-        target, position = self._link.raw(axis, TARGET), self._link.raw(axis, POSITION)
+        target, position = (self._link.raw(axis, index)
+                            for index in (axis.target_object, POSITION))
         return None not in (target, position) and abs(target - position) > MOST_COUNTS_APART
 
     def _newest_error(self, node) -> str:
@@ -243,7 +244,7 @@ class Drives:
             halt = HALT if self.readiness == HALTED and axis.enabled else 0
             word = axis.controlword(self.words or KEEPING) | halt
             for index, value in ((CONTROLWORD, word), (MODE, axis.mode),
-                                 (TARGET, self._target(axis))):
+                                 (axis.target_object, self._target(axis))):
                 if index in axis.places and value is not None:
                     values[axis.places[index]] = value
         command(self._link, values)
