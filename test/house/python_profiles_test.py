@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """python_profiles_test.py TYPES - takt.Axes in the modes in which drives make their motions, on the bus
 of python_daemon.py."""
+import itertools
 import sys
 
 from python_daemon import LAYOUT, SHORT, check, failures, obstacle, on_a_bus
@@ -139,6 +140,16 @@ drive.bits, coasting = lambda: 0x400, iter(range(100))  # "target velocity reach
 drive.drive_itself = lambda: setattr(drive, "position", drive.position + 0.01 * (next(coasting, None) is not None))
 axes.stop()
 check("a stop waits until the drive stands", stands(axes) and next(coasting, None) is None)
+for name, counts, is_rest in (("flickers by a count", (0, 1), True), ("is fine and noisy", (-9, 0, 9, 4), True),
+                              ("counts up", range(0, 10**6, 3), False)):
+    daemon, axes, drive = in_mode(9)
+    axes._link.longest = 2 * SHORT
+    readings = itertools.cycle(counts)
+    drive.drive_itself = lambda: setattr(drive, "position", next(readings) / 1000)
+    began = daemon.cycle
+    kind, _ = obstacle(axes.stop)
+    check(f"an axis whose encoder {name} {'stands' if is_rest else 'still moves'}", (kind == "none") == is_rest, kind)
+    check("which is seen soon", not is_rest or daemon.cycle - began < 150, daemon.cycle - began)
 daemon, axes, drive = in_mode(9)
 axes.command_velocities(1.0)
 for _ in range(300):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .cia402 import (CONTROLWORD, CYCLIC_SYNCHRONOUS_POSITION, DISABLED, DISABLING, ENABLED,
                      ENABLING, FAULTS, HALT, KEEPING, MODE, MODE_DISPLAY, POSITION, QUICK_STOP,
-                     QUICK_STOPPING, RESETTING, Axis)
+                     QUICK_STOPPING, RESETTING, VELOCITY, Axis)
 from .link import Link, Obstacle
 from .outputs import command, release
 
@@ -16,6 +16,9 @@ BOOT_READY = 2  # node_status_t::boot_state
 # gives up.
 HELD_STATUSES = 20
 WORD_CYCLES = 10  # in which a drive may show words from before a command
+# Counts by which the position of an axis at rest may vary, and the cycles for which. Both stand for
+# the same speed; the second one is for fine encoders.
+REST_WINDOWS = ((2, WORD_CYCLES), (20, 10 * WORD_CYCLES))
 MOST_COUNTS_APART = 100  # of the target and the actual position of a drive that is enabled
 LOW_TIME = 0.1  # seconds for which bit 7 of the controlword is low before its rising edge
 
@@ -142,22 +145,29 @@ class Drives:
             raise Obstacle("time over", "the axes still move")
 
     def wait_for_rest(self, axes: list[Axis]) -> bool:
-        """Waits until the actual positions stand, or the drives say so, and taktd moves none of
-        the axes. False: they still move."""
+        """Waits until the drives say that they stand, or their positions have stayed within a few
+        counts, and taktd moves none of the axes: an encoder may flicker at standstill. False: they
+        still move."""
         link = self._link
-        moved, before = link.cycle, [link.raw(axis, POSITION) for axis in axes]
+        begin = [link.raw(axis, POSITION) for axis in axes]
+        windows = [[counts, cycles, link.cycle, begin] for counts, cycles in REST_WINDOWS]
 
-        def may_move(axis: Axis, position: int | None, old: int | None) -> bool:
-            turns = position != old and axis.state in (ENABLED, QUICK_STOP)
-            return moves(axis) or turns and not axis.says_rest(self.readiness == HALTED)
+        def leaves(axis: Axis, counts: int, middle: int | None) -> bool:
+            position = link.raw(axis, POSITION)
+            if (axis.state not in (ENABLED, QUICK_STOP) or None in (position, middle) or
+                    axis.says_rest(self.readiness == HALTED)):
+                return False
+            shows_rest = axis.places.get(VELOCITY) not in link.stale and (
+                link.raw(axis, VELOCITY) == 0)
+            return abs(position - middle) > (REST_WINDOWS[-1][0] if shows_rest else counts)
 
         def at_rest() -> bool:
-            nonlocal moved, before
-            now = [link.raw(axis, POSITION) for axis in axes]
-            if any(map(may_move, axes, now, before)):
-                moved = link.cycle
-            before = now
-            return link.cycle >= moved + WORD_CYCLES
+            for window in windows:
+                counts, _, _, middles = window
+                if any(moves(axis) or leaves(axis, counts, middle)
+                       for axis, middle in zip(axes, middles)):
+                    window[2:] = link.cycle, [link.raw(axis, POSITION) for axis in axes]
+            return any(link.cycle >= since + cycles for _, cycles, since, _ in windows)
         return link.wait(at_rest, link.longest)
 
     def shown_mode(self, axis: Axis) -> int | None:
