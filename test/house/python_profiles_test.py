@@ -140,6 +140,20 @@ drive.bits, coasting = lambda: 0x400, iter(range(100))  # "target velocity reach
 drive.drive_itself = lambda: setattr(drive, "position", drive.position + 0.01 * (next(coasting, None) is not None))
 axes.stop()
 check("a stop waits until the drive stands", stands(axes) and next(coasting, None) is None)
+daemon, axes, drive = in_mode(9)
+daemon.objects[5, 0x6084, 0] = (5000).to_bytes(4, "little")
+axes.command_velocities(-10.0)
+speeds = []
+daemon.each_cycle = lambda daemon: speeds.append(drive.targets[0x60FF])
+axes.stop()
+steps = [after - before for before, after in zip(speeds, speeds[1:])]
+check("a stop lowers a velocity that the drive follows at once", max(steps) <= 20 and min(steps) >= 0, max(steps))
+check("along the deceleration of the drive", 90 <= speeds.index(0) <= 120 and stands(axes), speeds.index(0))
+del daemon.objects[5, 0x6084, 0]
+axes.command_velocities(10.0)
+speeds.clear()
+axes.stop()
+check("without one it becomes 0 at once", set(speeds) <= {1000, 0} and stands(axes), set(speeds))
 for name, counts, is_rest in (("flickers by a count", (0, 1), True), ("is fine and noisy", (-9, 0, 9, 4), True),
                               ("counts up", range(0, 10**6, 3), False)):
     daemon, axes, drive = in_mode(9)

@@ -12,6 +12,7 @@ from .signals import encode
 
 # Modes of operation (0x6060): profile and cyclic synchronous velocity, and torque.
 MODES_OF = {TARGET_VELOCITY: (3, 9), TARGET_TORQUE: (4, 10)}
+CYCLIC_VELOCITY = 9
 # Bits of the controlword and of the statusword in profile position mode.
 NEW_SET_POINT, CHANGE_AT_ONCE = 0x10, 0x20
 ACKNOWLEDGED = 0x1000
@@ -29,6 +30,8 @@ class Profiles:
         # Of profile position mode: the cycle of the newest set-points until they are reached, and
         # the set-points since the last stop.
         self._given, self._targets = None, None
+        # Counts of the velocity per second, along which stop() lowers what a drive follows at once.
+        self._decelerations: dict[Axis, int] = {}
         link.when_abandoned.append(self.rest)
 
     @property
@@ -52,6 +55,8 @@ class Profiles:
         self._check(MODES_OF[index], values)
         self._check_mapped(index)
         raws = [self._raw(axis, index, value) for axis, value in zip(link.axes, values)]
+        if index == TARGET_VELOCITY and not any(link.raw(axis, index) for axis in link.axes):
+            self._learn_decelerations()
         try:
             self._outputs.confirm({axis.places[index]: raw for axis, raw in zip(link.axes, raws)})
         except Obstacle:
@@ -104,6 +109,7 @@ class Profiles:
     def stop(self) -> None:
         """Brings the axes to rest in their modes."""
         axes = self._link.axes
+        self._slow_down()
         self.rest()
         turning = [axis for axis in axes if axis.mode in MODES_OF[TARGET_VELOCITY]]
         if turning and not self._drives.wait_for_rest(turning):
@@ -118,6 +124,40 @@ class Profiles:
             self.discard()
             self._drives.end_halt()
         self._given = None
+
+    def _learn_decelerations(self) -> None:
+        """A drive whose deceleration can't be read gets the target velocity 0 at once."""
+        self._decelerations = {}
+        for axis in self._link.axes:
+            if axis.mode == CYCLIC_VELOCITY:
+                index = BOUNDS["deceleration"] + AXIS_STEP * (axis.number - 1)
+                try:
+                    data = self._services.read(axis.node, index, 0)
+                except Obstacle:
+                    continue
+                self._decelerations[axis] = int.from_bytes(data, "little")
+
+    def _slow_down(self) -> None:
+        """Lowers the target velocities that the drives follow at once."""
+        link, begin = self._link, self._link.cycle
+        speeds = {axis: link.raw(axis, TARGET_VELOCITY)
+                  for axis, rate in self._decelerations.items() if rate and axis.enabled}
+        if not any(speeds.values()) or link.longest <= 0:
+            return
+        sent = None
+
+        def is_slow() -> bool:
+            nonlocal sent
+            if link.cycle == sent:
+                return False
+            sent, values = link.cycle, {}
+            for axis, speed in speeds.items():
+                rate = max(self._decelerations[axis], abs(speed) / link.longest)
+                left = max(0, round(abs(speed) - rate * (link.cycle - begin) * link.period))
+                values[axis.places[TARGET_VELOCITY]] = left if speed > 0 else -left
+            self._outputs.hold(values)
+            return not any(values.values())
+        link.wait(is_slow, 2 * link.longest)
 
     def discard(self) -> None:
         """Makes halted axes forget their set-points: the actual positions become the set-points, so
