@@ -190,8 +190,9 @@ enum class MissedBecause : std::uint32_t {
   not_seen,  ///< The previous SYNC was not seen on the wire, and the controller reports no error.
 };
 
-/// Bit of Event::detail of `limit_exceeded`. It means that the command had no set-point of its own:
-/// by enabling the axis or changing its mode, it would have made an earlier set-point effective.
+/// Bit of Event::detail of `limit_exceeded`. It means that the command itself contained no
+/// set-point: by enabling the axis or changing its mode, it would have made an earlier set-point
+/// effective.
 inline constexpr std::uint32_t held_set_point = 0x80;
 
 /// One event. The bus thread creates it and the front thread reports it, so it is trivially

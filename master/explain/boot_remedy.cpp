@@ -274,7 +274,7 @@ std::string against_dead_node(const BootStep& step) {
                    : "Let the device keep its heartbeat (0x1017, stored with 0x1010)");
 }
 
-/// Returns true if the device has given an answer that tells something about its software.
+/// Returns true if the device has given an answer that shows something about its software.
 bool reports_of_program(const BootFailure& failure) noexcept {
   if (failure.letter < 'G' || failure.letter > 'I') return false;
   return failure.fault == SdoFault::none || failure.fault == SdoFault::aborted_by_device ||

@@ -266,8 +266,8 @@ bool Slack<P, S>::before_stream_end(Time now) const noexcept {
              frames.count(Answer::stream);
 }
 
-/// Returns the wire time to reserve for answers under way. In operation, this covers everything
-/// that servers owe, so that it fits before the outputs even if it comes at once. `open` counts the
+/// Returns the wire time to reserve for outstanding answers. In operation, this covers all answers
+/// of servers, so that they fit before the outputs even if they come at once. `open` counts the
 /// unanswered dialogues of this round.
 template <Port P, Services S>
 Time Slack<P, S>::awaited_wire_time(std::size_t open) const noexcept {

@@ -35,7 +35,7 @@ class LssFastScan {
 
   /// Returns the next question, valid while the scan is running.
   lss::FastScan question() const noexcept { return question_; }
-  /// Tells the scan whether a device has answered the question.
+  /// Reports to the scan whether a device has answered the question.
   void on_reaction(bool answered) noexcept;
   LssScanState state() const noexcept { return state_; }
   /// Returns the address that was found, valid in LssScanState::found.

@@ -236,7 +236,7 @@ class AxisStop {
   bool disabled_seen_ = false;         ///< The axis was seen disabled during this stop.
   bool unproven_ = false;              ///< see AxisVerdict::unproven
   Motion motion_ = Motion::unknown;    ///< The motion while the axis was enabled.
-  std::int64_t velocity_enabled_ = 0;  ///< The velocity that belongs to motion_.
+  std::int64_t velocity_enabled_ = 0;  ///< The newest velocity that was noted with `motion_`.
   Time entered_{};
   Time answered_{};
   std::int64_t velocity_then_ = 0;  ///< The velocity when the axis was disabled.

@@ -134,7 +134,7 @@ void BootRunner::on_downloaded(const SdoResult& result, Time now,
   const BootStep& step = current();
   if (result.fault == SdoFault::none) return on_written();
   // A write is never repeated. If its answer does not come, or the device calls the write
-  // redundant, reading the object back tells whether the write has worked.
+  // redundant, the object is read back to find out whether the write has worked.
   const bool refused = result.fault == SdoFault::aborted_by_device;
   if (refused && retries_in_preop(result.abort_code)) return;
   if (refused && may_be_missing(step, result.abort_code)) return next();

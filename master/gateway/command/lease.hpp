@@ -86,7 +86,7 @@ class LeaseTable {
     std::string sender;
     std::uint64_t end = 0;      // first cycle in which the node is free again
     std::uint64_t newest = 0;   // cycle from which the newest command was computed
-    std::uint64_t ordered = 0;  // the same for the newest command except signs of life
+    std::uint64_t ordered = 0;  // cycle of the newest command that is no sign of life
     bool released = false;      // that command is a release
   };
   static LeaseVerdict judge(const Lease& lease, std::int64_t instance,

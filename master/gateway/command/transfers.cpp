@@ -106,7 +106,8 @@ std::expected<Request, std::string> Transfers::translate(const transfer_t& messa
       .timeout = request_timeout(message.timeout_ms)};
 }
 
-/// Takes parts only in order. The state sent after each part tells the sender where to continue.
+/// Takes parts only in order. The state sent after each part states where the sender has to
+/// continue.
 void Transfers::fill(Job& job, const transfer_t& message) {
   const std::size_t size = message.data.size();
   if (job.stage != Stage::filling || job.submitted) return;

@@ -21,7 +21,8 @@ enum class BusMember : std::uint8_t {
 
 struct UnixBusOptions {
   std::string path;  ///< path of `unix:PATH`, without `unix:`
-  /// COB-ID of the frames of this port whose echo is condition().last_sync_echo.
+  /// COB-ID of the SYNC that this port sends. condition().last_sync_echo is the time of its newest
+  /// echo.
   std::optional<CobId> sync_cob_id{};
   Time spin{};
   SentFrames* sent = nullptr;  ///< counts the sent frames for a DiagnosticSocket

@@ -33,7 +33,8 @@ class Seqlock {
     version_.store(version_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   }
 
-  /// Any thread. The number changes with each write. What is read afterwards is not older.
+  /// Any thread. The number changes with each write. Bytes that are read afterwards are not older
+  /// than the number.
   std::uint64_t version() const noexcept { return version_.load(std::memory_order_acquire); }
   /// Any thread. Repeats `read_all`, which calls get(), until no write happened meanwhile.
   template <class F>

@@ -71,7 +71,7 @@ class ReplayPort {
   SendResult send(std::span<const Frame> out) noexcept;
   PortCondition condition() const noexcept;
 
-  // What came from the front thread, for ReplayedLink.
+  // These functions return the recorded input of the front thread, for ReplayedLink.
   void begin_cycle(std::uint64_t cycle) noexcept;
   const SetPointFrame& set_points() noexcept;
   bool take_request(Request& request) noexcept;

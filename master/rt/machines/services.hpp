@@ -25,7 +25,8 @@ concept NodeServices = requires(const S services, std::size_t node_index) {
   { services.limits_read(node_index) } noexcept -> std::same_as<std::span<const LimitReading>>;
 };
 
-/// Service frames: requests and their replies, and how many answers the bus still owes.
+/// Service frames: requests and their replies, and the number of answers that are still
+/// outstanding.
 template <class S>
 concept RequestServices =
     Machine<S> && requires(S services, const S constant, const Request& request, Reply& reply,

@@ -23,7 +23,7 @@ struct Offer {
 /// moves other offers. Nothing allocates memory after reserve().
 class OfferList {
  public:
-  /// Makes room for the offers of so many nodes.
+  /// Makes room for the offers of this number of nodes.
   void reserve(std::size_t nodes) { offers_.resize(nodes); }
 
   std::span<const Offer> all() const noexcept { return {offers_.data() + first_, end_ - first_}; }

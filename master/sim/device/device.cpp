@@ -153,7 +153,7 @@ bool Device::on_frame(const Frame& frame, Time now) noexcept {
 
 /// Gives the frame to several services.
 bool Device::share(std::span<const Route> routes, const Frame& frame, Time now) noexcept {
-  std::array<Route, 8> taken;  // copies, likewise
+  std::array<Route, 8> taken;  // copies, because a handler may rebuild the routes
   const std::size_t count = std::min(routes.size(), taken.size());
   std::copy_n(routes.begin(), count, taken.begin());
   bool exchange = true;

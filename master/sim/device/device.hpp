@@ -179,7 +179,7 @@ class Device final : private Dictionary {
   std::vector<Tpdo> tpdos_;
   std::vector<Rpdo> rpdos_;
   std::vector<Tpdo*> live_tpdos_;  ///< those that can act in OPERATIONAL, by number
-  std::vector<Rpdo*> live_rpdos_;  ///< likewise
+  std::vector<Rpdo*> live_rpdos_;  ///< those that can act in OPERATIONAL, by number
   MultiplexedPdos multiplexed_;
   std::unique_ptr<Model> model_;
   Routes routes_;

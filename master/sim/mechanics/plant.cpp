@@ -15,8 +15,9 @@ double own_friction(const MechanicsTable& table) noexcept {
   return table.motor.friction + (table.load.stiffness ? 0 : table.load.friction);
 }
 
-/// Faces that meet begin to push within a step, which gives energy to an undamped spring. With
-/// backlash, the spring therefore acts with the twist after the step, which takes more.
+/// Returns the damping of the coupling. Faces that meet begin to push within a step, which adds
+/// energy to an undamped spring. With backlash, the spring therefore acts with the twist after the
+/// step, which removes more energy than that.
 double contact_damping(const MechanicsTable& table, double span) noexcept {
   if (table.load.backlash == 0) return table.load.damping;
   return table.load.damping + table.load.stiffness.value_or(0) * span;

@@ -12,9 +12,9 @@ namespace takt::sim {
 enum class TravelSwitch : std::uint8_t { negative_limit, positive_limit, home, probe_1, probe_2 };
 inline constexpr std::size_t travel_switches = 5;
 
-/// The switches that an axis meets on its way, and the index pulses of its encoder. Switches are
-/// where the load meets them; the positions at their edges are those of the motor, as a drive
-/// latches them. All positions are in counts, without the shift of homing.
+/// The switches that an axis meets on its way, and the index pulses of its encoder. The load
+/// operates the switches, but the position of an edge is the position of the motor, as a drive
+/// latches it. All positions are in counts, without the shift of homing.
 class TravelSensors {
  public:
   /// `turn` is a turn of the motor. `index` is the place of an index pulse if the table has none.

@@ -8,7 +8,7 @@
 
 namespace takt::sim {
 
-/// A piece of the way of an axis between two looks at its sensors.
+/// A part of the way of an axis, between two samples of its sensors.
 struct Stretch {
   double from = 0;
   double to = 0;

@@ -10,9 +10,9 @@
 namespace takt::sim {
 
 /// Homing mode. A method seeks the switch and the index pulse that the mechanics of the axis have.
-/// Without mechanics, or if they lack the switch, it lies ahead at a random distance, a third of a
-/// second to one second away at search speed. CiA 402-2; methods 1-14, 17-30, 33-35, 37, of which a
-/// drive with a list of methods (0x60E3) has only those that are listed.
+/// If there are no mechanics, or if they lack the switch, the switch is ahead at a random distance
+/// that takes a third of a second to one second at search speed. CiA 402-2; methods 1-14, 17-30,
+/// 33-35 and 37. A drive with a list of methods (0x60E3) has only those of the list.
 class Homing {
  public:
   Homing(const AxisObjects& objects, Random random) : objects_{objects}, random_{random} {}
