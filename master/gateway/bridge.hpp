@@ -110,8 +110,9 @@ class Bridge {
   /// Returns the present cycle by the clock; this includes cycles whose images were not seen yet.
   std::uint64_t cycle_at(Time now) const noexcept;
   bool take_at(const command_t& command, Time now, std::optional<std::size_t> only_node = {});
-  /// Returns true if a command came from the transports too soon after a gap, or was computed from
-  /// an image from before its end. `cycle` is that of the image.
+  /// Returns true if a command may have waited during a gap: the transports may still hold messages
+  /// from the gap, or the command was computed from an image from before the end of the gap.
+  /// `cycle` is the cycle of that image.
   bool waited(std::int64_t cycle, Time now) const noexcept;
   void publish_outputs();
   /// Returns why a request is too old to be executed; empty if it is not too old.

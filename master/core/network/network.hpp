@@ -96,7 +96,8 @@ class Network {
     return node_index < sessions_.size() && sessions_[node_index].starts();
   }
 
-  /// See NodeSession::boot_refused.
+  /// Returns true if no boot of the node has succeeded so far, and the newest one has failed
+  /// because the device refused an SDO transfer.
   bool boot_refused(std::size_t node_index) const noexcept {
     return sessions_[node_index].boot_refused();
   }

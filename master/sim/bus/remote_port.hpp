@@ -17,7 +17,7 @@ struct RemotePortOptions {
   std::size_t tx_queue = 128;   ///< frames, like SocketCAN's txqueuelen; a full queue gives ENOBUFS
   std::size_t rx_queue = 1024;  ///< frames; a full queue counts receive_overruns
   CobId sync = CobId::base(0x080);  ///< an own frame with this identifier counts as SYNC echo
-  Time restart = std::chrono::milliseconds{100};  ///< after bus-off; `never` means no restart
+  Time restart = std::chrono::milliseconds{100};  ///< delay after bus-off; `never` means no restart
   bool relays = false;                            ///< as in BusNodeOptions
   Time epoch = std::chrono::days{20454};  ///< time of day at the world's time 0: 2026-01-01 UTC
   Time wake_jitter{};  ///< sleep_until and wait_frame return up to this time late
