@@ -35,6 +35,8 @@ std::string either(std::span<const std::string_view> words, const std::string& o
   return words.empty() ? other : words_text(words) + " or " + other;
 }
 
+}  // namespace
+
 std::string value_text(const KeyValue& value) {
   switch (value.type) {
     case KeyType::boolean:
@@ -59,6 +61,10 @@ std::string value_text(const KeyValue& value) {
     case KeyType::list:
       if (value.parts != nullptr) return either(value.words, "list");
       return value.words.empty() ? "list" : "list of " + words_text(value.words);
+    case KeyType::pair:
+      return "`[lowest, highest]`";
+    case KeyType::mapping:
+      return "list";
     case KeyType::numbered:
       return "map by number, " + to_string(value.range);
     case KeyType::foreign:
@@ -68,6 +74,8 @@ std::string value_text(const KeyValue& value) {
   }
   return {};
 }
+
+namespace {
 
 std::string names_text(const KeyText& key) {
   std::string text = code(key.name);

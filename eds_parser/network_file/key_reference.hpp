@@ -20,6 +20,9 @@ std::vector<KeySection> network_file_keys();
 /// file. The section of the whole file is named "entry".
 std::vector<KeySection> device_data_keys();
 
+/// Returns what a key accepts, in words and Markdown: "0..60000000 us", "true, false or a map".
+std::string value_text(const KeyValue& value);
+
 /// Returns the keys as Markdown tables, each below a line with the name of its section.
 std::string key_reference(const std::vector<KeySection>& sections);
 

@@ -29,7 +29,9 @@ enum class KeyType : std::uint8_t {
   range,     ///< a whole number, or `[lowest, highest]`
   value,     ///< any scalar
   map,       ///< a map of `parts`
-  list,      ///< a list of maps of `parts`, or of values if there are none
+  list,      ///< a list of maps of `parts`, or of values or words (or one word) if there are none
+  pair,      ///< a list of two numbers
+  mapping,   ///< a list of objects: maps of `parts`, or short as `0x6041:00`
   numbered,  ///< a map of numbers to maps of `parts`, or to values if there are none
   group,     ///< no key, but `parts` that belong to the same map
   foreign,   ///< a key of other programs, which takt accepts with a note
@@ -43,10 +45,23 @@ enum class KeyOrigin : std::uint8_t {
 struct KeyText;
 using KeyRows = std::vector<KeyText>;
 
+/// Limits of a number of the file.
+struct RealRange {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool without_low = false;  ///< `low` itself is outside
+
+  constexpr bool contains(double number) const noexcept {
+    return (without_low ? number > low : number >= low) && number <= high;
+  }
+};
+
 /// The values that a key accepts.
 struct KeyValue {
   KeyType type = KeyType::value;
   IntegerRange range{};                       ///< of an integer, or of the numbers of a map
+  RealRange numbers{};                        ///< of a number
+  IntegerRange entries{};                     ///< of the values of a list or a map without parts
   std::span<const std::string_view> words{};  ///< words that are accepted, beside numbers if any
   KeyRows (*parts)() = nullptr;
 };
@@ -84,6 +99,12 @@ struct Key : KeyText {
 
 constexpr KeyValue whole(std::int64_t low, std::int64_t high, std::string_view unit = {}) {
   return {.type = KeyType::integer, .range = {low, high, unit}};
+}
+constexpr KeyValue number_within(RealRange numbers) {
+  return {.type = KeyType::number, .numbers = numbers};
+}
+constexpr KeyValue number_above(double low) {
+  return number_within({.low = low, .without_low = true});
 }
 constexpr KeyValue word_of(std::span<const std::string_view> words) {
   return {.type = KeyType::word, .words = words};

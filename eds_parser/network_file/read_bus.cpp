@@ -121,7 +121,7 @@ constexpr Key<NetworkSpec> options_keys[] = {
                                 "ignored with a note.",
                                 bus_yml),
     key<with<read_multiplier, &NetworkSpec::heartbeat_multiplier>>(
-        "heartbeat_multiplier", {.type = KeyType::number}, "3.0",
+        "heartbeat_multiplier", multiplier_value, "3.0",
         "The accepted silence, in heartbeat periods; at least 1.5.", bus_yml),
     key<&NetworkSpec::retry_factor>("retry_factor", "3",
                                     "The accepted silence, in guard times. 0: the master does not "

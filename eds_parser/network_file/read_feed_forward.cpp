@@ -10,7 +10,8 @@ constexpr IntegerRange feed_forward_axes{1, 8,
 template <auto Member>
 void not_negative(const KeyInput& in, AxisFeedForwardSpec& feed_forward) {
   set(in, feed_forward.*Member);
-  if (!(feed_forward.*Member).given || *(feed_forward.*Member) >= 0) return;
+  const auto& value = feed_forward.*Member;
+  if (!value.given || in.key.value.numbers.contains(*value)) return;
   in.error("out-of-range", in.what(),
            " has to be 0 or above; if positive torque moves the axis in the negative direction, "
            "give `units: {torque: ...}` a negative scale");
@@ -19,14 +20,15 @@ void not_negative(const KeyInput& in, AxisFeedForwardSpec& feed_forward) {
 
 constexpr Key<AxisFeedForwardSpec> axis_feed_forward_keys[] = {
     key<not_negative<&AxisFeedForwardSpec::torque_per_acceleration>>(
-        "torque_per_acceleration", {.type = KeyType::number}, "0",
+        "torque_per_acceleration", number_within({.low = 0}), "0",
         "The torque that an acceleration of 1 needs: the inertia of the axis."),
     key<not_negative<&AxisFeedForwardSpec::torque_per_velocity>>(
-        "torque_per_velocity", {.type = KeyType::number}, "0",
+        "torque_per_velocity", number_within({.low = 0}), "0",
         "The torque that a velocity of 1 needs: the viscous friction of the axis."),
 };
 
 void read_feed_forward_of_axes(const KeyInput& in, FeedForwardSpec& feed_forward) {
+  if (in.node.kind == YamlNode::Kind::null) return;
   if (in.node.kind != YamlNode::Kind::map) {
     return in.error("wrong-type", in.what(),
                     " has to be a map of axis numbers: {2: {torque_per_acceleration: 0.01}}");

@@ -37,7 +37,7 @@ void read_producer(const KeyInput& in, Sourced<std::uint16_t>& producer) {
 
 void read_multiplier(const KeyInput& in, Sourced<double>& multiplier) {
   set(in, multiplier);
-  if (!multiplier.given || *multiplier >= 1.5) return;
+  if (!multiplier.given || in.key.value.numbers.contains(*multiplier)) return;
   in.error("out-of-range",
            "`heartbeat_multiplier` has to be at least 1.5, or one late heartbeat stops the node");
 }

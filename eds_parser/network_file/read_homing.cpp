@@ -8,14 +8,14 @@ constexpr IntegerRange numbers_of_axes{1, 8, "(axes of a device)"};  // CiA 402:
 template <auto Member>
 void positive(const KeyInput& in, AxisHomingSpec& homing) {
   set(in, homing.*Member);
-  if (!(homing.*Member).given || *(homing.*Member) > 0) return;
+  if (!(homing.*Member).given || in.key.value.numbers.contains(*(homing.*Member))) return;
   in.error("out-of-range", in.what(), " has to be above 0: the method decides on the direction");
   (homing.*Member).given = false;
 }
 
 template <auto Member>
 constexpr auto positive_key(std::string_view name, std::string_view meaning) {
-  return key<positive<Member>>(name, {.type = KeyType::number}, "as in the device", meaning);
+  return key<positive<Member>>(name, number_above(0), "as in the device", meaning);
 }
 
 constexpr Key<AxisHomingSpec> axis_homing_keys[] = {
@@ -38,6 +38,7 @@ constexpr Key<AxisHomingSpec> axis_homing_keys[] = {
 };
 
 void read_homing_of_axes(const KeyInput& in, HomingSpec& homing) {
+  if (in.node.kind == YamlNode::Kind::null) return;
   if (in.node.kind != YamlNode::Kind::map) {
     return in.error("wrong-type", in.what(), " has to be a map of axis numbers: {2: {method: 35}}");
   }

@@ -9,7 +9,7 @@ constexpr IntegerRange axis_numbers{1, 8, "(axes of a device)"};  // CiA 402: ob
 template <auto Member>
 void magnitude(const KeyInput& in, typename KeyTarget<decltype(Member)>::Type& limits) {
   set(in, limits.*Member);
-  if (!(limits.*Member).given || *(limits.*Member) > 0) return;
+  if (!(limits.*Member).given || in.key.value.numbers.contains(*(limits.*Member))) return;
   in.error("out-of-range", in.what(),
            " has to be above 0: the limit applies to both directions; to forbid a motion, leave "
            "the output out of the mapping");
@@ -36,12 +36,12 @@ void read_range(const KeyInput& in, AxisLimitsSpec& limits) {
 
 template <auto Member>
 constexpr auto magnitude_key(std::string_view name, std::string_view meaning) {
-  return key<magnitude<Member>>(name, {.type = KeyType::number}, "none", meaning);
+  return key<magnitude<Member>>(name, number_above(0), "none", meaning);
 }
 
 constexpr Key<AxisLimitsSpec> axis_keys[] = {
-    key<read_range>("position", {.type = KeyType::list}, "none",
-                    "The range `[lowest, highest]` of set-points: 0x607A or 0x60C1, plus the "
+    key<read_range>("position", {.type = KeyType::pair}, "none",
+                    "The range of set-points: 0x607A or 0x60C1, plus the "
                     "position offset 0x60B0."),
     magnitude_key<&AxisLimitsSpec::velocity>(
         "velocity",
@@ -85,6 +85,7 @@ constexpr Key<ObjectLimitSpec> object_limit_keys[] = {
 };
 
 void read_axes(const KeyInput& in, LimitsSpec& limits) {
+  if (in.node.kind == YamlNode::Kind::null) return;
   if (in.node.kind != YamlNode::Kind::map) {
     return in.error("wrong-type", in.what(),
                     " has to be a map of axis numbers: {2: {velocity: 1.0}}");

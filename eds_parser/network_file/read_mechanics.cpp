@@ -5,18 +5,19 @@
 namespace takt {
 namespace {
 
-/// Returns a number from `low` to `high`, or std::nullopt after an error.
-std::optional<double> number_within(const KeyInput& in, double low, double high) {
+/// Returns a number within the limits of its row, or std::nullopt after an error.
+std::optional<double> number_within_limits(const KeyInput& in) {
+  const RealRange& limits = in.key.value.numbers;
   const auto number = read_number(in.node, in.key.name, in.report());
-  if (!number || (*number >= low && *number <= high)) return number;
-  in.error("out-of-range", in.what(), " has to be from ", low, " to ", high, ", not ",
+  if (!number || limits.contains(*number)) return number;
+  in.error("out-of-range", in.what(), " has to be from ", limits.low, " to ", limits.high, ", not ",
            in.node.text);
   return std::nullopt;
 }
 
-template <auto Member, double Low, double High>
+template <auto Member>
 void bounded(const KeyInput& in, typename KeyTarget<decltype(Member)>::Type& out) {
-  const auto number = number_within(in, Low, High);
+  const auto number = number_within_limits(in);
   if (!number) return;
   const double value = *number;
   out.*Member = value;
@@ -25,7 +26,7 @@ void bounded(const KeyInput& in, typename KeyTarget<decltype(Member)>::Type& out
 template <auto Member, double Low, double High>
 constexpr auto bounded_key(std::string_view name, std::string_view otherwise,
                            std::string_view meaning) {
-  return key<bounded<Member, Low, High>>(name, {.type = KeyType::number}, otherwise, meaning);
+  return key<bounded<Member>>(name, number_within({.low = Low, .high = High}), otherwise, meaning);
 }
 
 constexpr Key<MotorParameters> motor_keys[] = {
@@ -124,20 +125,17 @@ void read_zone(const KeyInput& in, TravelParameters& travel) {
 template <auto Member>
 constexpr auto zone_key(std::string_view name, std::string_view otherwise,
                         std::string_view meaning) {
-  return key<read_zone<Member>>(name, {.type = KeyType::list}, otherwise, meaning);
+  return key<read_zone<Member>>(name, {.type = KeyType::pair}, otherwise, meaning);
 }
 
 constexpr Key<TravelParameters> travel_keys[] = {
-    zone_key<&TravelParameters::stops>("stops", "none", "`[lowest, highest]`: hard stops."),
+    zone_key<&TravelParameters::stops>("stops", "none", "Hard stops."),
     zone_key<&TravelParameters::switches>(
-        "switches", "none",
-        "`[lowest, highest]`: the limit switches are active outside (0x60FD, bits 0 and 1)."),
-    zone_key<&TravelParameters::home>(
-        "home", "at a random place before each homing",
-        "`[lowest, highest]`: the home switch is active inside (0x60FD, bit 2)."),
+        "switches", "none", "The limit switches are active outside (0x60FD, bits 0 and 1)."),
+    zone_key<&TravelParameters::home>("home", "at a random place before each homing",
+                                      "The home switch is active inside (0x60FD, bit 2)."),
     zone_key<&TravelParameters::probe_1>(
-        "probe_1", "none",
-        "`[lowest, highest]`: input 1 of the touch probe is active inside (0x60FD, bit 16)."),
+        "probe_1", "none", "Input 1 of the touch probe is active inside (0x60FD, bit 16)."),
     zone_key<&TravelParameters::probe_2>("probe_2", "none", "The same for input 2 (bit 17)."),
     key<&TravelParameters::index>("index", {.type = KeyType::number}, "by the seed",
                                   "The position of one of the index pulses of the encoder."),

@@ -52,6 +52,7 @@ void read_reset(const KeyInput& in, NodeSpec& node) {
 }
 
 constexpr IntegerRange error_classes{1, 254};
+constexpr IntegerRange error_reactions{0, 255};
 
 void read_error_behavior(const KeyInput& in, NodeSpec& node) {
   if (in.node.kind == YamlNode::Kind::null) return;
@@ -62,7 +63,7 @@ void read_error_behavior(const KeyInput& in, NodeSpec& node) {
   }
   for (const YamlPair& pair : in.node.pairs) {
     const auto sub = read_number_key(pair, in.key.name, error_classes, in.report());
-    const auto value = read_integer(*pair.value, in.key.name, {0, 255}, in.report());
+    const auto value = read_integer(*pair.value, in.key.name, error_reactions, in.report());
     if (!sub || !value) continue;
     node.error_behavior.push_back({.object = {0x1029, static_cast<std::uint8_t>(*sub)},
                                    .value = *value,
@@ -262,7 +263,7 @@ constexpr Key<NodeSpec> node_keys[] = {
         "heartbeat_producer", whole(0, 65535, "ms"), "from the EDS, otherwise 100",
         "The period of the node's heartbeat (0x1017). 0: it sends none.", bus_yml),
     key<with<read_multiplier, &NodeSpec::heartbeat_multiplier>>(
-        "heartbeat_multiplier", {.type = KeyType::number}, "from `options`",
+        "heartbeat_multiplier", multiplier_value, "from `options`",
         "The accepted silence of this node, in heartbeat periods.", bus_yml),
     key<&NodeSpec::guard_time>("guard_time", whole(0, 65535, "ms"), "from the EDS",
                                "The guard time (0x100C). The master guards the node by remote "
@@ -283,8 +284,9 @@ constexpr Key<NodeSpec> node_keys[] = {
     key<&NodeSpec::time_cob_id>("time_cob_id", "unchanged",
                                 "0x1012: `0x80000100` makes the device consume TIME.", bus_yml),
     key<read_error_behavior>(
-        "error_behavior", {.type = KeyType::numbered, .range = error_classes}, "unchanged",
-        "The error behaviour (0x1029) by sub-index, 0..255: `{1: 0}`.", bus_yml),
+        "error_behavior",
+        {.type = KeyType::numbered, .range = error_classes, .entries = error_reactions},
+        "unchanged", "The error behaviour (0x1029) by sub-index, 0..255: `{1: 0}`.", bus_yml),
     key<&NodeSpec::group>("group", "none", "A name that several nodes share."),
     key<&NodeSpec::on_loss>("on_loss", word_of(loss_words), "`report`",
                             "What happens when the node falls silent."),

@@ -101,7 +101,7 @@ constexpr Key<PdoSpec> pdo_keys[] = {
                              "TPDO: whether a synchronous frame that comes too late is used."),
     key<read_mpdo>("mpdo", word_of(mpdo_words), "from the EDS",
                    "Multiplexed PDO, by source address (`sam`) or by destination (`dam`)."),
-    key<read_mapping>("mapping", {.type = KeyType::list, .parts = rows_of<mapping_keys>},
+    key<read_mapping>("mapping", {.type = KeyType::mapping, .parts = rows_of<mapping_keys>},
                       "from the EDS",
                       "The objects, short `[0x6041, 0x6064:0]` with index and sub-index in "
                       "hexadecimal.",

@@ -49,7 +49,7 @@ void read_values(const KeyInput& in, WordPattern& pattern) {
     return in.error("wrong-type", in.what(), " has to be a list of values: [0x0800, 0x0B00]");
   }
   for (const YamlNode* item : in.node.items) {
-    const auto value = read_integer(*item, in.key.name, {0, 0xFFFF}, in.report());
+    const auto value = read_integer(*item, in.key.name, in.key.value.entries, in.report());
     if (value) pattern.values.push_back(static_cast<std::uint16_t>(*value));
   }
 }
@@ -57,7 +57,7 @@ void read_values(const KeyInput& in, WordPattern& pattern) {
 constexpr Key<WordPattern> pattern_keys[] = {
     required(key<&WordPattern::mask>("mask", whole(1, 0xFFFF), "",
                                      "The bits of the status word that show the state.")),
-    key<read_values>("values", {.type = KeyType::list, .range = {0, 0xFFFF}}, "all bits 1",
+    key<read_values>("values", {.type = KeyType::list, .entries = word16.range}, "all bits 1",
                      "These bits have one of these values in the state."),
 };
 

@@ -5,7 +5,7 @@ namespace {
 
 void read_scale(const KeyInput& in, UnitSpec& unit) {
   set(in, unit.scale);
-  if (*unit.scale > 0) return;
+  if (in.key.value.numbers.contains(*unit.scale)) return;
   in.error("out-of-range", in.what(),
            " has to be above 0 (SI units per count); `sign: -1` reverses the direction");
   unit.scale.value = 1;
@@ -17,7 +17,7 @@ void read_sign(const KeyInput& in, UnitSpec& unit) {
 }
 
 constexpr Key<UnitSpec> unit_keys[] = {
-    key<read_scale>("scale", {.type = KeyType::number}, "1", "SI units per count; above 0."),
+    key<read_scale>("scale", number_above(0), "1", "SI units per count; above 0."),
     key<&UnitSpec::offset>("offset", "0", "The SI value of 0 counts."),
     key<read_sign>("sign", whole(-1, 1), "1", "-1 reverses the direction."),
     key<&UnitSpec::unit>("unit", "none", "The unit of the SI value, for example `rad`."),

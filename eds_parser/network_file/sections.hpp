@@ -78,6 +78,8 @@ void read_producer(const KeyInput& in, Sourced<std::uint16_t>& producer);
 /// Reads a bit rate in kbit/s. The name `baudrate` does not state a unit, so a value that can only
 /// be meant in bit/s is converted.
 void read_bit_rate(const KeyInput& in, Sourced<std::uint32_t>& rate);
+/// The smallest `heartbeat_multiplier` leaves room for one late heartbeat.
+inline constexpr KeyValue multiplier_value = number_within({.low = 1.5});
 /// Reads `heartbeat_multiplier`.
 void read_multiplier(const KeyInput& in, Sourced<double>& multiplier);
 

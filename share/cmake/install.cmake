@@ -24,6 +24,14 @@ string(REPLACE "(../../CHANGELOG.md)" "(CHANGELOG.md)" index_page "${index_page}
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/index.md "${index_page}")
 install(FILES LICENSE CHANGELOG.md ${CMAKE_CURRENT_BINARY_DIR}/index.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
 
+# What the programs write about themselves. When takt is built for another machine, CMAKE_CROSSCOMPILING_EMULATOR runs them.
+set(written ${PROJECT_BINARY_DIR}/written)
+file(MAKE_DIRECTORY ${written})
+add_custom_command(OUTPUT ${written}/network.schema.json DEPENDS takt
+                   COMMAND takt reference network-file --json-schema > ${written}/network.schema.json)
+add_custom_target(takt_written ALL DEPENDS ${written}/network.schema.json)
+install(FILES ${written}/network.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)
+
 # systemd reads lib/systemd below /usr and below /usr/local.
 install(FILES share/systemd/taktd@.service DESTINATION lib/systemd/system)
 install(FILES share/systemd/60-takt-can.link DESTINATION lib/systemd/network)
