@@ -48,8 +48,8 @@ constexpr Key<AxisLimitsSpec> axis_keys[] = {
         "Of positions per cycle, of 0x60FF plus the velocity offset 0x60B1, and of 0x6081."),
     magnitude_key<&AxisLimitsSpec::acceleration>(
         "acceleration",
-        "Second difference of positions, difference of velocities (0x60FF plus 0x60B1), and 0x6083 "
-        "and 0x6084."),
+        "Second difference of positions, difference of velocities (0x60FF plus 0x60B1) except in "
+        "profile velocity mode, and 0x6083 and 0x6084."),
     magnitude_key<&AxisLimitsSpec::jerk>("jerk", "Not checked: for planned motion."),
     magnitude_key<&AxisLimitsSpec::following_error>(
         "following_error",

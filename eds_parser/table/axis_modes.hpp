@@ -25,4 +25,11 @@ constexpr bool follows(AxisQuantity quantity, std::int64_t mode) noexcept {
   return true;
 }
 
+/// Returns true if a drive in this mode of operation reaches set-points of this quantity along its
+/// own ramps (0x6083, 0x6084): the target velocity in profile velocity mode. A step of the
+/// set-point is then no step of the axis.
+constexpr bool has_ramps(AxisQuantity quantity, std::int64_t mode) noexcept {
+  return quantity == AxisQuantity::velocity && static_cast<std::int8_t>(mode) == 3;
+}
+
 }  // namespace takt

@@ -74,12 +74,13 @@ struct OutputLimit {
   std::optional<SignalIndex> offset{};       ///< of a target: the output that the drive adds to it
   std::optional<SignalIndex> target{};       ///< of an offset: the output that it is added to
   std::optional<SignalIndex> controlword{};  ///< 6040 of the axis, for a position
-  std::optional<SignalIndex> feedback{};  ///< 6064: value from which the first set-point may start
+  /// 6064 of a position, 606C of a target velocity: value from which the first set-point may start.
+  std::optional<SignalIndex> feedback{};
   std::optional<SignalIndex> statusword{};    ///< shows whether the drive follows set-points
   std::optional<SignalIndex> mode{};          ///< 6060, if it is an output
   std::optional<SignalIndex> mode_display{};  ///< 6061
   std::optional<SpeedOrders> orders{};        ///< of a set speed: effect of `controlword` on it
-  bool idle = false;  ///< 6060 is not an output, and the file sets a mode without `quantity`
+  std::optional<std::int64_t> fixed_mode{};   ///< mode that the file sets, if 6060 is no output
 };
 
 /// The field of OutputLimit that a value read from a device sets.

@@ -300,7 +300,7 @@ TEST_F(LimitJudges, ReadTheStateOfAnAxisFromItsControlwordToo) {
 }
 
 TEST_F(LimitJudges, HoldProfilePositionsAgainstTheRangeOnly) {
-  limit.idle = true;
+  limit.fixed_mode = 1;  // profile position
   limit.step = 10;
   limit.low = -2000;
   limit.high = 2000;
@@ -359,7 +359,7 @@ TEST_F(SumJudges, BlameTheChangeOfASum) {
 }
 
 TEST_F(SumJudges, BlameTheTargetAloneInAModeThatAddsNoOffset) {
-  limit.idle = true;
+  limit.fixed_mode = 8;  // cyclic synchronous position
   begin();
   send_both(1500, 1500);
   EXPECT_TRUE(verdict.good());

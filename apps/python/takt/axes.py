@@ -265,8 +265,8 @@ class Axes(View, Bus):
     def command_velocities(self, *velocities: float) -> None:
         """Commands target velocities (0x60FF) in modes 3 or 9 (profile, cyclic synchronous
         velocity), and returns when taktd sends them. They stay while this program is alive, until
-        stop(). Each step has to keep the limit of acceleration of the network file, and in mode 9
-        drives follow it at once: command small ones."""
+        stop(). In mode 9, drives follow each step at once, and it has to keep the limit of
+        acceleration of the network file: command small ones."""
         self._needs_position()
         self._profiles.command(TARGET_VELOCITY, velocities)
 

@@ -49,14 +49,15 @@ bool AxisLimits::device_position() {
   return true;
 }
 
-/// Limits velocities by 607F, which has the unit of 60FF. The limit also applies to the steps of
-/// positions if `units:` defines how velocities and positions relate.
+/// Limits velocities by 607F, which has the unit of 60FF and 6081. The limit also applies to the
+/// steps of positions if `units:` defines how velocities and positions relate.
 bool AxisLimits::device_velocity() {
   const ObjectKey most = object(0x607F);
   const auto& unit = node_.spec->units.velocity;
   const bool comparable =
       unit && !unit->unit.empty() && !positions_.empty() && follows_position(LimitKind::velocity);
-  if (!reports(most) || (velocities_.empty() && !comparable)) return false;
+  const std::vector<SignalIndex> magnitudes = outputs({{0x60FF, 0}, {0x60B1, 0}, {0x6081, 0}});
+  if (!reports(most) || (magnitudes.empty() && !comparable)) return false;
   LimitLine& entry = device_line(LimitKind::velocity, most, unit ? *unit->scale : 1.0);
   for (const SignalIndex signal : positions_) {
     if (!comparable) break;
@@ -64,7 +65,7 @@ bool AxisLimits::device_velocity() {
     read_at_boot(entry, signal, DeviceBound::rate, counts * cycle_seconds());
   }
   add_offset(entry);
-  for (const SignalIndex signal : velocities_) {
+  for (const SignalIndex signal : magnitudes) {
     read_at_boot(entry, signal, DeviceBound::size, 1.0);
   }
   return true;
@@ -81,7 +82,8 @@ bool AxisLimits::device_acceleration() {
   const bool of_velocities = speed && !velocities_.empty() &&
                              (is_limit_rate(unit->unit, speed->unit, LimitKind::velocity) ||
                               (of_positions && follows_position(LimitKind::velocity)));
-  if (!of_positions && !of_velocities) return false;
+  const auto profile = output(0x6083);
+  if (!of_positions && !of_velocities && !profile) return false;
   LimitLine& entry = device_line(LimitKind::acceleration, most, *unit->scale);
   const auto counts = [&](SignalIndex signal) {
     return std::abs(*unit->scale / table_.signal(signal).scale) * cycle_seconds();
@@ -95,6 +97,7 @@ bool AxisLimits::device_acceleration() {
     if (!of_velocities) break;
     read_at_boot(entry, signal, DeviceBound::rate, counts(signal));
   }
+  if (profile) read_at_boot(entry, *profile, DeviceBound::size, 1.0);
   return true;
 }
 

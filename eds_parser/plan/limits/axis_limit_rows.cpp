@@ -4,7 +4,6 @@
 
 #include "eds_parser/plan/device/node_objects.hpp"
 #include "eds_parser/plan/limits/axis_limits.hpp"
-#include "eds_parser/table/axis_modes.hpp"
 #include "eds_parser/table/pdo_table.hpp"
 
 // These functions enter what the bus thread needs, besides the limits themselves, to check the
@@ -93,6 +92,7 @@ void AxisLimits::describe_rows() {
   };
   describe(AxisQuantity::position, {{0x607A, 0}, {0x60C1, 1}}, 0x60B0);
   describe(AxisQuantity::velocity, {{0x60FF, 0}}, 0x60B1);
+  describe_start(output(0x60FF), input(0x606C));
   describe(AxisQuantity::torque, {{0x6071, 0}}, 0x60B2);
 }
 
@@ -100,8 +100,15 @@ void AxisLimits::describe_row(OutputLimit& row, AxisQuantity quantity) const {
   row.quantity = quantity;
   row.mode = output(0x6060);
   row.mode_display = input(0x6061);
-  const auto mode = configured_object(node_, object(0x6060));
-  row.idle = !row.mode && mode && !follows(quantity, *mode);
+  if (!row.mode) row.fixed_mode = configured_object(node_, object(0x6060));
+}
+
+/// Enters the actual value from which a set-point may start. Both must have the same unit.
+void AxisLimits::describe_start(std::optional<SignalIndex> target,
+                                std::optional<SignalIndex> actual) {
+  OutputLimit* const row = row_of(target);
+  if (row == nullptr || !actual) return;
+  if (table_.signal(*target).scale == table_.signal(*actual).scale) row->feedback = actual;
 }
 
 /// Returns false and warns if target and offset have different units.

@@ -55,6 +55,7 @@ class AxisLimits {
   OutputLimit* row_of(std::optional<SignalIndex> signal);
   void describe_rows();
   void describe_row(OutputLimit& row, AxisQuantity quantity) const;
+  void describe_start(std::optional<SignalIndex> target, std::optional<SignalIndex> actual);
   bool can_be_added(SignalIndex target, SignalIndex offset) const;
   void describe_position_rows(const AxisLimitsSpec& limits);
   using ObjectReader = std::optional<std::int64_t> (*)(const NodeSource& node, ObjectKey object);

@@ -259,7 +259,7 @@ std::optional<LimitBreach> OutputLimits::too_sharp(std::size_t place,
 
 bool OutputLimits::lacks_start(std::size_t place, std::int64_t mode) const noexcept {
   const Slot& slot = slots_[place];
-  if (slot.known) return false;
+  if (slot.known || limits_[place].quantity == AxisQuantity::velocity) return false;
   const bool measured = limits_[place].step != OutputLimit::none ||
                         slot.rate != OutputLimit::none || slot.bend != OutputLimit::none;
   return measured && limits_[place].feedback && !inputs_.fresh(*limits_[place].feedback) &&
@@ -290,7 +290,7 @@ std::optional<LimitBreach> OutputLimits::judge(std::size_t place, const AxisComm
   const bool each = follows_each(place, mode);
   const bool follows = obeying == Obeying::yes && enabled(place);
   const bool rests = starts_from_actual(place, command.order);
-  const bool from_last = slot.known && !rests && (!each || !slot.idle);
+  const bool from_last = !rests && starts_from_last(place, mode);
   const bool from_actual = !follows || !from_last;
   if (const auto found = outside(place, value, from_actual)) return found;
   if (!each) return std::nullopt;
@@ -305,11 +305,13 @@ std::optional<LimitBreach> OutputLimits::judge(std::size_t place, const AxisComm
     if (!found && follows) found = too_sharp(place, way);
     if (!found) return std::nullopt;
   }
-  if (!from_actual || !actual(place)) return found;
+  if (!from_actual || !mode.any() || !actual(place)) return found;
   const bool computed = command.age == SetPointAge::commanded;
   const bool lags = rests && computed && !enables(command.order);
+  // An actual velocity is measured with noise that may be larger than the step of a cycle.
+  const bool noisy = limits_[place].quantity == AxisQuantity::velocity;
   return too_far(place, {.distance = distance_from_actual(place, value, lags),
-                         .cycles = from_actual_cycles,
+                         .cycles = noisy ? longest_gap_ : from_actual_cycles,
                          .at = value,
                          .start = Start::standing});
 }

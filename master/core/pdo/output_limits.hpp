@@ -196,19 +196,15 @@ class OutputLimits {
   struct ModesFollowed {
     bool commanded = false;
     bool shown = false;
+    bool ramps = false;  ///< in both modes, the drive reaches the set-point along its own ramps
 
     /// While the drive changes the mode, it may still follow the output.
     bool any() const noexcept { return commanded || shown; }
     bool both() const noexcept { return commanded && shown; }
   };
   ModesFollowed modes_followed(std::size_t place, std::int64_t mode) const noexcept;
-  /// Returns true if steps between successive values of this output are checked. Steps of a
-  /// position are checked in the modes in which the drive follows each value. Steps of target
-  /// velocities and torques are checked in every mode, because the drive may follow them after a
-  /// change of the mode.
-  bool follows_each(std::size_t place, ModesFollowed modes) const noexcept {
-    return limits_[place].quantity != AxisQuantity::position || modes.any();
-  }
+  bool follows_each(std::size_t place, ModesFollowed modes) const noexcept;
+  bool starts_from_last(std::size_t place, ModesFollowed modes) const noexcept;
   double cycles_since(const Slot& slot, std::uint64_t cycle) const noexcept;
   /// Returns the largest permitted difference, rounded to counts that the frame can carry.
   double most(std::size_t place, double counts, double at) const noexcept;

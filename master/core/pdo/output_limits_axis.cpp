@@ -54,10 +54,34 @@ bool OutputLimits::begins(std::size_t place, std::int64_t order) const noexcept 
 OutputLimits::ModesFollowed OutputLimits::modes_followed(std::size_t place,
                                                          std::int64_t mode) const noexcept {
   const OutputLimit& limit = limits_[place];
-  const bool commanded = limit.mode ? follows(limit.quantity, mode) : !limit.idle;
-  if (!limit.mode_display) return {.commanded = commanded, .shown = commanded};
-  const bool shown = follows(limit.quantity, image_.values[*limit.mode_display]);
-  return {.commanded = limit.mode ? commanded : shown, .shown = shown};
+  // Of the two modes, one that no PDO carries counts as the other one.
+  const auto displayed =
+      limit.mode_display ? std::optional{image_.values[*limit.mode_display]} : std::nullopt;
+  const auto ordered = limit.mode ? std::optional{mode} : displayed ? displayed : limit.fixed_mode;
+  if (!ordered) return {.commanded = true, .shown = true};
+  const std::int64_t shown = displayed.value_or(*ordered);
+  return {.commanded = follows(limit.quantity, *ordered),
+          .shown = follows(limit.quantity, shown),
+          .ramps = has_ramps(limit.quantity, *ordered) && has_ramps(limit.quantity, shown)};
+}
+
+/// Returns true if steps between successive values of this output are checked. Steps of a position
+/// are checked in the modes in which the drive follows each value. Steps of target velocities and
+/// torques are checked in every mode, because the drive may follow them after a change of the mode,
+/// but not of a velocity that the drive reaches along its own ramps.
+bool OutputLimits::follows_each(std::size_t place, ModesFollowed modes) const noexcept {
+  if (limits_[place].quantity == AxisQuantity::position) return modes.any();
+  return !modes.ramps;
+}
+
+/// Returns true if the next step begins at the value that was sent last, and not at the actual
+/// value. That value counts for nothing if the drive did not have to follow it at once.
+bool OutputLimits::starts_from_last(std::size_t place, ModesFollowed modes) const noexcept {
+  const Slot& slot = slots_[place];
+  if (!slot.known) return false;
+  if (!slot.idle || !follows_each(place, modes)) return true;
+  // Without an actual velocity, the value that was sent last is the best that is known.
+  return limits_[place].quantity == AxisQuantity::velocity && !actual(place);
 }
 
 bool OutputLimits::covered_by_target(std::size_t place, std::int64_t mode) const noexcept {

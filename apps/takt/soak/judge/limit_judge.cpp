@@ -17,7 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint16_t axis_objects = 0x800;  // distance of two axes in a device, CiA 402
-constexpr std::uint16_t actual_position = 0x6064;
+constexpr std::uint16_t first_axis_objects = 0x6000;
 constexpr double cycles_behind = 4;           // age of the actual position that the master knows
 constexpr std::size_t fewest_remembered = 8;  // positions kept even if they are old
 constexpr double real_rounding = 0x1p-20;     // relative rounding of a value of type REAL
@@ -142,15 +142,26 @@ void LimitJudge::note_mode(Place& place, std::uint64_t bits) noexcept {
   place.mode = mode;
 }
 
-/// Returns true if the axis follows this set-point. `mode_doubt` tells whether this is certain.
-bool LimitJudge::in_force(const Place& place) const noexcept {
+std::optional<std::int64_t> LimitJudge::mode_of(const Place& place) const noexcept {
   const bool known = place.limit->mode || place.limit->mode_display;
-  return known ? takt::follows(place.limit->quantity, place.mode) : !place.limit->idle;
+  return known ? std::optional{place.mode} : place.limit->fixed_mode;
 }
 
-/// Returns true if only the range counts, because positions do not lead the axis.
+/// Returns true if the axis follows this set-point. `mode_doubt` tells whether this is certain.
+bool LimitJudge::in_force(const Place& place) const noexcept {
+  const auto mode = mode_of(place);
+  return !mode || takt::follows(place.limit->quantity, *mode);
+}
+
+/// Returns true if only the range counts, because positions do not lead the axis, or because the
+/// drive has ramps of its own.
 bool LimitJudge::in_profile(const Place& place) const noexcept {
-  return place.limit->quantity == AxisQuantity::position && !in_force(place);
+  return ramps(place) || (place.limit->quantity == AxisQuantity::position && !in_force(place));
+}
+
+bool LimitJudge::ramps(const Place& place) const noexcept {
+  const auto mode = mode_of(place);
+  return mode && has_ramps(place.limit->quantity, *mode);
 }
 
 /// Returns the distance between two positions, for a rotary axis the shorter one. A distance of a
@@ -168,7 +179,7 @@ Way LimitJudge::way_to(const Place& place, double value, Time now) const noexcep
           .cycles = cycles_between(place.when, now, plan_.cycle.period, most_cycles_)};
 }
 
-/// Returns how far from its actual position an axis at rest may be sent, in counts.
+/// Returns how far from its actual value an axis may be sent in so many cycles, in counts.
 double LimitJudge::reach(const Place& place, double cycles) const noexcept {
   const double rate = std::min(place.limit->step, place.limit->rate);
   if (rate != OutputLimit::none) return std::ceil(rate * cycles);
@@ -179,11 +190,14 @@ bool LimitJudge::near_axis(const Place& place, double value) {
   const Signal& feedback = plan_.layout.signals[*place.limit->feedback];
   const TrueAxis axis =
       true_axis(world_, feedback.node,
-                static_cast<unsigned>(feedback.object.index - actual_position) / axis_objects);
-  double way = std::abs(length(place, static_cast<double>(axis.position), value));
+                static_cast<unsigned>(feedback.object.index - first_axis_objects) / axis_objects);
+  const bool turns = place.limit->quantity == AxisQuantity::velocity;
+  const auto truth = static_cast<double>(turns ? axis.velocity : axis.position);
+  double way = std::abs(length(place, truth, value));
   for (const Seen& seen : place.actual) {
     way = std::min(way, std::abs(length(place, seen.position, value)));
   }
+  if (turns) return way <= reach(place, most_cycles_);
   const double period = std::chrono::duration<double>(plan_.cycle.period).count();
   const double moved = std::abs(static_cast<double>(axis.velocity)) * period * cycles_behind;
   return way <= reach(place, cycles_behind) + moved;
@@ -293,18 +307,20 @@ void LimitJudge::judge_place(Place& place, Change change, Time now) {
   const bool own = is_own(place);
   if (own) place.doubt = state_doubt;
   if (!own) judge_range(place, value);
-  const bool free = own || in_profile(place) ||
-                    (!follows(place) && place.limit->feedback && near_axis(place, value));
+  const bool from_actual = !follows(place) || place.ramped;
+  const bool free =
+      own || in_profile(place) || (from_actual && place.limit->feedback && near_axis(place, value));
   std::optional<Way> way;
-  if (place.value) way = way_to(place, value, now);
+  if (place.value && !place.ramped) way = way_to(place, value, now);
   if (way && !free) judge_way(place, value, *way);
   if (way && !free && follows(place)) judge_bend(place, value, *way);
-  if (!place.value && !free && place.limit->feedback) {
-    report_violation(place, value, LimitKind::step,
-                     "the first value is far from the actual position");
+  const bool begins = !place.value || place.ramped;
+  if (begins && !free && place.limit->feedback && in_force(place)) {
+    report_violation(place, value, LimitKind::step, "the first value is far from the actual one");
   }
   place.last_way = follows(place) && !in_profile(place) ? way : std::nullopt;
   place.value = value;
+  place.ramped = ramps(place);
   place.target = sent_[place.limit->signal - plan_.layout.inputs];
   if (place.limit->offset) place.offset = sent_[*place.limit->offset - plan_.layout.inputs];
   place.when = now;

@@ -59,23 +59,26 @@ class LimitJudge {
     Time when{};                               ///< when `value` was first sent
     std::optional<Way> last_way{};  ///< distance to `value`; empty if the drive did not follow
     std::int64_t mode = 0;          ///< 6060 as sent, otherwise 6061 as received
+    bool ramped = false;            ///< `value` was sent in a mode in which the drive has ramps
     bool enables = false;           ///< the last controlword sent enables operation
     bool enabled = true;            ///< the last statusword received is enabled
     unsigned doubt = 0;             ///< cycles in which the master may not know the state
     unsigned mode_doubt = 0;        ///< as `doubt`, for the mode
     Change change = Change::none;
-    std::deque<Seen> actual{};  ///< actual positions since cycles_[0], newest last
+    std::deque<Seen> actual{};  ///< actual values since cycles_[0], newest last
   };
 
   void note_order(SignalIndex signal, std::uint64_t bits);
   void note_input(SignalIndex signal, std::uint64_t bits);
   bool follows(const Place& place) const noexcept;
   static void note_mode(Place& place, std::uint64_t bits) noexcept;
+  std::optional<std::int64_t> mode_of(const Place& place) const noexcept;
   bool in_force(const Place& place) const noexcept;
   std::optional<double> limited_value(const Place& place) const noexcept;
   bool is_own(const Place& place) const noexcept;
   void judge_place(Place& place, Change change, Time now);
   bool in_profile(const Place& place) const noexcept;
+  bool ramps(const Place& place) const noexcept;
   double length(const Place& place, double from, double to) const noexcept;
   Way way_to(const Place& place, double value, Time now) const noexcept;
   double reach(const Place& place, double cycles) const noexcept;

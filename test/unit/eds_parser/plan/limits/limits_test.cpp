@@ -55,10 +55,10 @@ TEST(Limits, OfPositionNameThePositionOffsetBecauseTheSumIsChecked) {
 }
 
 TEST(Limits, CountNoStepWhereTheFileSetsAModeWithoutSetPoints) {
-  for (const auto& [mode, idle] : {std::pair{"3", true}, {"8", false}, {"7", false}}) {
+  for (const auto& [mode, number] : {std::pair{"3", 3}, {"8", 8}}) {
     const Compiled net = drive(
         "    limits: {step: 0.01}\n    sdo: [{index: 0x6060, value: " + std::string{mode} + "}]\n");
-    EXPECT_EQ(only(net).idle, idle) << mode;
+    EXPECT_EQ(only(net).fixed_mode, number);
   }
 }
 
@@ -71,6 +71,35 @@ TEST(Limits, OfVelocityBoundTheTargetVelocityAndItsChange) {
   EXPECT_DOUBLE_EQ(only(net).rate, 4.0);  // 20 rad/s^2 x 2 ms / 0.01 rad/s
   EXPECT_EQ(only(net).rate_of, LimitKind::acceleration);
   EXPECT_FALSE(only(net).wraps);
+}
+
+TEST(Limits, OfVelocityAndAccelerationBoundThoseOfAProfileInTheirOwnUnits) {
+  for (const int index : {0x6081, 0x6083, 0x6084}) {
+    const Compiled net = compile(
+        "master: {sync_period: 2000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n"
+        "    rpdo: {2: {enabled: true, mapping: [{index: 0x607A}, {index: " +
+            std::to_string(index) + "}]}}\n" + std::string{units} +
+            "    limits: {velocity: 2.0, acceleration: 20}\n",
+        tiny_eds() + entry("6083", "Profile acceleration", 7, "rw", "1", true) +
+            entry("6084", "Profile deceleration", 7, "rw", "1", true));
+    EXPECT_THAT(net.complaints(), IsEmpty());
+    ASSERT_EQ(net.plan.limits.outputs.size(), 2U);
+    const OutputLimit& limit = net.plan.limits.outputs[1];
+    EXPECT_EQ(limit.high, 200.0);  // 2 rad/s / 0.01 rad/s, and 20 rad/s^2 / 0.1 rad/s^2
+    EXPECT_EQ(limit.range, index == 0x6081 ? LimitKind::velocity : LimitKind::acceleration);
+    EXPECT_EQ(limit.rate, OutputLimit::none);
+  }
+}
+
+TEST(Limits, OfATargetVelocityStartAtTheActualOne) {
+  const Compiled net = compile(
+      "master: {sync_period: 2000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n"
+      "    tpdo: {1: {mapping: [{index: 0x6041}, {index: 0x606C}]}}\n"
+      "    rpdo: {2: {enabled: true, cob_id: auto, mapping: [{index: 0x60FF}]}}\n" +
+          std::string{units} + "    limits: {acceleration: 20}\n",
+      tiny_eds());
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_EQ(only(net).feedback, net.plan.layout.find(0, {0x606C, 0}, false));
 }
 
 TEST(Limits, OfASecondAxisMayDiffer) {

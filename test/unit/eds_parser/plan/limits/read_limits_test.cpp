@@ -1,4 +1,5 @@
 // Limits that the file does not give, and that the boot reads from the drive.
+#include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -73,6 +74,23 @@ TEST(Limits, OfTheDeviceAreReadOnceForSeveralOutputsAndBoundVelocities) {
   EXPECT_EQ(net.plan.limits.device[2].factor, 1.0);
   EXPECT_EQ(net.plan.limits.device[4].bound, DeviceBound::rate);
   EXPECT_DOUBLE_EQ(net.plan.limits.device[4].factor, 0.02);  // 0.1 rad/s^2 x 2 ms / 0.01 rad/s
+}
+
+TEST(Limits, OfTheDeviceBoundTheVelocityAndTheAccelerationOfAProfile) {
+  for (const int index : {0x6081, 0x6083}) {
+    const Compiled net =
+        telling_drive("", "{index: 0x607A}, {index: " + std::to_string(index) + "}",
+                      limit_objects() + entry("6083", "Profile acceleration", 7, "rw", "1", true));
+    EXPECT_THAT(reads(net), ElementsAre("607D:01", "607D:02", "607F:00", "60C5:00"));
+    ASSERT_EQ(net.plan.limits.outputs.size(), 2U);
+    const OutputLimit& limit = net.plan.limits.outputs[1];
+    EXPECT_EQ(limit.range, index == 0x6081 ? LimitKind::velocity : LimitKind::acceleration);
+    const auto bound =
+        std::ranges::find(net.plan.limits.device, limit.signal, &DeviceLimit::signal);
+    ASSERT_NE(bound, net.plan.limits.device.end());
+    EXPECT_EQ(bound->bound, DeviceBound::size);
+    EXPECT_EQ(bound->factor, 1.0);
+  }
 }
 
 TEST(Limits, OfTheFileSpareTheBootTheReading) {
