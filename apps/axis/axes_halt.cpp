@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -108,31 +109,45 @@ Done Axes::State::quick_stop() {
   return *rested;
 }
 
+/// An axis stands when its drive says so, or when its position has stayed within a few counts: an
+/// encoder may flicker at standstill.
 std::optional<Done> Axes::State::wait_for_rest(std::span<const Index> chosen,
                                                Interruption interruption) {
-  constexpr double standing = 2.5;  // counts by which the position of an axis may vary
+  struct Window {
+    double counts;
+    std::int64_t cycles;
+    std::int64_t since = 0;  ///< the newest cycle in which an axis has left it
+    Eigen::VectorXd middle{};
+  };
+  // Both windows stand for the same speed; the second one is for fine encoders.
+  std::array windows{Window{.counts = 2.5, .cycles = settled_cycles},
+                     Window{.counts = 25, .cycles = 10 * settled_cycles}};
   const AxisControl& known = group.axes();
-  std::optional<std::int64_t> moved;  // the newest cycle in which an axis has moved
-  Eigen::VectorXd before = known.positions();
-  const auto may_move = [&](Index axis) {
+  const auto leaves = [&](Index axis, const Window& window) {
     const State402 state = known.drive(axis).state();
     const bool brakes = known.drive(axis).enabled() || state == State402::quick_stop_active;
-    const double distance = std::abs(known.positions()(axis) - before(axis));
-    if (has_own_set_points(known.mode(axis))) {
-      const auto position = known.signals(axis).position;
-      const double count = position ? std::abs(group.input().signals()[*position].scale) : 0.0;
-      return brakes && distance > standing * count;
-    }
-    const bool reached = (known.statusword(axis) & target_reached) != 0;
-    return brakes && distance > 0.0 && !reached;
+    const bool says_rest =
+        !has_own_set_points(known.mode(axis)) && (known.statusword(axis) & target_reached) != 0;
+    const AxisSignals& signals = known.signals(axis);
+    if (!brakes || says_rest || !signals.position) return false;
+    const bool shows_rest = signals.velocity && !group.input().stale(*signals.velocity) &&
+                            group.input().values()[*signals.velocity] == 0;
+    const double counts = shows_rest ? windows.back().counts : window.counts;
+    const double distance = std::abs(known.positions()(axis) - window.middle(axis));
+    return distance > counts * std::abs(group.input().signals()[*signals.position].scale);
   };
   const auto at_rest = [&] {
     const std::int64_t cycle = group.input().cycle();
-    if (!moved || moving() || std::ranges::any_of(chosen, may_move)) {
-      moved = cycle;
-      before = known.positions();
+    bool stands = false;
+    for (Window& window : windows) {
+      const auto left = [&](Index axis) { return leaves(axis, window); };
+      if (window.middle.size() == 0 || moving() || std::ranges::any_of(chosen, left)) {
+        window.since = cycle;
+        window.middle = known.positions();
+      }
+      stands |= cycle >= window.since + window.cycles;
     }
-    return cycle >= *moved + settled_cycles;
+    return stands;
   };
   return wait_until(at_rest, options.longest, interruption);
 }

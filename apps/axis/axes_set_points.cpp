@@ -19,11 +19,6 @@ constexpr std::chrono::seconds sent_time{1};
 /// An axis that stands for this time before its target has not reached it.
 constexpr std::chrono::seconds standing_time{1};
 
-/// Objects of profile position mode, CiA 402-2.
-constexpr std::uint16_t profile_velocity = 0x6081;
-constexpr std::uint16_t profile_acceleration = 0x6083;
-constexpr std::uint16_t profile_deceleration = 0x6084;
-
 std::string list_of(std::span<const DriveMode> modes) {
   std::string text;
   for (const DriveMode mode : modes) {
@@ -88,6 +83,8 @@ Done Axes::State::command_velocities(const Values& values) {
                              .output = &AxisSignals::target_velocity,
                              .object = "0x60FF"};
   if (Done ready = check_set_points(values, velocities); !ready) return ready;
+  if (!has_set_points_) learn_decelerations();
+  if (!is_current()) return restarted();
   group.axes().set_velocities(in_group(values, 0.0));
   return send_set_points(values, velocities);
 }
@@ -286,7 +283,9 @@ Done Axes::State::wait_for_profiles(std::chrono::nanoseconds longest) {
 /// go on when the Halt ends.
 Done Axes::State::stop_set_points() {
   profile_targets_.reset();
+  const auto slowed = slow_down();
   end_set_points();
+  if (slowed && !*slowed) return *slowed;
   AxisControl& known = group.axes();
   std::vector<Index> led;
   std::vector<Index> positioned;

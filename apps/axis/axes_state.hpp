@@ -19,6 +19,11 @@
 
 namespace takt {
 
+/// Objects of profile position mode, CiA 402-2.
+inline constexpr std::uint16_t profile_velocity = 0x6081;
+inline constexpr std::uint16_t profile_acceleration = 0x6083;
+inline constexpr std::uint16_t profile_deceleration = 0x6084;
+
 inline std::unexpected<Obstacle> obstacle(Obstacle::Kind kind, std::string text) {
   return std::unexpected{Obstacle{.kind = kind, .text = std::move(text)}};
 }
@@ -30,7 +35,7 @@ inline constexpr std::int64_t settled_cycles = 10;
 
 /// What an Axes knows and does. Waiting is in axes_state.cpp; each other file has the code of the
 /// calls that it names: drives, halt, homing, motions, stream, gear, speed, set_points, objects,
-/// signals and probe.
+/// signals, ramps and probe.
 class Axes::State {
  public:
   using Clock = ProgramClock;
@@ -143,6 +148,9 @@ class Axes::State {
   Done set_mode(std::span<const Index> chosen, DriveMode wanted);
   Done check_set_points(const Values& values, const SetPoints& kind);
   Done send_set_points(const Values& values, const SetPoints& kind);
+  void learn_decelerations();
+  Eigen::VectorXd sent_velocities() const;
+  std::optional<Done> slow_down();
   /// Sets the target velocities and target torques to 0.
   void end_set_points();
   Eigen::VectorXd in_group(const Values& values, double otherwise) const;
@@ -259,6 +267,7 @@ class Axes::State {
   Readiness readiness_ = Readiness::not_enabled;
   std::map<std::size_t, std::int64_t> held_;  // raw values of outputs, by their place in the image
   bool has_set_points_ = false;               // velocities or torques were commanded, and not ended
+  Eigen::VectorXd decelerations_{};           // of target velocities that drives follow at once
   std::optional<Eigen::VectorXd> profile_targets_;  // the newest since the axes were stopped
   Clock::time_point last_values_{};                 // the newest image from which outputs were sent
   std::string lost_text_;         // why set-points were given up, until a call tells it

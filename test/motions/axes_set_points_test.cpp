@@ -178,6 +178,35 @@ TEST_F(AxesSetPoints, VelocitiesAreHeldUntilAStop) {
   }
 }
 
+TEST_F(AxesSetPoints, AStopLowersAVelocityThatTheDrivesFollowAtOnce) {
+  ASSERT_NO_FATAL_FAILURE(open(cyclic_velocity));
+  constexpr double deceleration = 10.0;  // rad/s^2
+  for (const char* node : {"shoulder", "elbow"}) {
+    ASSERT_TRUE(axes_->write_number<std::uint32_t>(
+        node, 0x6084, 0, static_cast<std::uint32_t>(deceleration / MotionBus::scale)));
+  }
+  ASSERT_TRUE(axes_->command_velocities(Eigen::Vector2d{4.0, -2.0}));
+  ASSERT_TRUE(axes_->run(20ms));
+  std::int64_t before = value(shoulder, 0x60FF);
+  std::int64_t steepest = 0;
+  int falling = 0;
+  bus_.each_cycle = [&] {
+    const std::int64_t now = value(shoulder, 0x60FF);
+    steepest = std::max(steepest, std::abs(now - before));
+    if (now != before) ++falling;
+    before = now;
+  };
+  const Done stopped = axes_->stop();
+  bus_.each_cycle = {};
+  ASSERT_TRUE(stopped) << stopped.error().text;
+  EXPECT_EQ(value(shoulder, 0x60FF), 0);
+  EXPECT_EQ(value(elbow, 0x60FF), 0);
+  EXPECT_GT(falling, 50);
+  // A step of a command that has come late stands for some cycles.
+  EXPECT_LT(static_cast<double>(steepest) * MotionBus::scale, 1.0);
+  expect_rest();
+}
+
 TEST_F(AxesSetPoints, AreGivenUpAfterASilence) {
   ASSERT_NO_FATAL_FAILURE(open(cyclic_velocity, 2s));
   // A busy machine may make this program silent for 2 s.
