@@ -145,6 +145,39 @@ TEST_F(SimulatedMotions, AProgramThatIsKilledLeavesItsMotionToItsTimeout) {
   EXPECT_THAT(outcome.motions[7].text, HasSubstr("taktd stops")) << "it is the end of the run";
 }
 
+TEST_F(SimulatedMotions, AnEndThatTheScriptDoesNotExpectDecidesTheExitCode) {
+  const std::string enable = "motions:\n  - {kind: enable, axes: [shoulder]}\n";
+  const auto code = [&](const std::string& entries) {
+    const SimulationOutcome outcome = run(enable + entries, 5s);
+    std::ostringstream text;
+    print_text(text, outcome);
+    const bool told = text.str().find("NOT `") != std::string::npos;
+    EXPECT_EQ(told, unexpected_ends(outcome.motions) != 0) << text.str();
+    return exit_code_of(outcome);
+  };
+  const std::string far = "  - {kind: move, at: 2s, to: 50, velocity: 2, acceleration: 20";
+  const std::string jog = "  - {kind: jog, at: 2s, velocity: 1, acceleration: 10";
+  const std::string stop = "  - {kind: stop, at: 3s}\n";
+  const std::string loss = "faults:\n  - {kind: power_off, node: shoulder, at: 3s, for: 100ms}\n";
+  const std::string beyond = "  - {kind: move, at: 2s, to: 500";
+
+  EXPECT_EQ(code("  - {kind: move, at: 2s, to: 1, velocity: 2, acceleration: 20}\n"), 0);
+  EXPECT_EQ(code("  - {kind: move, at: 2s, to: 1, expect: stopped}\n"), 1);
+  EXPECT_EQ(code(far + "}\n"), 1) << "it does not arrive";
+  EXPECT_EQ(code(far + ", expect: ended}\n"), 0);
+  EXPECT_EQ(code(far + "}\n" + stop), 1);
+  EXPECT_EQ(code(far + ", expect: ended}\n" + stop), 0);
+  EXPECT_EQ(code(far + ", expect: stopped}\n" + loss), 0);
+  EXPECT_EQ(code(far + ", expect: ended}\n" + loss), 1);
+  EXPECT_EQ(code(beyond + "}\n"), 1);
+  EXPECT_EQ(code(beyond + ", expect: refused}\n"), 0);
+  EXPECT_EQ(code(jog + "}\n"), 0) << "the end of the run is that of a jog";
+  EXPECT_EQ(code(jog + "}\n" + stop), 0);
+  EXPECT_EQ(code(jog + "}\n" + loss), 1);
+  EXPECT_EQ(code(jog + ", expect: stopped}\n" + stop), 1) << "no fault has stopped it";
+  EXPECT_EQ(code("  - {kind: stop, at: 9s}\n"), 1) << "it never begins";
+}
+
 TEST_F(SimulatedMotions, EqualSeedsGiveEqualResults) {
   const std::string text =
       "motions:\n"
@@ -185,6 +218,8 @@ TEST_F(SimulatedMotions, ErrorsOfTheFileSayWhereAndWhatWasExpected) {
   EXPECT_THAT(only_finding("  - {kind: enable, axes: [knee]}\n"),
               HasSubstr("`knee` is no axis that taktd can move: shoulder, elbow"));
   EXPECT_THAT(only_finding("  - {kind: kill}\n"), HasSubstr("`kill` needs a time"));
+  EXPECT_THAT(only_finding("  - {kind: stop, expect: refuse}\n"),
+              HasSubstr(":2:26: error: `refuse` is no end of a motion, did you mean `refused`?"));
   EXPECT_THAT(only_finding("  - {kind: stop, at: 2s}\n  - {kind: stop, at: 1s}\n"),
               HasSubstr(":3:5: error: `at` is earlier than that of line 2"));
   EXPECT_THAT(only_finding("  - {kind: jog, velocity: 1}\n  - {kind: stop}\n"),
@@ -206,6 +241,8 @@ TEST_F(SimulatedMotions, TheDemoIsReadAndRuns) {
   std::ostringstream text;
   print_text(text, outcome);
   EXPECT_THAT(text.str(), HasSubstr("2 programs with motions; 2 axes moved"));
+  EXPECT_THAT(text.str(), HasSubstr("13 of 13 ended as expected"));
+  EXPECT_EQ(exit_code_of(outcome), 0);
 }
 
 }  // namespace

@@ -51,8 +51,7 @@ int run(const SimulateArguments& arguments) {
   const double simulated = std::chrono::duration<double>(outcome.simulated).count();
   std::cerr << "simulated " << simulated << " s in " << took.count()
             << " s: " << static_cast<long>(simulated / took.count()) << " times real time\n";
-  if (outcome.stop != StopResult::confirmed) return 6;
-  return outcome.mandatory_failed ? 4 : 0;
+  return exit_code_of(outcome);
 }
 
 }  // namespace
@@ -95,7 +94,8 @@ void add_simulate(CLI::App& app, int& exit_code) {
       "Motions: a list under `motions:`, each {kind, at, program, axes ...}. Kinds: enable, "
       "reset,\n"
       "move (to), move_by (by), jog (velocity), gear (leader), stream (points), stop, home,\n"
-      "disable, kill. share/doc/simulation.md has their keys.\n\n"
+      "disable, kill. `expect` says how an entry is to end; if one ends otherwise, the exit code\n"
+      "is 1. share/doc/simulation.md has their keys.\n\n"
       "Example:\n"
       "  takt simulate share/demo/two_axes.yaml --for 100s --move\n"
       "  takt simulate share/demo/two_axes.yaml --applications 2 --faults crash.yaml\n"

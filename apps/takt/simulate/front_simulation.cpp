@@ -56,7 +56,7 @@ class FrontRun {
         forger_{plan_, lcm_, [](SignalIndex, std::int64_t) {}, random_.fork(3)},
         applications_{make_programs(Part::application)},
         rivals_{make_programs(Part::rival)},
-        motions_{plan_, options.motions, lcm_, clocks_, random_.fork(4)},
+        motions_{plan_, options.motions, lcm_, clocks_, random_.fork(4), options.duration},
         program_faults_{
             {lcm_, daemon_, applications_, rivals_, forger_}, options.programs, options.faults} {
     world_.observe(&log_);

@@ -17,7 +17,7 @@ namespace {
 using Keys = std::span<const std::string_view>;
 
 constexpr std::string_view unnamed_program = "program";
-constexpr std::array<std::string_view, 4> common_keys{"kind", "at", "program", "axes"};
+constexpr std::array<std::string_view, 5> common_keys{"kind", "at", "program", "axes", "expect"};
 constexpr std::array<std::string_view, 4> bound_keys{"velocity", "acceleration", "jerk",
                                                      "following_error"};
 constexpr std::array<std::string_view, 1> move_keys{"to"};
@@ -164,6 +164,7 @@ void MotionListReader::check_time(const YAML::Node& entry, const MotionEntry& mo
 void MotionListReader::read_key(MotionEntry& motion, const EntryItem& item, std::size_t axes) {
   const std::string& key = item.key;
   if (contains(common_keys, key)) {
+    if (key == "expect") return read_expectation(motion, item);
     if (key != "at") return;
     motion.at.emplace();
     return reader_.read_time(*motion.at, item);
@@ -190,6 +191,15 @@ void MotionListReader::read_key(MotionEntry& motion, const EntryItem& item, std:
   } else {
     read_gear(motion.gear, item, axes);
   }
+}
+
+void MotionListReader::read_expectation(MotionEntry& motion, const EntryItem& item) {
+  if (!contains(expectable_ends, item.text)) {
+    return reader_.error(
+        item.mark, "motion-value",
+        "`" + item.text + "` is no end of a motion" + did_you_mean(item.text, expectable_ends));
+  }
+  motion.expect = item.text;
 }
 
 void MotionListReader::read_gear(Gear& gear, const EntryItem& item, std::size_t axes) {

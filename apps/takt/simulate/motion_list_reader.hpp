@@ -23,6 +23,7 @@ class MotionListReader {
   MotionScript* program_of(const YAML::Node& entry);
   std::vector<std::string> read_axes(const YAML::Node& list);
   void read_key(MotionEntry& motion, const EntryItem& item, std::size_t axes);
+  void read_expectation(MotionEntry& motion, const EntryItem& item);
   void check_time(const YAML::Node& entry, const MotionEntry& motion, const MotionScript& script);
   void read_gear(Gear& gear, const EntryItem& item, std::size_t axes);
   /// Reads one number, or one for each axis.

@@ -81,10 +81,16 @@ Json motion_json(const MotionOutcome& motion) {
                     {"largest_acceleration", axis.acceleration},
                     {"largest_following_error", axis.following_error}});
   }
-  return {{"program", motion.program},  {"kind", std::string{name(motion.kind)}},
-          {"line", motion.pos.line},    {"begin_ms", time(motion.begin)},
-          {"end_ms", time(motion.end)}, {"result", motion.result},
-          {"text", motion.text},        {"axes", std::move(axes)}};
+  return {{"program", motion.program},
+          {"kind", std::string{name(motion.kind)}},
+          {"line", motion.pos.line},
+          {"begin_ms", time(motion.begin)},
+          {"end_ms", time(motion.end)},
+          {"result", motion.result},
+          {"text", motion.text},
+          {"expect", motion.expect},
+          {"as_expected", motion.as_expected()},
+          {"axes", std::move(axes)}};
 }
 
 Json front_json(const FrontOutcome& front) {

@@ -96,15 +96,21 @@ void print_stop(std::ostream& out, const SimulationOutcome& outcome) {
 
 void print_motions(std::ostream& out, const SimulationOutcome& outcome) {
   if (outcome.programs == 0) return;
+  const std::size_t unexpected = unexpected_ends(outcome.motions);
+  out << fmt::format("  motions      {} of {} ended as expected\n",
+                     outcome.motions.size() - unexpected, outcome.motions.size());
   const auto time = [](const std::optional<Time>& when) {
     return when ? fmt::format("{:.3f}", seconds(*when)) : "-";
   };
   out << fmt::format("\n  {:>4}  {:12} {:8} {:>9} {:>9}  {}\n", "line", "program", "motion",
                      "begin s", "end s", "result");
   for (const MotionOutcome& motion : outcome.motions) {
-    out << fmt::format("  {:>4}  {:12} {:8} {:>9} {:>9}  {}{}{}\n", motion.pos.line, motion.program,
-                       name(motion.kind), time(motion.begin), time(motion.end), motion.result,
-                       motion.text.empty() ? "" : ": ", printable_text(motion.text));
+    const std::string judged =
+        motion.as_expected() ? std::string{} : fmt::format(" (NOT `{}`)", motion.expect);
+    out << fmt::format("  {:>4}  {:12} {:8} {:>9} {:>9}  {}{}{}{}\n", motion.pos.line,
+                       motion.program, name(motion.kind), time(motion.begin), time(motion.end),
+                       motion.result, judged, motion.text.empty() ? "" : ": ",
+                       printable_text(motion.text));
     for (const AxisMaxima& axis : motion.axes) {
       if (axis.velocity == 0.0) continue;
       out << fmt::format(

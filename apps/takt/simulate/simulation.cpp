@@ -73,6 +73,12 @@ class BusRun {
 
 }  // namespace
 
+int exit_code_of(const SimulationOutcome& outcome) {
+  if (outcome.stop != StopResult::confirmed) return 6;
+  if (outcome.mandatory_failed) return 4;
+  return unexpected_ends(outcome.motions) == 0 ? 0 : 1;
+}
+
 SimulationOutcome simulate(const LoadedNetwork& network, const SimulationOptions& options) {
   if (options.applications != 0 || !options.motions.empty()) {
     return simulate_front(network, options);

@@ -108,6 +108,10 @@ struct SimulationOutcome {
   bool mandatory_failed = false;         ///< a mandatory node never booted
 };
 
+/// Returns the exit code of `takt simulate`: 6 if the stop was not confirmed, 4 if a mandatory node
+/// never booted, 1 if a motion ended otherwise than expected, or 0.
+int exit_code_of(const SimulationOutcome& outcome);
+
 /// Runs the whole master and its devices in virtual time. Throws std::runtime_error if the candump
 /// file cannot be written.
 SimulationOutcome simulate(const LoadedNetwork& network, const SimulationOptions& options);

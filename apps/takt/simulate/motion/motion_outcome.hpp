@@ -31,7 +31,15 @@ struct MotionOutcome {
   std::string result = "not_begun";  ///< `done`, `running`, `not_begun`, or why it ended otherwise
   std::string text{};                ///< a sentence about an end other than `done`
   std::vector<AxisMaxima> axes{};
+  std::string expect = "done";  ///< one of expectable_ends
+  /// True if the script has ended it: its next entry, `kill`, or the end of the run.
+  bool by_script = false;
+
+  bool as_expected() const { return by_script ? expect == "ended" : expect == result; }
 };
+
+/// Returns the number of entries that ended otherwise than expected.
+std::size_t unexpected_ends(const std::vector<MotionOutcome>& outcomes);
 
 /// Returns the number of axes that have moved.
 std::size_t moved_axes(const std::vector<MotionOutcome>& outcomes);

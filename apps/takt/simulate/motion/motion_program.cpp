@@ -99,7 +99,7 @@ void MotionProgram::take(const MotionEntry& entry, MotionOutcome& outcome) {
   } else if (entry.kind != MotionKind::enable && entry.kind != MotionKind::reset) {
     end_newest("stopped", next);
   }
-  const Done done = command(entry);
+  const Done done = command(entry, outcome);
   if (setting_.is_killed()) return;
   if (done && goes_on(entry.kind)) {
     newest_ = &outcome;
@@ -109,7 +109,7 @@ void MotionProgram::take(const MotionEntry& entry, MotionOutcome& outcome) {
   if (!done && done.error().kind == Obstacle::Kind::restarted) open();
 }
 
-Done MotionProgram::command(const MotionEntry& entry) {
+Done MotionProgram::command(const MotionEntry& entry, MotionOutcome& outcome) {
   using enum MotionKind;
   switch (entry.kind) {
     case enable:
@@ -125,7 +125,7 @@ Done MotionProgram::command(const MotionEntry& entry) {
     case gear:
       return axes_->gear(entry.gear, entry.bounds);
     case stream:
-      return this->stream(entry);
+      return this->stream(entry, outcome);
     case stop:
       return axes_->stop();
     case home:
@@ -153,12 +153,13 @@ Done MotionProgram::move_by(const MotionEntry& entry) {
 
 /// The library waits for room while points are given. The next entry of the script ends this wait,
 /// and the library then stops the axes.
-Done MotionProgram::stream(const MotionEntry& entry) {
+Done MotionProgram::stream(const MotionEntry& entry, MotionOutcome& outcome) {
   if (Done begun = axes_->begin_stream(entry.bounds); !begun) return begun;
   interrupt_ = time_of_next();
   Done given = axes_->stream(entry.points);
   interrupt_.reset();
   if (!given && given.error().kind == Obstacle::Kind::interrupted) {
+    outcome.by_script = true;
     given.error().text =
         fmt::format("line {} of the program has ended it", entries_[next_ + 1].pos.line);
   }
@@ -170,6 +171,7 @@ void MotionProgram::end_newest(std::string_view result, std::string text) {
   MotionOutcome& outcome = *std::exchange(newest_, nullptr);
   outcome.end = program_time();
   outcome.result = result;
+  outcome.by_script = true;
   outcome.text = std::move(text);
 }
 
@@ -177,7 +179,9 @@ void MotionProgram::settle(MotionOutcome& outcome, const Done& done) {
   if (setting_.is_killed()) return;
   outcome.end = program_time();
   outcome.result = done ? "done" : result_of(done.error().kind);
-  if (!done) outcome.text = done.error().text;
+  if (done) return;
+  outcome.text = done.error().text;
+  outcome.by_script |= program_time() >= setting_.end_of_run;
 }
 
 }  // namespace takt

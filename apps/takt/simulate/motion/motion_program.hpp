@@ -17,6 +17,7 @@ class MotionProgram {
  public:
   struct Setting {
     std::string bus;
+    Time end_of_run;  ///< taktd begins its ordered stop
     std::function<std::unique_ptr<Transport>()> connect;
     std::function<bool()> is_killed;
   };
@@ -32,9 +33,9 @@ class MotionProgram {
   void pass_until(Time when);
   void wait_for_end();
   void take(const MotionEntry& entry, MotionOutcome& outcome);
-  Done command(const MotionEntry& entry);
+  Done command(const MotionEntry& entry, MotionOutcome& outcome);
   Done move_by(const MotionEntry& entry);
-  Done stream(const MotionEntry& entry);
+  Done stream(const MotionEntry& entry, MotionOutcome& outcome);
   std::optional<Time> time_of_next() const;
   void end_newest(std::string_view result, std::string text);
   void settle(MotionOutcome& outcome, const Done& done);

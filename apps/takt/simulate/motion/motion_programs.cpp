@@ -32,8 +32,12 @@ std::vector<MotionOutcome> outcomes_of(const BusPlan& plan, const MotionScripts&
                       .number = static_cast<std::int8_t>(axis->number + 1)});
     }
     for (const MotionEntry& entry : script.entries) {
-      outcomes.push_back(
-          {.program = script.program, .kind = entry.kind, .pos = entry.pos, .axes = axes});
+      const std::string usual = is_endless(entry.kind) ? "ended" : "done";
+      outcomes.push_back({.program = script.program,
+                          .kind = entry.kind,
+                          .pos = entry.pos,
+                          .axes = axes,
+                          .expect = entry.expect.empty() ? usual : entry.expect});
     }
   }
   return outcomes;
@@ -60,6 +64,11 @@ std::size_t moved_axes(const std::vector<MotionOutcome>& outcomes) {
   return moved.size();
 }
 
+std::size_t unexpected_ends(const std::vector<MotionOutcome>& outcomes) {
+  const auto unexpected = std::ranges::count(outcomes, false, &MotionOutcome::as_expected);
+  return static_cast<std::size_t>(unexpected);
+}
+
 std::vector<std::string> motion_axis_names(const BusPlan& plan) {
   std::vector<std::string> names;
   for (const MotionAxis& axis : motion_axes(plan)) names.push_back(name_of(plan, axis));
@@ -67,8 +76,11 @@ std::vector<std::string> motion_axis_names(const BusPlan& plan) {
 }
 
 MotionPrograms::MotionPrograms(const BusPlan& plan, const MotionScripts& scripts, VirtualLcm& lcm,
-                               const Clocks& clocks, sim::Random random)
-    : plan_{plan}, outcomes_{outcomes_of(plan, scripts)}, observer_{lcm, plan.name, outcomes_} {
+                               const Clocks& clocks, sim::Random random, Time end_of_run)
+    : plan_{plan},
+      end_of_run_{end_of_run},
+      outcomes_{outcomes_of(plan, scripts)},
+      observer_{lcm, plan.name, outcomes_} {
   std::size_t first = 0;
   for (const MotionScript& script : scripts) {
     programs_.push_back(
@@ -103,6 +115,7 @@ void MotionPrograms::start(Program& program) {
   VirtualProcess& process = *program.process;
   program.code = std::make_unique<MotionProgram>(
       MotionProgram::Setting{.bus = plan_.name,
+                             .end_of_run = end_of_run_,
                              .connect = [&process] { return process.connect(); },
                              .is_killed = [&process] { return process.is_killed(); }},
       program.script, std::span{begin, count}, std::span{outcomes_}.subspan(first, count));
@@ -121,17 +134,20 @@ void MotionPrograms::kill(Program& program, Time now) {
       outcome.end = now;
       outcome.result = "killed";
       outcome.text = "the program was killed meanwhile";
+      outcome.by_script = true;
     }
   }
   outcomes.back().begin = outcomes.back().end = now;
   outcomes.back().result = "done";
   outcomes.back().text.clear();
+  outcomes.back().by_script = false;
   ++program.next;
   start(program);
 }
 
 std::vector<MotionOutcome> MotionPrograms::end() {
   for (Program& program : programs_) program.process->kill();
+  for (MotionOutcome& outcome : outcomes_) outcome.by_script |= outcome.begin && !outcome.end;
   std::ranges::sort(outcomes_, {}, [](const MotionOutcome& one) { return one.pos.line; });
   return std::move(outcomes_);
 }

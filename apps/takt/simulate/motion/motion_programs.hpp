@@ -19,8 +19,9 @@ std::vector<std::string> motion_axis_names(const BusPlan& plan);
 /// starts with the run. At an entry of the kind `kill`, it is killed and starts again.
 class MotionPrograms {
  public:
+  /// `end_of_run` is the time at which taktd begins its ordered stop.
   MotionPrograms(const BusPlan& plan, const MotionScripts& scripts, VirtualLcm& lcm,
-                 const Clocks& clocks, sim::Random random);
+                 const Clocks& clocks, sim::Random random, Time end_of_run);
 
   void join(Stage& stage);
   /// Ends all programs, and returns an outcome of each entry, in the order of the file.
@@ -47,6 +48,7 @@ class MotionPrograms {
   void kill(Program& program, Time now);
 
   const BusPlan& plan_;
+  Time end_of_run_;
   std::vector<MotionOutcome> outcomes_;
   MotionObserver observer_;
   Killer killer_;

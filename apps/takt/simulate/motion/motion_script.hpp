@@ -43,12 +43,20 @@ constexpr bool is_endless(MotionKind kind) noexcept {
   return kind == MotionKind::jog || kind == MotionKind::gear;
 }
 
+/// How an entry may be expected to end: `ended` by its own script, or a word of
+/// MotionOutcome::result.
+inline constexpr std::array<std::string_view, 9> expectable_ends{
+    "done",   "ended",     "refused",   "stopped",  "blocked",
+    "no_bus", "time_over", "restarted", "wrong_use"};
+
 /// One entry of `motions:`.
 struct MotionEntry {
   MotionKind kind = MotionKind::enable;
   SourcePos pos{};
   /// When the program does it. Empty: as soon as the entry before has ended.
   std::optional<Time> at{};
+  /// One of expectable_ends. Empty: `ended` for an endless motion, `done` for the others.
+  std::string expect{};
   Eigen::VectorXd values{};  ///< targets of a move, distances of a move_by, velocities of a jog
   MotionBounds bounds{};
   Gear gear{};
