@@ -1,4 +1,5 @@
 // Programs that command motions by a file, in a whole taktd in virtual time.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sstream>
@@ -228,6 +229,79 @@ TEST_F(SimulatedMotions, ErrorsOfTheFileSayWhereAndWhatWasExpected) {
               HasSubstr("program `program` commands the axes elbow"));
   EXPECT_THAT(only_finding("  - {kind: stream, points: [{time: 1s, position: 1}]}\n"),
               HasSubstr("a point is a map with `time`, `position` and `velocity`"));
+}
+
+class SimulatedSpeeds : public SimulatedMotions {
+ protected:
+  void use(const std::string& demo) {
+    network_ = load_network(TAKT_SOURCE_DIR "/share/demo/" + demo + ".yaml");
+  }
+  static std::string largest_speed(const MotionOutcome& motion) {
+    return fmt::format("{:.0f} {}", motion.axes.at(0).velocity, motion.axes.at(0).unit);
+  }
+};
+
+TEST_F(SimulatedSpeeds, InvertersRunReverseAndStop) {
+  const std::string entries =
+      "motions:\n"
+      "  - {kind: enable}\n"
+      "  - {kind: jog, at: 3s, velocity: 10}\n"
+      "  - {kind: jog, at: 8s, velocity: -20}\n"
+      "  - {kind: stop, at: 13s}\n"
+      "  - {kind: disable}\n";
+  for (const auto& [demo, unit] : {std::pair{"astraada_drv28", " Hz"}, {"lenze8400", " %"}}) {
+    use(demo);
+    const SimulationOutcome outcome = run(entries, 20s);
+
+    ASSERT_EQ(outcome.motions.size(), 5u) << demo;
+    EXPECT_EQ(unexpected_ends(outcome.motions), 0u) << demo;
+    EXPECT_EQ(outcome.motions[1].result, "replaced");
+    EXPECT_EQ(outcome.motions[2].result, "stopped");
+    EXPECT_EQ(largest_speed(outcome.motions[1]), std::string{"10"} + unit);
+    EXPECT_EQ(largest_speed(outcome.motions[2]), std::string{"20"} + unit);
+    EXPECT_GT(*outcome.motions[3].end - *outcome.motions[3].begin, 200ms) << "along the ramp";
+    EXPECT_EQ(outcome.axes_moved, 1u);
+    std::ostringstream text;
+    print_text(text, outcome);
+    EXPECT_THAT(text.str(), HasSubstr(std::string{": at most 20"} + unit + "\n"));
+  }
+}
+
+TEST_F(SimulatedSpeeds, ARefusalAFaultAndAKillEndThem) {
+  use("astraada_drv28");
+  const SimulationOutcome outcome =
+      run("motions:\n"
+          "  - {kind: enable}\n"
+          "  - {kind: jog, at: 3s, velocity: 51, expect: refused}\n"
+          "  - {kind: jog, at: 4s, velocity: 20, expect: stopped}\n"
+          "  - {kind: enable, at: 16s}\n"
+          "  - {kind: jog, at: 18s, velocity: 20}\n"
+          "  - {kind: kill, at: 20s}\n"
+          "faults:\n"
+          "  - {kind: power_off, node: pump, at: 8s, for: 2s}\n",
+          24s);
+  ASSERT_EQ(outcome.motions.size(), 6u);
+  for (const MotionOutcome& one : outcome.motions) {
+    EXPECT_TRUE(one.as_expected()) << one.pos.line << ": " << one.result << ": " << one.text;
+  }
+  EXPECT_THAT(outcome.motions[1].text, HasSubstr("above the limit"));
+  EXPECT_EQ(outcome.motions[4].result, "killed");
+  EXPECT_EQ(outcome.front->fallbacks, 1u) << "taktd stops it when its program is dead";
+}
+
+TEST_F(SimulatedSpeeds, WhatNeedsAPositionIsAnErrorOfTheFile) {
+  const auto only_finding = [&](const std::string& entries) {
+    const FaultFile file = read("motions:\n" + entries);
+    EXPECT_EQ(file.findings.size(), 1u) << entries;
+    return file.findings.empty() ? std::string{} : to_string(file.findings.front());
+  };
+  use("astraada_drv28");
+  EXPECT_THAT(only_finding("  - {kind: move, to: 1}\n"),
+              HasSubstr(":2:12: error: `move` needs a position, and `pump` is a speed axis: use "
+                        "`jog` and `stop`"));
+  EXPECT_THAT(only_finding("  - {kind: jog, velocity: 1, jerk: 2}\n"),
+              HasSubstr("`jerk` has no meaning for `jog` of a speed axis"));
+  EXPECT_THAT(only_finding("  - {kind: enable, axes: [pomp]}\n"), HasSubstr("pump"));
 }
 
 TEST_F(SimulatedMotions, TheDemoIsReadAndRuns) {

@@ -60,8 +60,9 @@ class FrontRun {
         program_faults_{
             {lcm_, daemon_, applications_, rivals_, forger_}, options.programs, options.faults} {
     world_.observe(&log_);
-    daemon_.hear(
-        {.image = {}, .notice = {}, .event = [this](const Event& event) { announce(event); }});
+    daemon_.hear({.image = [this](const ImageView& image, Time) { motions_.see(image); },
+                  .notice = {},
+                  .event = [this](const Event& event) { announce(event); }});
     stage_.add(program_faults_);
     stage_.add(daemon_);
     for (const auto& one : applications_) stage_.add(*one);

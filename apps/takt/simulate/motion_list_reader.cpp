@@ -41,11 +41,12 @@ bool contains(Keys known, std::string_view key) {
   return std::ranges::find(known, key) != known.end();
 }
 
-std::vector<std::string_view> keys_of(MotionKind kind) {
+std::vector<std::string_view> keys_of(MotionKind kind, bool of_speed) {
   std::vector<std::string_view> all{common_keys.begin(), common_keys.end()};
   const Keys own = own_keys(kind);
   all.insert(all.end(), own.begin(), own.end());
-  if (goes_on(kind)) all.insert(all.end(), bound_keys.begin(), bound_keys.end());
+  const Keys bounds = of_speed ? Keys{bound_keys}.first(2) : Keys{bound_keys};
+  if (goes_on(kind)) all.insert(all.end(), bounds.begin(), bounds.end());
   return all;
 }
 
@@ -64,7 +65,12 @@ std::string joined(const std::vector<std::string>& names) {
 }  // namespace
 
 MotionListReader::MotionListReader(EntryReader& reader, const BusPlan& plan)
-    : reader_{reader}, known_{motion_axis_names(plan)} {}
+    : reader_{reader},
+      with_positions_{motion_axis_names(plan)},
+      with_speeds_{speed_axis_names(plan)},
+      known_{with_positions_} {
+  known_.insert(known_.end(), with_speeds_.begin(), with_speeds_.end());
+}
 
 void MotionListReader::read(const YAML::Node& list) {
   for (const YAML::Node& entry : list) read_entry(entry);
@@ -83,8 +89,13 @@ void MotionListReader::read_entry(const YAML::Node& entry) {
   }
   MotionScript* script = program_of(entry);
   if (script == nullptr) return;
+  if (is_speed_axis(script->axes.front()) && needs_position(*kind)) {
+    return reader_.error(named.Mark(), "motion-kind",
+                         "`" + std::string{name(*kind)} + "` needs a position, and `" +
+                             script->axes.front() + "` is a speed axis: use `jog` and `stop`");
+  }
   MotionEntry motion{.kind = *kind, .pos = place_of(entry.Mark())};
-  for (const auto& pair : entry) read_key(motion, EntryItem{pair}, script->axes.size());
+  for (const auto& pair : entry) read_key(motion, EntryItem{pair}, *script);
   const Keys own = own_keys(*kind);
   if (!own.empty() && !entry[std::string{own.front()}]) {
     reader_.error(entry.Mark(), "motion-value",
@@ -104,7 +115,8 @@ MotionScript* MotionListReader::program_of(const YAML::Node& entry) {
     return nullptr;
   }
   const YAML::Node list = entry["axes"];
-  std::vector<std::string> axes = list ? read_axes(list) : known_;
+  const std::vector<std::string>& all = with_positions_.empty() ? with_speeds_ : with_positions_;
+  std::vector<std::string> axes = list ? read_axes(list) : all;
   const auto known = std::ranges::find(scripts_, program, &MotionScript::program);
   if (known == scripts_.end()) {
     if (axes.empty()) {
@@ -134,11 +146,20 @@ std::vector<std::string> MotionListReader::read_axes(const YAML::Node& list) {
                     "`" + axis + "` is no axis that taktd can move: " + joined(known_));
     } else if (std::ranges::find(axes, axis) != axes.end()) {
       reader_.error(one.Mark(), "motion-axes", "`" + axis + "` is named twice");
+    } else if (!axes.empty() && is_speed_axis(axis) != is_speed_axis(axes.front())) {
+      reader_.error(one.Mark(), "motion-axes",
+                    "`" + axis + "` and `" + axes.front() +
+                        "` are of two kinds: a program commands either axes with positions or "
+                        "speed axes");
     } else {
       axes.push_back(std::move(axis));
     }
   }
   return axes;
+}
+
+bool MotionListReader::is_speed_axis(const std::string& axis) const {
+  return std::ranges::find(with_speeds_, axis) != with_speeds_.end();
 }
 
 /// A program does its entries in their order.
@@ -161,7 +182,10 @@ void MotionListReader::check_time(const YAML::Node& entry, const MotionEntry& mo
   }
 }
 
-void MotionListReader::read_key(MotionEntry& motion, const EntryItem& item, std::size_t axes) {
+void MotionListReader::read_key(MotionEntry& motion, const EntryItem& item,
+                                const MotionScript& script) {
+  const std::size_t axes = script.axes.size();
+  const bool of_speed = is_speed_axis(script.axes.front());
   const std::string& key = item.key;
   if (contains(common_keys, key)) {
     if (key == "expect") return read_expectation(motion, item);
@@ -169,11 +193,11 @@ void MotionListReader::read_key(MotionEntry& motion, const EntryItem& item, std:
     motion.at.emplace();
     return reader_.read_time(*motion.at, item);
   }
-  const std::vector<std::string_view> possible = keys_of(motion.kind);
+  const std::vector<std::string_view> possible = keys_of(motion.kind, of_speed);
   if (!contains(possible, key)) {
     return reader_.error(item.key_mark, "unknown-key",
                          "`" + key + "` has no meaning for `" + std::string{name(motion.kind)} +
-                             "`" + did_you_mean(key, possible));
+                             (of_speed ? "` of a speed axis" : "`") + did_you_mean(key, possible));
   }
   if (key == "to" || key == "by" || (key == "velocity" && motion.kind == MotionKind::jog)) {
     motion.values = read_each(item, axes);

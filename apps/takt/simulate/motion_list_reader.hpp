@@ -20,9 +20,10 @@ class MotionListReader {
 
  private:
   void read_entry(const YAML::Node& entry);
+  bool is_speed_axis(const std::string& axis) const;
   MotionScript* program_of(const YAML::Node& entry);
   std::vector<std::string> read_axes(const YAML::Node& list);
-  void read_key(MotionEntry& motion, const EntryItem& item, std::size_t axes);
+  void read_key(MotionEntry& motion, const EntryItem& item, const MotionScript& script);
   void read_expectation(MotionEntry& motion, const EntryItem& item);
   void check_time(const YAML::Node& entry, const MotionEntry& motion, const MotionScript& script);
   void read_gear(Gear& gear, const EntryItem& item, std::size_t axes);
@@ -34,7 +35,9 @@ class MotionListReader {
   void read_point(PathPoint& point, const EntryItem& item, std::size_t axes);
 
   EntryReader& reader_;
-  std::vector<std::string> known_;  // names of the axes of the bus
+  std::vector<std::string> with_positions_;  // names of the axes of the bus
+  std::vector<std::string> with_speeds_;
+  std::vector<std::string> known_;  // both
   MotionScripts scripts_;
 };
 

@@ -73,13 +73,16 @@ Json motion_json(const MotionOutcome& motion) {
   const auto time = [](const std::optional<Time>& when) {
     return when ? Json(ms(*when)) : Json(nullptr);
   };
+  const auto of_position = [](const AxisMaxima& axis, double value) {
+    return axis.speed_word ? Json(nullptr) : Json(value);
+  };
   Json axes = Json::array();
   for (const AxisMaxima& axis : motion.axes) {
     axes.push_back({{"axis", axis.axis},
                     {"unit", axis.unit},
                     {"largest_velocity", axis.velocity},
-                    {"largest_acceleration", axis.acceleration},
-                    {"largest_following_error", axis.following_error}});
+                    {"largest_acceleration", of_position(axis, axis.acceleration)},
+                    {"largest_following_error", of_position(axis, axis.following_error)}});
   }
   return {{"program", motion.program},
           {"kind", std::string{name(motion.kind)}},

@@ -113,6 +113,10 @@ void print_motions(std::ostream& out, const SimulationOutcome& outcome) {
                        printable_text(motion.text));
     for (const AxisMaxima& axis : motion.axes) {
       if (axis.velocity == 0.0) continue;
+      if (axis.speed_word) {
+        out << fmt::format("        {}: at most {:.4g} {}\n", axis.axis, axis.velocity, axis.unit);
+        continue;
+      }
       out << fmt::format(
           "        {}: at most {:.4g} {}/s, {:.4g} {}/s^2, following error {:.3g} {}\n", axis.axis,
           axis.velocity, axis.unit, axis.acceleration, axis.unit, axis.following_error, axis.unit);

@@ -15,9 +15,11 @@ constexpr std::size_t observer_room = 1000;  // messages
 
 void enlarge(double& largest, double value) { largest = std::max(largest, std::abs(value)); }
 
+bool is_in_progress(const MotionOutcome& outcome) { return outcome.begin && !outcome.end; }
+
 void take(const axis_motion_t& motion, MotionOutcome& outcome) {
   for (AxisMaxima& axis : outcome.axes) {
-    if (axis.node_id != motion.node_id || axis.number != motion.axis) continue;
+    if (axis.speed_word || axis.node_id != motion.node_id || axis.number != motion.axis) continue;
     enlarge(axis.following_error, motion.following_error);
     enlarge(axis.velocity, motion.velocity);
     enlarge(axis.acceleration, motion.acceleration);
@@ -37,10 +39,21 @@ void MotionObserver::act(Time) {
     const auto part = decode<motion_t>(data);
     if (!part) return;
     for (MotionOutcome& outcome : outcomes_) {
-      if (!outcome.begin || outcome.end) continue;
+      if (!is_in_progress(outcome)) continue;
       for (const axis_motion_t& motion : part->axes) take(motion, outcome);
     }
   });
+}
+
+void MotionObserver::see(const ImageView& image) {
+  for (MotionOutcome& outcome : outcomes_) {
+    if (!is_in_progress(outcome)) continue;
+    for (AxisMaxima& axis : outcome.axes) {
+      if (!axis.speed_word) continue;
+      const SpeedWord& word = *axis.speed_word;
+      enlarge(axis.velocity, static_cast<double>(image.values[word.signal]) * word.scale);
+    }
+  }
 }
 
 }  // namespace takt

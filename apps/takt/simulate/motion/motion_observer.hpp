@@ -5,6 +5,7 @@
 #include "apps/takt/simulate/motion/motion_outcome.hpp"
 #include "apps/takt/simulate/program/stage.hpp"
 #include "apps/takt/simulate/program/virtual_lcm.hpp"
+#include "master/rt/exchange/process_image.hpp"
 
 namespace takt {
 
@@ -15,6 +16,8 @@ class MotionObserver final : public Actor {
   MotionObserver(VirtualLcm& lcm, const std::string& bus, std::span<MotionOutcome> outcomes);
   Time next() const noexcept override { return lcm_.next_arrival(); }
   void act(Time now) override;
+  /// Takes the speeds of the speed axes from an image.
+  void see(const ImageView& image);
 
  private:
   VirtualEndpoint& lcm_;

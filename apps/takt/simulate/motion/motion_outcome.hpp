@@ -5,20 +5,29 @@
 #include <vector>
 
 #include "apps/takt/simulate/motion/motion_script.hpp"
+#include "eds_parser/table/pdo_table.hpp"
 #include "eds_parser/table/time.hpp"
 
 namespace takt {
 
+/// The words of a speed axis that tell its speed.
+struct SpeedWord {
+  SignalIndex signal = 0;  ///< actual speed, or the set speed if no TPDO has the actual one
+  double scale = 1.0;      ///< speed = raw value x scale
+};
+
 /// The largest magnitudes that taktd has reported for an axis while an entry was in progress, in
-/// the unit of the axis and in seconds.
+/// the unit of the axis and in seconds. `velocity` is commanded; for a speed axis, it is that of
+/// `speed_word`, and the others are 0.
 struct AxisMaxima {
   std::string axis;
-  std::string unit;              ///< empty for raw counts
-  std::int16_t node_id = 0;      ///< as in axis_motion_t, as the next one
-  std::int8_t number = 0;        ///< of the axis in its device, from 1
-  double following_error = 0.0;  ///< commanded minus actual position
-  double velocity = 0.0;         ///< commanded
-  double acceleration = 0.0;     ///< commanded
+  std::string unit;          ///< of positions; of a speed axis: of speeds. Empty for raw counts
+  std::int16_t node_id = 0;  ///< as in axis_motion_t, as the next one
+  std::int8_t number = 0;    ///< of the axis in its device, from 1
+  std::optional<SpeedWord> speed_word{};  ///< of a speed axis
+  double following_error = 0.0;           ///< commanded minus actual position
+  double velocity = 0.0;
+  double acceleration = 0.0;  ///< commanded
 };
 
 /// What has become of an entry of `motions:`.

@@ -16,20 +16,34 @@ std::string name_of(const BusPlan& plan, const MotionAxis& axis) {
   return axis.number == 0 ? node : node + "." + std::to_string(axis.number + 1);
 }
 
+/// Makes the maxima of all axes that programs can command, without a value.
+std::vector<AxisMaxima> maxima_of(const BusPlan& plan) {
+  std::vector<AxisMaxima> all;
+  for (const MotionAxis& axis : motion_axes(plan)) {
+    all.push_back({.axis = name_of(plan, axis),
+                   .unit = plan.layout.signals[axis.target].unit,
+                   .node_id = plan.nodes[axis.node_index].id.value(),
+                   .number = static_cast<std::int8_t>(axis.number + 1)});
+  }
+  for (const SpeedAxisPlan& axis : plan.speed_axes) {
+    const auto actual = axis.actual_speed;
+    all.push_back({.axis = plan.nodes[axis.node_index].name,
+                   .unit = axis.unit,
+                   .node_id = plan.nodes[axis.node_index].id.value(),
+                   .speed_word = SpeedWord{.signal = actual.value_or(axis.set_speed),
+                                           .scale = actual ? axis.actual_scale : axis.set_scale}});
+  }
+  return all;
+}
+
 /// Makes an outcome of each entry, for an entry that has not begun.
 std::vector<MotionOutcome> outcomes_of(const BusPlan& plan, const MotionScripts& scripts) {
-  const std::vector<MotionAxis> known = motion_axes(plan);
+  const std::vector<AxisMaxima> known = maxima_of(plan);
   std::vector<MotionOutcome> outcomes;
   for (const MotionScript& script : scripts) {
     std::vector<AxisMaxima> axes;
     for (const std::string& wanted : script.axes) {
-      const auto axis = std::ranges::find_if(
-          known, [&](const MotionAxis& one) { return name_of(plan, one) == wanted; });
-      if (axis == known.end()) continue;
-      axes.push_back({.axis = wanted,
-                      .unit = plan.layout.signals[axis->target].unit,
-                      .node_id = plan.nodes[axis->node_index].id.value(),
-                      .number = static_cast<std::int8_t>(axis->number + 1)});
+      axes.push_back(*std::ranges::find(known, wanted, &AxisMaxima::axis));
     }
     for (const MotionEntry& entry : script.entries) {
       const std::string usual = is_endless(entry.kind) ? "ended" : "done";
@@ -72,6 +86,14 @@ std::size_t unexpected_ends(const std::vector<MotionOutcome>& outcomes) {
 std::vector<std::string> motion_axis_names(const BusPlan& plan) {
   std::vector<std::string> names;
   for (const MotionAxis& axis : motion_axes(plan)) names.push_back(name_of(plan, axis));
+  return names;
+}
+
+std::vector<std::string> speed_axis_names(const BusPlan& plan) {
+  std::vector<std::string> names;
+  for (const SpeedAxisPlan& axis : plan.speed_axes) {
+    names.push_back(plan.nodes[axis.node_index].name);
+  }
   return names;
 }
 

@@ -14,6 +14,8 @@ namespace takt {
 
 /// Returns the names of the axes that taktd can move, in the order of motion_axes().
 std::vector<std::string> motion_axis_names(const BusPlan& plan);
+/// Returns the names of the speed axes, in the order of BusPlan::speed_axes.
+std::vector<std::string> speed_axis_names(const BusPlan& plan);
 
 /// The programs of a run that command motions by scripts, beside the taktd of the run. A program
 /// starts with the run. At an entry of the kind `kill`, it is killed and starts again.
@@ -24,6 +26,8 @@ class MotionPrograms {
                  const Clocks& clocks, sim::Random random, Time end_of_run);
 
   void join(Stage& stage);
+  /// Call this with each image of taktd.
+  void see(const ImageView& image) { observer_.see(image); }
   /// Ends all programs, and returns an outcome of each entry, in the order of the file.
   std::vector<MotionOutcome> end();
 

@@ -43,6 +43,11 @@ constexpr bool is_endless(MotionKind kind) noexcept {
   return kind == MotionKind::jog || kind == MotionKind::gear;
 }
 
+/// Returns true for the calls that a speed axis refuses.
+constexpr bool needs_position(MotionKind kind) noexcept {
+  return (goes_on(kind) && kind != MotionKind::jog) || kind == MotionKind::home;
+}
+
 /// How an entry may be expected to end: `ended` by its own script, or a word of
 /// MotionOutcome::result.
 inline constexpr std::array<std::string_view, 9> expectable_ends{
