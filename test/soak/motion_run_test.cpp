@@ -23,6 +23,8 @@ class MotionDefects : public testing::Test {
       groups += outcome.groups;
       gears += outcome.gears;
       streams += outcome.streams;
+      judged_streams += outcome.judged_streams;
+      judged_gears += outcome.judged_gears;
       if (!outcome.violation) continue;
       what += fmt::format("seed {}: {}: {}\n", seed, outcome.violation->invariant,
                           outcome.violation->what);
@@ -49,17 +51,38 @@ class MotionDefects : public testing::Test {
   std::uint64_t groups = 0;
   std::uint64_t gears = 0;
   std::uint64_t streams = 0;
+  std::uint64_t judged_streams = 0;
+  std::uint64_t judged_gears = 0;
   std::string what;
 };
 
 TEST_F(MotionDefects, NotAtAllBreaksNothing) {
-  seeds = 10;
   EXPECT_FALSE(breaks({}, "")) << what;
   EXPECT_GT(motions, 100U);
   EXPECT_GT(arrivals, 20U);
   EXPECT_GT(groups, 0U);
   EXPECT_GT(gears, 0U);
   EXPECT_GT(streams, 0U);
+  EXPECT_GT(judged_streams, 0U);
+  EXPECT_GT(judged_gears, 0U);
+}
+
+/// From point 5 on, the daemon gets each point with a time that is one cycle later.
+TEST_F(MotionDefects, AStreamIsLateByACycle) {
+  const auto late = [](motion_stream_t& stream) {
+    std::int64_t number = stream.first_point;
+    for (motion_point_t& point : stream.points) {
+      if (number++ >= 5) point.time += 0.002;
+    }
+  };
+  EXPECT_TRUE(breaks({.stream = late}, "a stream keeps to its path")) << what;
+}
+
+TEST_F(MotionDefects, AGearHasAnotherRatio) {
+  const auto longer = [](motion_gear_t& gear) {
+    for (double& numerator : gear.numerator) numerator *= 1 + 1e-4;
+  };
+  EXPECT_TRUE(breaks({.gear = longer}, "a gear keeps its ratio")) << what;
 }
 
 /// The daemon lets each motion outlive the silence of its sender by 10 s, and the drive with it.

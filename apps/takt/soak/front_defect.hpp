@@ -5,6 +5,7 @@
 #include <takt/image_t.hpp>
 #include <takt/motion_command_t.hpp>
 #include <takt/motion_gear_t.hpp>
+#include <takt/motion_stream_t.hpp>
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
@@ -32,6 +33,8 @@ struct FrontDefect {
       motion{};
   /// Changes a gear before the daemon judges it.
   std::function<void(motion_gear_t& gear)> gear{};
+  /// Changes a message about a stream before the daemon judges it.
+  std::function<void(motion_stream_t& stream)> stream{};
   /// Returns the instance that a program uses. `own` is its random one.
   std::function<std::int64_t(unsigned program, std::int64_t own)> instance{};
   /// Returns false if the program shall ignore this image.

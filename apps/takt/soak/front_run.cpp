@@ -109,6 +109,7 @@ class FrontWalk {
                         {.from = front_calm,
                          .until = front_calm + options.duration,
                          .mean_pause = slowness_of(options) * Time{400ms}},
+                        [this](Time until) { wire_.disturbed(until); },
                         options.verbose} {
     world_.observe(&listener_);
     daemon_.hear({.image = [this](const ImageView& image, Time now) { judge_wait(image, now); },
@@ -125,6 +126,7 @@ class FrontWalk {
       });
     }
     if (options_.front.gear) daemon_.rewrite(options_.front.gear);
+    if (options_.front.stream) daemon_.rewrite(options_.front.stream);
     stage_.add(program_faults_);
     stage_.add(daemon_);
     for (const auto& application : applications_) stage_.add(*application);
@@ -151,6 +153,8 @@ class FrontWalk {
              .groups = wire_.motions().groups(),
              .gears = wire_.motions().orders().gears(),
              .streams = wire_.motions().orders().streams(),
+             .judged_streams = wire_.motions().paths().streams(),
+             .judged_gears = wire_.motions().paths().gears(),
              .forged = forger_.sent(),
              .program_faults = program_faults_.count()},
             options_.seed,
@@ -167,12 +171,18 @@ class FrontWalk {
     options.commanded = [this, number](const command_t& command, Time computed_from) {
       judge_command(command, {.sender = SenderBit{1} << number, .computed_from = computed_from});
     };
-    options.motion_commanded = [this, number](const motion_command_t& command, Time computed_from,
-                                              Time points_until) {
+    options.motion_commanded = [this, number](const CommandedMotion& motion) {
+      const motion_command_t& command = motion.command;
       if (!daemon_.runs() || command.session != daemon_.session()) return;
       const bool lasts = command.kind == "alive" || command.kind == "points";
       if (options_.verbose && !lasts) announce(number, command);
-      wire_.commanded({command, SenderBit{1} << number, computed_from, points_until}, world_.now());
+      wire_.commanded({.command = command,
+                       .sender = SenderBit{1} << number,
+                       .computed_from = motion.computed_from,
+                       .points_until = motion.points_until,
+                       .gear = motion.gear,
+                       .stream = motion.stream},
+                      world_.now());
     };
     options.released = [this, number](Time now) { wire_.released(SenderBit{1} << number, now); };
     options.deaf = [this](const std::string& what) {

@@ -1,6 +1,7 @@
 #include "apps/takt/soak/random_program_faults.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "apps/takt/soak/soak_trace.hpp"
 
@@ -8,13 +9,20 @@ namespace takt::soak {
 
 using namespace std::chrono_literals;
 
+namespace {
+
+constexpr Time aftermath = 1500ms;
+
+}  // namespace
+
 RandomProgramFaults::RandomProgramFaults(Cast cast, sim::Random random, const Span& span,
-                                         bool verbose)
+                                         std::function<void(Time until)> disturbed, bool verbose)
     : cast_{cast},
       random_{random},
       next_{span.from},
       until_{span.until},
       mean_pause_{span.mean_pause},
+      disturbed_{std::move(disturbed)},
       verbose_{verbose} {}
 
 /// Returns the duration of a fault: mostly short, sometimes longer than every time to live.
@@ -142,7 +150,9 @@ void RandomProgramFaults::slow_down_lcm(Time now) {
   agenda_.add(now + lasts, [this] { cast_.lcm.set_delay(VirtualLcm::usual_delay); });
 }
 
+/// Messages that were sent during the fault may come, or time out, for some time after it.
 void RandomProgramFaults::announce(Time now, const char* what, Time span) const {
+  disturbed_(now + span + aftermath);
   if (!verbose_) return;
   const double ms = 1e-6 * static_cast<double>(span.count());
   print_at(now, span == Time{} ? what : fmt::format("{} for {:.3f} ms", what, ms));

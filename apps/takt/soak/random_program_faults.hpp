@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -37,7 +38,9 @@ class RandomProgramFaults final : public Actor {
     Time mean_pause = std::chrono::milliseconds{400};
   };
 
-  RandomProgramFaults(Cast cast, sim::Random random, const Span& span, bool verbose);
+  /// `disturbed` is called with each fault, and with the time at which its effects are over.
+  RandomProgramFaults(Cast cast, sim::Random random, const Span& span,
+                      std::function<void(Time until)> disturbed, bool verbose);
 
   Time next() const noexcept override;
   void act(Time now) override;
@@ -64,6 +67,7 @@ class RandomProgramFaults final : public Actor {
   Time next_;
   Time until_;
   Time mean_pause_;
+  std::function<void(Time until)> disturbed_;
   bool verbose_;
   Agenda agenda_;
   bool daemon_dies_ = false;

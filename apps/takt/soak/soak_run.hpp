@@ -51,6 +51,8 @@ struct SoakCounts {
   std::uint64_t groups = 0;          ///< groups whose begin was seen and judged
   std::uint64_t gears = 0;           ///< gears that the programs commanded
   std::uint64_t streams = 0;         ///< streams that the programs began
+  std::uint64_t judged_streams = 0;  ///< of these, compared with their paths up to the ends
+  std::uint64_t judged_gears = 0;    ///< gears that were compared with their leaders, locked
   std::uint64_t homings = 0;         ///< homing runs of programs that have ended well
   std::uint64_t forged = 0;          ///< forged messages
   std::uint64_t program_faults = 0;  ///< faults of programs: stalls, deaths, rivals, replays ...

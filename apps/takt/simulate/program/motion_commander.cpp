@@ -22,6 +22,9 @@ constexpr double reach_time = 3.0;  // s of a quick motion to the farthest targe
 constexpr double part_of_range = 0.5;
 constexpr double near = 0.1;  // part of the reach within which most targets are
 constexpr Time longest_path = 8s;
+constexpr double part_of_leader = 0.6;  // of the limits of its follower
+constexpr Time time_to_lock = 1s;       // from a gear to the motion of its leader
+constexpr Time time_to_lead = 3s;       // from this motion to the next one
 constexpr unsigned rival = 7;
 constexpr std::array<std::int32_t, 6> timeouts{0, 0, 100, 200, 1000, 3000};  // ms
 
@@ -99,6 +102,7 @@ void MotionCommander::start(sim::Random random) {
   gears_ = gear_random_.chance(0.4);
   streams_ = gear_random_.chance(0.4);
   path_ = {};
+  leading_.reset();
 }
 
 void MotionCommander::see(SignalIndex target, std::int64_t counts) noexcept {
@@ -175,6 +179,33 @@ std::optional<motion_command_t> MotionCommander::choose_gear() {
   gear_.numerator = {gear_random_.chance(0.5) ? ratio : -ratio};
   gear_.denominator = {1.0};
   gear_.max_phase_error = {gear_random_.chance(0.2) ? std::abs(axis.scale) * 1000 : 0.0};
+  if (gear_random_.chance(0.7)) plan_leading(command.goals.front(), gear_.numerator.front());
+  return command;
+}
+
+/// Some leaders move next, so that the axis can follow within its limits.
+void MotionCommander::plan_leading(const motion_goal_t& follower, double ratio) {
+  const auto leader = std::ranges::find_if(axes_, [&](const Axis& axis) {
+    return axis.node == gear_.leader && axis.signals.number + 1 == gear_.leader_axis;
+  });
+  if (leader == axes_.end() || follower.max_velocity == 0 || ratio == 0) return;
+  motion_goal_t goal = goal_of(*leader);
+  if (goal.max_velocity == 0) return;
+  const double jerk =
+      follower.max_jerk == 0 ? follower.max_acceleration / jerk_rise : follower.max_jerk;
+  const double part = part_of_leader / std::abs(ratio);
+  goal.max_velocity = std::min(goal.max_velocity, part * follower.max_velocity);
+  goal.max_acceleration = std::min(goal.max_acceleration, part * follower.max_acceleration);
+  goal.max_jerk = std::min(goal.max_acceleration / jerk_rise, part * jerk);
+  leading_ = goal;
+}
+
+motion_command_t MotionCommander::lead() {
+  motion_command_t command{};
+  command.id = ++id_;
+  command.kind = "move";
+  command.synchronisation = "none";
+  command.goals.push_back(*std::exchange(leading_, std::nullopt));
   return command;
 }
 
@@ -244,9 +275,15 @@ std::optional<motion_command_t> MotionCommander::next(Time now) {
   } else if (now >= motion_due_) {
     motion_due_ =
         now + (calm_ ? calm_pause + random_.up_to(calm_pause) : random_.up_to(busy_pause));
-    auto other = gears_ && gear_random_.chance(0.4) ? choose_gear() : std::nullopt;
-    if (!other && streams_ && gear_random_.chance(0.4)) other = choose_stream(now);
-    command = other ? std::move(*other) : motion();
+    if (leading_) {
+      command = lead();
+      motion_due_ = now + time_to_lead;
+    } else {
+      auto other = gears_ && gear_random_.chance(0.4) ? choose_gear() : std::nullopt;
+      if (!other && streams_ && gear_random_.chance(0.4)) other = choose_stream(now);
+      command = other ? std::move(*other) : motion();
+      if (leading_) motion_due_ = now + time_to_lock;
+    }
   } else if (random_.chance(0.1)) {
     add_goals(command, true);
   }

@@ -69,6 +69,8 @@ class MotionCommander {
   motion_goal_t goal_of(const Axis& axis);
   motion_command_t motion();
   std::optional<motion_command_t> choose_gear();
+  void plan_leading(const motion_goal_t& follower, double ratio);
+  motion_command_t lead();
   std::optional<motion_command_t> choose_stream(Time now);
   motion_command_t next_points(Time now);
   motion_command_t stop_all() const;
@@ -87,8 +89,9 @@ class MotionCommander {
   bool calm_ = false;   ///< its motions come to rest before the next one
   bool gears_ = false;  ///< some of its motions are gears
   sim::Random gear_random_{0};
-  motion_gear_t gear_{};  ///< leader, phase and ratio of the newest gear
-  bool streams_ = false;  ///< some of its motions are streams
+  motion_gear_t gear_{};                    ///< leader, phase and ratio of the newest gear
+  std::optional<motion_goal_t> leading_{};  ///< next motion: the leader moves for the newest gear
+  bool streams_ = false;                    ///< some of its motions are streams
   StreamPath path_{};
   motion_goal_t path_goal_{};
   motion_stream_t stream_{};  ///< newest points of the path

@@ -5,6 +5,7 @@
 #include <takt/lcm.hpp>
 #include <takt/motion_command_t.hpp>
 #include <takt/motion_gear_t.hpp>
+#include <takt/motion_stream_t.hpp>
 #include <utility>
 #include <vector>
 
@@ -13,14 +14,15 @@
 
 namespace takt {
 
-/// For tests: a transport that changes each command, and each message about motions or gears,
-/// before the daemon receives it. Without functions it changes nothing.
+/// For tests: a transport that changes each command, and each message about motions, gears or
+/// streams, before the daemon receives it. Without functions it changes nothing.
 class RewritingTransport final : public Transport {
  public:
   using Rewrite = std::function<void(command_t& command)>;
   /// Returns the messages that the daemon receives instead of this one.
   using RewriteMotion = std::function<std::vector<motion_command_t>(motion_command_t command)>;
   using RewriteGear = std::function<void(motion_gear_t& gear)>;
+  using RewriteStream = std::function<void(motion_stream_t& stream)>;
 
   /// `inner` must outlive the transport.
   RewritingTransport(Transport& inner, Channels channels)
@@ -28,6 +30,7 @@ class RewritingTransport final : public Transport {
   void rewrite(Rewrite rewrite) { rewrite_ = std::move(rewrite); }
   void rewrite(RewriteMotion rewrite) { rewrite_motion_ = std::move(rewrite); }
   void rewrite(RewriteGear rewrite) { rewrite_gear_ = std::move(rewrite); }
+  void rewrite(RewriteStream rewrite) { rewrite_stream_ = std::move(rewrite); }
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override {
     return inner_.publish(channel, data);
@@ -41,6 +44,9 @@ class RewritingTransport final : public Transport {
       }
       if (rewrite_ && channel == channels_.command) data = rewritten(rewrite_, data);
       if (rewrite_gear_ && channel == channels_.motion_gear) data = rewritten(rewrite_gear_, data);
+      if (rewrite_stream_ && channel == channels_.motion_stream) {
+        data = rewritten(rewrite_stream_, data);
+      }
       handler(channel, data);
     });
   }
@@ -71,6 +77,7 @@ class RewritingTransport final : public Transport {
   Rewrite rewrite_;
   RewriteMotion rewrite_motion_;
   RewriteGear rewrite_gear_;
+  RewriteStream rewrite_stream_;
   std::vector<std::byte> buffer_;
 };
 

@@ -312,14 +312,22 @@ void VirtualApplication::send_motion(const command_t& command, Time now) {
   message->cycle = command.cycle;
   message->instance = instance_;
   message->sender = options_.name;
+  std::optional<motion_gear_t> gear;
+  std::optional<motion_stream_t> stream;
+  if (message->kind == "gear") gear = commander_.gear(*message);
+  if (message->kind == "stream" || message->kind == "points") stream = commander_.stream(*message);
   if (options_.motion_commanded) {
-    options_.motion_commanded(*message, sync_, commander_.points_until());
+    options_.motion_commanded({.command = *message,
+                               .computed_from = sync_,
+                               .points_until = commander_.points_until(),
+                               .gear = gear ? &*gear : nullptr,
+                               .stream = stream ? &*stream : nullptr});
   }
   ++motions_;
-  if (message->kind == "gear") {
-    lcm_.publish(channels_.motion_gear, encode(commander_.gear(*message), buffer_));
-  } else if (message->kind == "stream" || message->kind == "points") {
-    lcm_.publish(channels_.motion_stream, encode(commander_.stream(*message), buffer_));
+  if (gear) {
+    lcm_.publish(channels_.motion_gear, encode(*gear, buffer_));
+  } else if (stream) {
+    lcm_.publish(channels_.motion_stream, encode(*stream, buffer_));
   } else {
     lcm_.publish(channels_.motion_command, encode(*message, buffer_));
   }

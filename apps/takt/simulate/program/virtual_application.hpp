@@ -23,6 +23,16 @@ enum class Commanding : std::uint8_t {
   by_turns,    ///< by both, one after the other, for random times
 };
 
+/// A message about motions that a program sends. A motion_gear_t is a command of the kind "gear";
+/// the messages of a stream have the kinds "stream" and "points".
+struct CommandedMotion {
+  const motion_command_t& command;
+  Time computed_from{};  ///< SYNC time of the image that the program has seen
+  Time points_until{};   ///< of a stream: time of the newest point, from the begin of the stream on
+  const motion_gear_t* gear = nullptr;      ///< the message, if it is one about a gear
+  const motion_stream_t* stream = nullptr;  ///< the same for a stream
+};
+
 struct ApplicationOptions {
   std::string name;         ///< sender name in the program's commands
   unsigned number = 0;      ///< number of the program, 0..7
@@ -31,11 +41,8 @@ struct ApplicationOptions {
 
   /// Called with each command that is sent and the SYNC time of the image it was computed from.
   std::function<void(const command_t& command, Time computed_from)> commanded{};
-  /// The same for a message about motions. A motion_gear_t is a command of the kind "gear"; the
-  /// messages of a stream have the kinds "stream" and "points", and `points_until` is the time of
-  /// their newest point, from the begin of the stream on.
-  std::function<void(const motion_command_t& command, Time computed_from, Time points_until)>
-      motion_commanded{};
+  /// The same for a message about motions.
+  std::function<void(const CommandedMotion& motion)> motion_commanded{};
   /// Called when the program gives up its outputs.
   std::function<void(Time now)> released{};
   /// Called if the program has received images for a long time and could use none of them.

@@ -53,6 +53,9 @@ class VirtualDaemon final : public Actor, private FrontGuest {
     transport_.rewrite(std::move(rewrite));
   }
   void rewrite(RewritingTransport::RewriteGear rewrite) { transport_.rewrite(std::move(rewrite)); }
+  void rewrite(RewritingTransport::RewriteStream rewrite) {
+    transport_.rewrite(std::move(rewrite));
+  }
 
   /// Starts a new process with a new session.
   void start();

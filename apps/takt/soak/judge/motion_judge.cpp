@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 #include "apps/takt/soak/judge/frame_values.hpp"
 
@@ -28,11 +29,15 @@ MotionJudge::MotionJudge(const BusPlan& plan, Verdict& verdict, HolderJudge& hol
       holders_{holders},
       orders_{plan},
       groups_{plan, verdict},
+      paths_{plan, orders_, verdict},
       axes_(orders_.axes().size()),
       most_cycles_{most_cycles_of_way(plan.cycle.period)} {}
 
 void MotionJudge::commanded(const SentMotion& sent, Time now) {
-  if (sent.command.kind == "alive") return orders_.commanded(sent, now);
+  if (sent.command.kind == "alive") {
+    orders_.commanded(sent, now);
+    return paths_.commanded(sent, false, now);
+  }
   std::vector<std::size_t> named;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const std::string& node = plan_.nodes[orders_.axes()[i].node_index].name;
@@ -47,7 +52,13 @@ void MotionJudge::commanded(const SentMotion& sent, Time now) {
     return axes_[i].value && axes_[i].enabled && axes_[i].doubt == 0 &&
            now - axes_[i].when >= long_rest && now - orders_.newest(i) >= MotionOrders::longest_way;
   });
+  const bool rest = stand && std::ranges::none_of(named, [&](std::size_t i) {
+                      return std::ranges::any_of(orders_.orders(i), [](const OrderedMotion& order) {
+                        return order.follows || order.creeps;
+                      });
+                    });
   orders_.commanded(sent, now);
+  paths_.commanded(sent, rest, now);
   if (stand && sent.command.kind == "move" && sent.command.synchronisation == "none") {
     watch(sent, now);
   }
@@ -71,6 +82,7 @@ void MotionJudge::watch(const SentMotion& sent, Time now) {
 void MotionJudge::begin_anew() {
   orders_.begin_anew();
   groups_.forget_all();
+  paths_.forget_all();
   for (Axis& axis : axes_) {
     axis.value.reset();
     axis.last_way.reset();
@@ -79,11 +91,23 @@ void MotionJudge::begin_anew() {
   }
 }
 
+/// A SYNC that is missing or late delays the motions, or ends them.
+void MotionJudge::end_cycle(Time now) {
+  std::vector<bool> follows;
+  for (const Axis& axis : axes_) {
+    follows.push_back(axis.enabled && axis.doubt == 0 && axis.silent_cycles <= 1);
+  }
+  const std::uint64_t syncs = syncs_ - std::exchange(syncs_at_cycle_, syncs_);
+  const bool regular = late_cycles_ == 0 && (!plan_.cycle.sync || syncs == 1);
+  paths_.end_cycle(follows, regular, now);
+}
+
 void MotionJudge::begin_cycle(Time now) {
   if (now - last_cycle_ > plan_.cycle.period * 3 / 2) {
     groups_.forget_all();
     late_cycles_ = cycles_after_late + 1;
   }
+  end_cycle(now);
   ++cycles_without_sync_;
   if (late_cycles_ != 0) --late_cycles_;
   last_cycle_ = now;
@@ -164,6 +188,7 @@ void MotionJudge::sent(SignalIndex target, std::int64_t value, const Cause& caus
   if (!found) return;
   Axis& axis = axes_[*found];
   const auto counts = static_cast<double>(value);
+  paths_.sent(*found, counts, cause.by_set_point);
   const auto syncs = static_cast<unsigned>(std::min<std::uint64_t>(syncs_ - axis.syncs, 1000));
   axis.syncs = syncs_;
   if (plan_.cycle.sync && syncs == 0 && axis.value == counts) return;  // the drive has not acted

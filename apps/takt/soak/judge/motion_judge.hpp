@@ -6,6 +6,7 @@
 #include "apps/takt/soak/judge/group_judge.hpp"
 #include "apps/takt/soak/judge/holder_judge.hpp"
 #include "apps/takt/soak/judge/motion_orders.hpp"
+#include "apps/takt/soak/judge/path_judge.hpp"
 #include "apps/takt/soak/judge/verdict.hpp"
 #include "apps/takt/soak/judge/way.hpp"
 #include "master/wire/frame.hpp"
@@ -15,8 +16,8 @@ namespace takt::soak {
 /// Checks the target positions on the wire against the motions that programs have sent: an axis
 /// keeps the limits of its motion, its motion comes to rest at the target of a program that holds
 /// the node, a group begins in one cycle, and it ends if one of its drives does not follow any
-/// longer. The judge uses what was sent over LCM and the frames on the wire, and nothing that the
-/// master has computed.
+/// longer; a stream and a gear are where PathJudge expects them. The judge uses what was sent over
+/// LCM and the frames on the wire, and nothing that the master has computed.
 class MotionJudge {
  public:
   MotionJudge(const BusPlan& plan, Verdict& verdict, HolderJudge& holders);
@@ -26,7 +27,12 @@ class MotionJudge {
   /// Call this when the daemon is a new process.
   void begin_anew();
   /// Call this when the ordered stop begins: the master then commands the outputs itself.
-  void begin_stop() noexcept { stops_ = true; }
+  void begin_stop() {
+    stops_ = true;
+    paths_.disturbed(never);
+  }
+  /// Call this if a fault of a program or of the daemon begins that may last until this time.
+  void disturbed(Time until) { paths_.disturbed(until); }
   /// Call this when the master begins a cycle.
   void begin_cycle(Time now);
   /// Call this with each frame on the wire.
@@ -52,6 +58,7 @@ class MotionJudge {
   std::uint64_t arrivals() const noexcept { return arrivals_; }
   /// Returns the number of groups whose begin was seen.
   std::uint64_t groups() const noexcept { return groups_.judged(); }
+  const PathJudge& paths() const noexcept { return paths_; }
 
  private:
   struct Axis {
@@ -71,6 +78,7 @@ class MotionJudge {
   void judge_failure(std::size_t axis, Time now);
   void judge_rest(std::size_t axis);
   void judge_way(std::size_t axis, const Way& way, unsigned syncs, Time now);
+  void end_cycle(Time now);
   void sync_heard() noexcept;
   void report_violation(std::size_t axis, const char* invariant, const std::string& what);
 
@@ -79,13 +87,15 @@ class MotionJudge {
   HolderJudge& holders_;
   MotionOrders orders_;
   GroupJudge groups_;
+  PathJudge paths_;
   std::vector<Axis> axes_;
   double most_cycles_;  // greatest number of cycles that counts for one distance
   Time last_cycle_{};
   unsigned late_cycles_ = 0;  // a SYNC was left out in the last cycles
   unsigned cycles_without_sync_ = 0;
   std::uint64_t syncs_ = 0;  // on the wire
-  bool stops_ = false;       // the ordered stop has begun
+  std::uint64_t syncs_at_cycle_ = 0;
+  bool stops_ = false;  // the ordered stop has begun
   std::uint64_t arrivals_ = 0;
 };
 

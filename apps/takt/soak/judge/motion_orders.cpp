@@ -17,15 +17,6 @@ constexpr Time usual_timeout = 500ms;
 constexpr Time longest_creep = 5s;   // by one count
 constexpr double usual_rise = 0.05;  // s until the acceleration is reached
 
-/// Returns an upper limit of the time of a stop.
-Time stop_time(const MotionBounds& bounds, const MotionBounds& fastest) noexcept {
-  const double speed =
-      fastest.velocity + fastest.acceleration * fastest.acceleration / (2 * bounds.jerk);
-  const double seconds =
-      speed / bounds.acceleration + (bounds.acceleration + fastest.acceleration) / bounds.jerk;
-  return std::chrono::duration_cast<Time>(std::chrono::duration<double>{1.02 * seconds});
-}
-
 MotionBounds larger(const MotionBounds& a, const MotionBounds& b) noexcept {
   return {.velocity = std::max(a.velocity, b.velocity),
           .acceleration = std::max(a.acceleration, b.acceleration),
@@ -37,6 +28,14 @@ std::size_t number_of(SenderBit sender) noexcept {
 }
 
 }  // namespace
+
+Time MotionOrders::stop_time(const MotionBounds& bounds, const MotionBounds& fastest) noexcept {
+  const double speed =
+      fastest.velocity + fastest.acceleration * fastest.acceleration / (2 * bounds.jerk);
+  const double seconds =
+      speed / bounds.acceleration + (bounds.acceleration + fastest.acceleration) / bounds.jerk;
+  return std::chrono::duration_cast<Time>(std::chrono::duration<double>{1.02 * seconds});
+}
 
 MotionOrders::MotionOrders(const BusPlan& plan)
     : plan_{plan},

@@ -5,6 +5,8 @@
 #include <optional>
 #include <span>
 #include <takt/motion_command_t.hpp>
+#include <takt/motion_gear_t.hpp>
+#include <takt/motion_stream_t.hpp>
 #include <vector>
 
 #include "apps/takt/soak/judge/holder_judge.hpp"
@@ -28,6 +30,8 @@ struct SentMotion {
   SenderBit sender = 0;
   Time computed_from{};  ///< SYNC time of the image that the program has seen
   Time points_until{};   ///< of a stream: time of the newest point, from the begin of the stream on
+  const motion_gear_t* gear = nullptr;      ///< of the kind "gear"
+  const motion_stream_t* stream = nullptr;  ///< of the kinds "stream" and "points"
 };
 
 /// A move, a jog, a gear or a stream of one axis that a program has sent.
@@ -57,6 +61,8 @@ class MotionOrders {
   /// So long after it was sent, a motion has begun, or it never does: messages are not slower, and
   /// those that wait for longer while the front thread stands still are discarded.
   static constexpr Time longest_way = std::chrono::milliseconds{400};
+  /// Returns an upper limit of the time of a stop within `bounds` from a motion within `fastest`.
+  static Time stop_time(const MotionBounds& bounds, const MotionBounds& fastest) noexcept;
 
   explicit MotionOrders(const BusPlan& plan);
 

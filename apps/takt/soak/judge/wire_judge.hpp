@@ -38,7 +38,9 @@ class WireJudge {
   /// Call this when this sender has given up its outputs.
   void released(SenderBit sender, Time now) { holders_.released(sender, now); }
   /// Call this when the ordered stop begins.
-  void begin_stop() noexcept { motions_.begin_stop(); }
+  void begin_stop() { motions_.begin_stop(); }
+  /// Call this if a fault of a program or of the daemon begins that may last until this time.
+  void disturbed(Time until) { motions_.disturbed(until); }
   /// Call this when the daemon is a new process: no sender holds the outputs, and nothing was sent
   /// so far.
   void begin_anew();

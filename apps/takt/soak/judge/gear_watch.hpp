@@ -1,0 +1,58 @@
+#pragma once
+#include <optional>
+
+#include "apps/takt/soak/judge/path_verdict.hpp"
+#include "eds_parser/table/time.hpp"
+
+namespace takt::soak {
+
+/// Compares the target positions of an axis with those of the axis that it follows. Once it is
+/// locked, its position minus the ratio times that of its leader is constant. It has to be locked
+/// after the longest time of its phase-in. It is also known to be locked if it has moved with a
+/// constant difference for some time.
+class GearWatch {
+ public:
+  /// What the gear prescribes.
+  struct Task {
+    double ratio = 1.0;             ///< counts of the axis in a count of the leader
+    std::optional<double> phase{};  ///< the difference in counts; empty: the one that it has
+    Time phase_in{};                ///< longest time until the velocities are equal
+    double catch_up = 1.0;          ///< counts/s by which it can be faster than its leader
+  };
+  /// Positions of a cycle, in counts.
+  struct Positions {
+    double leader = 0.0;
+    double own = 0.0;
+    bool within = false;  ///< the axis can follow the leader within its limits
+    bool alone = false;   ///< nothing else can be the cause of a movement of the axis
+  };
+
+  /// `begun` is the time at which the gear has begun, unless it was refused.
+  GearWatch(const Task& task, Time begun) : task_{task}, since_{begun} {}
+
+  PathVerdict judge(const Positions& at, Time now);
+  bool is_locked() const noexcept { return is_locked_ && has_begun_; }
+
+ private:
+  /// Smallest and largest values of some cycles.
+  struct Span {
+    double low = 0.0;  ///< of the difference
+    double high = 0.0;
+    double own_low = 0.0;  ///< of the position
+    double own_high = 0.0;
+    unsigned cycles = 0;
+  };
+  Time longest_phase_in(double difference) const;
+  bool keeps(double difference) const noexcept;
+  void take(double difference, double own, Time now) noexcept;
+
+  Task task_;
+  Time since_;                   // the leader has been such that the axis can follow it
+  std::optional<Time> lock_at_;  // the axis is locked by then
+  std::optional<Span> span_;     // with a constant difference
+  std::optional<double> last_own_;
+  bool is_locked_ = false;
+  bool has_begun_ = false;  // the gear was seen to move the axis
+};
+
+}  // namespace takt::soak
