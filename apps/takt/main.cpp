@@ -17,12 +17,30 @@ namespace {
 
 using namespace takt;
 
+struct Command {
+  const char* group;  ///< its heading in the help text; empty: not listed
+  AddCommand add;
+};
+
+constexpr const char* devices = "Device files and network files";
+constexpr const char* analysis = "Before the bus runs";
+constexpr const char* running = "A running daemon";
+constexpr const char* on_the_bus = "Devices on the bus, with and without a daemon";
+constexpr const char* recordings = "Frames and recordings";
+
 /// The commands in the order of the help text.
-constexpr AddCommand commands[]{
-    add_audit,  add_dump,      add_eds,    add_plan,   add_sim,        add_simulate, add_keys,
-    add_record, add_reference, add_replay, add_soak,   add_status,     add_top,      add_timing,
-    add_emcy,   add_budget,    add_export, add_import, add_learn,      add_scan,     add_doctor,
-    add_sdo,    add_nmt,       add_lss,    add_param,  add_trajectory, add_smooth};
+constexpr Command commands[]{
+    {devices, add_plan},    {devices, add_reference}, {devices, add_eds},
+    {devices, add_import},  {devices, add_learn},     {devices, add_export},
+    {devices, add_keys},    {analysis, add_budget},   {analysis, add_simulate},
+    {analysis, add_sim},    {analysis, add_soak},     {analysis, add_trajectory},
+    {analysis, add_doctor}, {running, add_status},    {running, add_top},
+    {running, add_timing},  {running, add_emcy},      {running, add_record},
+    {on_the_bus, add_scan}, {on_the_bus, add_sdo},    {on_the_bus, add_nmt},
+    {on_the_bus, add_lss},  {on_the_bus, add_param},  {on_the_bus, add_audit},
+    {recordings, add_dump}, {recordings, add_smooth}, {recordings, add_replay},
+    {"", add_complete},
+};
 
 /// Returns the reason why stdout could not be written completely, or an empty string. If a write
 /// failed earlier, its errno is lost, so one more write finds the reason.
@@ -46,11 +64,15 @@ int run(int argc, char** argv) {
       "  takt plan lift.yaml            print what taktd will do with a network file\n"
       "  takt simulate lift.yaml        run a network file in virtual time\n"
       "  takt status                    ask the running daemon\n"
-      "Each command has its own --help. Exit codes: 0 good, 1 a negative result, 2 wrong use or\n"
+      "`takt help plan` prints the help of one command, as `takt plan --help` does.\n\n"
+      "Exit codes: 0 good, 1 a negative result, 2 wrong use or\n"
       "invalid network file, 3 bus error, 4 a mandatory node is missing, 5 a real-time limit\n"
       "was broken, 6 the ordered stop was not confirmed.");
   int exit_code = 0;
-  for (const AddCommand add : commands) add(app, exit_code);
+  for (const auto& [group, add] : commands) {
+    add(app, exit_code);
+    app.get_subcommands({}).back()->group(group);
+  }
   try {
     const auto ended = parse_arguments(app, argc, argv);  // runs the command, too
     return ended.value_or(exit_code);

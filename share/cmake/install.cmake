@@ -5,7 +5,8 @@ include(CMakePackageConfigHelpers)
 
 get_property(libraries GLOBAL PROPERTY TAKT_LIBRARIES)
 install(TARGETS ${libraries} EXPORT takt-targets)
-install(TARGETS takt taktd takt-follow takt-home takt-jog takt-logic takt-move)
+set(programs takt taktd takt-follow takt-home takt-jog takt-logic takt-move)
+install(TARGETS ${programs})
 
 install(PROGRAMS apps/python/axes.py apps/python/first_bus.py apps/python/first_motion.py apps/python/first_speed.py
                  apps/python/motion.py
@@ -26,11 +27,30 @@ install(FILES LICENSE CHANGELOG.md ${CMAKE_CURRENT_BINARY_DIR}/index.md DESTINAT
 
 # What the programs write about themselves. When takt is built for another machine, CMAKE_CROSSCOMPILING_EMULATOR runs them.
 set(written ${PROJECT_BINARY_DIR}/written)
-file(MAKE_DIRECTORY ${written})
+file(MAKE_DIRECTORY ${written}/manual)
 add_custom_command(OUTPUT ${written}/network.schema.json DEPENDS takt
                    COMMAND takt reference network-file --json-schema > ${written}/network.schema.json)
-add_custom_target(takt_written ALL DEPENDS ${written}/network.schema.json)
+set(first_pages "")
+foreach(program IN LISTS programs)
+  set(page ${written}/manual/${program}.1)
+  if(program STREQUAL "taktd")
+    set(page ${written}/manual/taktd.8)
+  endif()
+  add_custom_command(OUTPUT ${page} DEPENDS ${program} COMMAND ${program} --manual ${written}/manual)
+  list(APPEND first_pages ${page})
+endforeach()
+add_custom_target(takt_written ALL DEPENDS ${written}/network.schema.json ${first_pages})
 install(FILES ${written}/network.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)
+foreach(section 1 8)
+  install(DIRECTORY ${written}/manual/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section} FILES_MATCHING PATTERN "*.${section}")
+endforeach()
+
+# bash and fish look for a file with the name of the program.
+foreach(program IN LISTS programs)
+  install(FILES share/completions/takt.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME ${program})
+  install(FILES share/completions/takt.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d RENAME ${program}.fish)
+endforeach()
+install(FILES share/completions/_takt DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 
 # systemd reads lib/systemd below /usr and below /usr/local.
 install(FILES share/systemd/taktd@.service DESTINATION lib/systemd/system)

@@ -16,7 +16,8 @@ cmake --install "$build" --prefix "$prefix" >/dev/null
 
 for file in bin/takt bin/taktd bin/takt-follow bin/takt-home bin/takt-jog bin/takt-logic bin/takt-move lib/systemd/system/taktd@.service lib/systemd/network/60-takt-can.link \
   etc/security/limits.d/takt.conf share/takt/lcm/image_t.lcm share/takt/python/first_motion.py share/takt/python/takt_axes.py share/takt/python/takt/py.typed share/takt/demo/two_axes.yaml share/doc/takt/index.md \
-  share/doc/takt/CHANGELOG.md share/takt/network.schema.json; do
+  share/doc/takt/CHANGELOG.md share/takt/network.schema.json share/man/man1/takt.1 share/man/man1/takt-plan.1 \
+  share/man/man8/taktd.8 share/bash-completion/completions/takt-jog share/fish/vendor_completions.d/taktd.fish share/zsh/site-functions/_takt; do
   [ -e "$prefix/$file" ] || { echo "not installed: $file" >&2; exit 1; }
 done
 ! grep -n '](\.\./' "$prefix"/share/doc/takt/*.md >&2 || { echo "an installed page links to a file of the tree" >&2; exit 1; }

@@ -1,0 +1,18 @@
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace takt {
+
+/// The width of the terminal at stdout, in columns from 40 to 100. Without a terminal COLUMNS
+/// counts, otherwise 80.
+std::size_t text_width();
+
+/// Returns a help text, broken into lines of at most `width` columns where words allow it. Options
+/// have their names in the first `column` columns of `options`; `notes` are paragraphs, and
+/// indented examples, whose lines stay apart.
+std::string wrapped_help(std::string_view options, std::size_t column, std::string_view notes,
+                         std::size_t width);
+
+}  // namespace takt
