@@ -174,17 +174,24 @@ ROOMS = {
     "apps/takt/simulate/program": ("runs the daemon and applications in virtual time",
                                    "apps/axis master master/gateway master/lcm master/rt " + SIM),
     "apps/takt/simulate/motion": ("programs in virtual time that command motions by a script",
-                                  "apps/axis apps/axis/group apps/takt/simulate/program eds_parser/report master/lcm " + SIM),
+                                  "apps/axis apps/axis/group apps/takt/simulate/program eds_parser/report master/lcm "
+                                  "master/rt/exchange " + SIM),
     "apps/takt/simulate": ("runs a whole network in virtual time, and reports the outcome",
                            "apps/command_line apps/axis apps/takt/simulate/motion apps/takt/simulate/program "
                            "eds_parser/network_file eds_parser/report "
                            "eds_parser/ini master/core master/explain master/gateway/command master/lcm master/rt "
                            "master/rt/exchange master/linux/bus " + SIM),
-    "apps/takt/soak/judge": ("checks the invariants of a run",
-                             "master/wire master/core master/rt/exchange master/sim/device " + SIM),
+    "apps/takt/soak/evidence": ("what the judges compare: frames, images and the simulated drives",
+                                "master/wire master/core master/rt/exchange master/sim/device " + SIM),
+    "apps/takt/soak/judge/motion": ("checks the invariants of motions",
+                                    "apps/takt/soak/evidence master/wire master/rt/exchange master/sim/device " + SIM),
+    "apps/takt/soak/judge": ("checks the other invariants of a run",
+                             "apps/takt/soak/evidence apps/takt/soak/judge/motion master/wire master/core "
+                             "master/rt/exchange master/sim/device " + SIM),
     "apps/takt/soak": ("runs random sequences of faults",
                        "apps/command_line apps/axis/group apps/takt/simulate apps/takt/simulate/motion "
-                       "apps/takt/simulate/program apps/takt/soak/judge eds_parser/network_file master/explain "
+                       "apps/takt/simulate/program apps/takt/soak/evidence apps/takt/soak/judge "
+                       "apps/takt/soak/judge/motion eds_parser/network_file master/explain "
                        "master/gateway master/lcm master/rt master/rt/exchange " + SIM),
     "apps/takt/trajectory": ("plans trajectories without a bus", "apps/command_line apps/plot master/motion"),
     "apps/takt": ("the tool: commands on files",
@@ -438,7 +445,7 @@ GOOD = {
     "master/sim/bus/d.hpp": '#include "master/rt/port.hpp"\n#include "master/wire/frame.hpp"',
     "master/linux/can/e.hpp": '#include "master/rt/port.hpp"\n#include <sys/socket.h>',
     "master/gateway/f.hpp": '#include "master/master_run.hpp"\n#include <lcm/lcm-cpp.hpp>\n#include "takt/image_t.hpp"',
-    "apps/takt/soak/g.cpp": '#include "apps/takt/soak/judge/verdict.hpp"\n#include "master/sim/bus/world.hpp"',
+    "apps/takt/soak/g.cpp": '#include "apps/takt/soak/evidence/verdict.hpp"\n#include "master/sim/bus/world.hpp"',
     "share/include/takt/d.hpp": "#include <Eigen/Core>\n#include <poll.h>\n#include <takt/image_t.hpp>\n#include <takt/lcm.hpp>",
     "master/lcm/tcpq/l.hpp": "#include <takt/lcm.hpp>\n#include <span>",
     "apps/move/h.cpp": "namespace takt { namespace { struct Options {}; } }\nstruct Options;",

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <memory>
 
-#include "apps/takt/soak/judge/image_judge.hpp"
+#include "apps/takt/soak/evidence/image_judge.hpp"
 #include "apps/takt/soak/judge/node_judge.hpp"
 #include "apps/takt/soak/judge/output_judge.hpp"
 #include "apps/takt/soak/random_user.hpp"

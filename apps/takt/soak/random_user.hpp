@@ -3,8 +3,8 @@
 #include <map>
 
 #include "apps/takt/simulate/sine_motion.hpp"
+#include "apps/takt/soak/evidence/verdict.hpp"
 #include "apps/takt/soak/judge/output_judge.hpp"
-#include "apps/takt/soak/judge/verdict.hpp"
 #include "master/rt/exchange/exchange.hpp"
 #include "master/sim/random.hpp"
 

@@ -4,9 +4,9 @@
 #include <malloc.h>
 #include <memory>
 
+#include "apps/takt/soak/evidence/image_judge.hpp"
 #include "apps/takt/soak/fault_walk.hpp"
 #include "apps/takt/soak/intruder.hpp"
-#include "apps/takt/soak/judge/image_judge.hpp"
 #include "apps/takt/soak/judge/node_judge.hpp"
 #include "apps/takt/soak/judge/output_judge.hpp"
 #include "apps/takt/soak/judged_port.hpp"

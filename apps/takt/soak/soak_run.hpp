@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "apps/takt/soak/evidence/verdict.hpp"
 #include "apps/takt/soak/front_defect.hpp"
-#include "apps/takt/soak/judge/verdict.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 
 namespace takt {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "apps/takt/soak/judge/frame_values.hpp"
-#include "apps/takt/soak/judge/way.hpp"
+#include "apps/takt/soak/evidence/frame_values.hpp"
+#include "apps/takt/soak/evidence/way.hpp"
 
 namespace takt::soak {
 namespace {

@@ -5,7 +5,7 @@
 #include <takt/motion_t.hpp>
 #include <vector>
 
-#include "apps/takt/soak/judge/verdict.hpp"
+#include "apps/takt/soak/evidence/verdict.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/motion_axes.hpp"
 #include "master/wire/frame.hpp"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "apps/takt/soak/judge/image_judge.hpp"
-#include "apps/takt/soak/judge/true_axes.hpp"
+#include "apps/takt/soak/evidence/image_judge.hpp"
+#include "apps/takt/soak/evidence/true_axes.hpp"
 #include "eds_parser/table/axis_modes.hpp"
 #include "eds_parser/table/output_limits.hpp"
 

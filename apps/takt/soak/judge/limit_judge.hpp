@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/takt/soak/judge/verdict.hpp"
-#include "apps/takt/soak/judge/way.hpp"
+#include "apps/takt/soak/evidence/verdict.hpp"
+#include "apps/takt/soak/evidence/way.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/sim/bus/world.hpp"
 #include "master/wire/frame.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/takt/soak/judge/verdict.hpp"
+#include "apps/takt/soak/evidence/verdict.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/rt/exchange/status_board.hpp"
 

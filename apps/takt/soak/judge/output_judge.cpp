@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "apps/takt/soak/judge/image_judge.hpp"
+#include "apps/takt/soak/evidence/image_judge.hpp"
 #include "master/wire/nmt.hpp"
 
 namespace takt::soak {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "apps/takt/soak/judge/verdict.hpp"
+#include "apps/takt/soak/evidence/verdict.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/wire/frame.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "apps/takt/soak/judge/true_axes.hpp"
+#include "apps/takt/soak/evidence/true_axes.hpp"
 
 namespace takt::soak {
 

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <fmt/format.h>
 
-#include "apps/takt/soak/judge/image_judge.hpp"
+#include "apps/takt/soak/evidence/image_judge.hpp"
 
 namespace takt::soak {
 namespace {

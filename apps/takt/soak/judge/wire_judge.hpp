@@ -4,10 +4,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include "apps/takt/soak/judge/holder_judge.hpp"
+#include "apps/takt/soak/evidence/verdict.hpp"
 #include "apps/takt/soak/judge/limit_judge.hpp"
-#include "apps/takt/soak/judge/motion_judge.hpp"
-#include "apps/takt/soak/judge/verdict.hpp"
+#include "apps/takt/soak/judge/motion/holder_judge.hpp"
+#include "apps/takt/soak/judge/motion/motion_judge.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/wire/frame.hpp"
 

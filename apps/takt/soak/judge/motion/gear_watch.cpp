@@ -1,4 +1,4 @@
-#include "apps/takt/soak/judge/gear_watch.hpp"
+#include "apps/takt/soak/judge/motion/gear_watch.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "apps/takt/soak/judge/path_judge.hpp"
+#include "apps/takt/soak/judge/motion/path_judge.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -68,7 +68,7 @@ void PathJudge::begin(const SentMotion& sent, std::size_t axis, bool stands, Tim
   if (sent.gear != nullptr) {
     auto gear = following(sent, axis, now);
     if (!gear) return;
-    watch.motion = std::move(*gear);
+    watch.motion = *gear;
   } else if (sent.stream != nullptr && sent.command.kind == "stream" && stands) {
     const Signal& target = plan_.layout.signals[orders_.axes()[axis].target];
     const Time period = plan_.cycle.period;

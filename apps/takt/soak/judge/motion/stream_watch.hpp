@@ -3,7 +3,7 @@
 #include <takt/motion_stream_t.hpp>
 #include <vector>
 
-#include "apps/takt/soak/judge/path_verdict.hpp"
+#include "apps/takt/soak/judge/motion/path_verdict.hpp"
 #include "eds_parser/table/time.hpp"
 
 namespace takt::soak {

@@ -1,4 +1,4 @@
-#include "apps/takt/soak/judge/image_judge.hpp"
+#include "apps/takt/soak/evidence/image_judge.hpp"
 
 #include <algorithm>
 

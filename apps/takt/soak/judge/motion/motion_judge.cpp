@@ -1,4 +1,4 @@
-#include "apps/takt/soak/judge/motion_judge.hpp"
+#include "apps/takt/soak/judge/motion/motion_judge.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "apps/takt/soak/judge/frame_values.hpp"
+#include "apps/takt/soak/evidence/frame_values.hpp"
 
 namespace takt::soak {
 namespace {

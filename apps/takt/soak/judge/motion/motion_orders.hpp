@@ -9,7 +9,7 @@
 #include <takt/motion_stream_t.hpp>
 #include <vector>
 
-#include "apps/takt/soak/judge/holder_judge.hpp"
+#include "apps/takt/soak/judge/motion/holder_judge.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/motion_axes.hpp"
 

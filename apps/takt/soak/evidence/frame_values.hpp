@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "apps/takt/soak/judge/image_judge.hpp"
+#include "apps/takt/soak/evidence/image_judge.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/wire/frame.hpp"
 

@@ -3,12 +3,12 @@
 #include <optional>
 #include <vector>
 
-#include "apps/takt/soak/judge/group_judge.hpp"
-#include "apps/takt/soak/judge/holder_judge.hpp"
-#include "apps/takt/soak/judge/motion_orders.hpp"
-#include "apps/takt/soak/judge/path_judge.hpp"
-#include "apps/takt/soak/judge/verdict.hpp"
-#include "apps/takt/soak/judge/way.hpp"
+#include "apps/takt/soak/evidence/verdict.hpp"
+#include "apps/takt/soak/evidence/way.hpp"
+#include "apps/takt/soak/judge/motion/group_judge.hpp"
+#include "apps/takt/soak/judge/motion/holder_judge.hpp"
+#include "apps/takt/soak/judge/motion/motion_orders.hpp"
+#include "apps/takt/soak/judge/motion/path_judge.hpp"
 #include "master/wire/frame.hpp"
 
 namespace takt::soak {

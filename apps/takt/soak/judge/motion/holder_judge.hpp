@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "apps/takt/soak/judge/verdict.hpp"
+#include "apps/takt/soak/evidence/verdict.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 
 namespace takt::soak {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "apps/takt/soak/judge/motion_orders.hpp"
-#include "apps/takt/soak/judge/verdict.hpp"
+#include "apps/takt/soak/evidence/verdict.hpp"
+#include "apps/takt/soak/judge/motion/motion_orders.hpp"
 
 namespace takt::soak {
 

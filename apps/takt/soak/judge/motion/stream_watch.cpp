@@ -1,4 +1,4 @@
-#include "apps/takt/soak/judge/stream_watch.hpp"
+#include "apps/takt/soak/judge/motion/stream_watch.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "apps/takt/soak/judge/motion_orders.hpp"
+#include "apps/takt/soak/judge/motion/motion_orders.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "apps/takt/soak/judge/path_verdict.hpp"
+#include "apps/takt/soak/judge/motion/path_verdict.hpp"
 #include "eds_parser/table/time.hpp"
 
 namespace takt::soak {

@@ -6,10 +6,10 @@
 #include <variant>
 #include <vector>
 
-#include "apps/takt/soak/judge/gear_watch.hpp"
-#include "apps/takt/soak/judge/motion_orders.hpp"
-#include "apps/takt/soak/judge/stream_watch.hpp"
-#include "apps/takt/soak/judge/verdict.hpp"
+#include "apps/takt/soak/evidence/verdict.hpp"
+#include "apps/takt/soak/judge/motion/gear_watch.hpp"
+#include "apps/takt/soak/judge/motion/motion_orders.hpp"
+#include "apps/takt/soak/judge/motion/stream_watch.hpp"
 
 namespace takt::soak {
 

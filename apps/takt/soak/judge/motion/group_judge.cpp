@@ -1,4 +1,4 @@
-#include "apps/takt/soak/judge/group_judge.hpp"
+#include "apps/takt/soak/judge/motion/group_judge.hpp"
 
 #include <algorithm>
 #include <chrono>

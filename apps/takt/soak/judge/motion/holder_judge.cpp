@@ -1,4 +1,4 @@
-#include "apps/takt/soak/judge/holder_judge.hpp"
+#include "apps/takt/soak/judge/motion/holder_judge.hpp"
 
 #include <algorithm>
 #include <bit>
