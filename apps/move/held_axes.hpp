@@ -15,8 +15,8 @@ bool holds_all(AxisGroup& group);
 /// Returns true if at least the newest `sequence` status_t show that another program holds the
 /// nodes of all axes.
 bool others_hold_all(AxisGroup& group, int sequence);
-/// Returns a sentence for each axis whose node another program has held in at least the newest
-/// `sequence` status_t. Empty if there is none.
+/// Returns a sentence for each axis whose node is held by another program according to each of the
+/// newest `sequence` messages status_t. Empty if there is no such axis.
 std::string held_by_others(AxisGroup& group, int sequence);
 
 /// Sets the target of each axis that another program holds to its actual position, so that the axis

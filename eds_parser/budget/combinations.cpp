@@ -54,7 +54,8 @@ class Combinations {
     return {.cost = 1, .levels = {lower_priority_of(std::move(moved))}};
   }
 
-  /// Returns a ladder of changes of PDOs, up to the first level that changes none.
+  /// Calls `make` for each of `levels`, in order, and returns the changes. Ends before the first
+  /// level at which `make` changes no PDO.
   Ladder ladder_of(unsigned cost, std::span<const unsigned> levels,
                    Suggestion (*make)(const BusPlan&, unsigned)) const {
     Ladder ladder{.cost = cost};

@@ -228,7 +228,8 @@ class CycleAnalysis : BusyChains {
     return longest;
   }
 
-  /// Bus time of the TPDOs of the same cycle that an output may meet.
+  /// Bus time of the frames of devices that may delay an output: those of its cycle with higher
+  /// priority, and the longest one of lower priority that has just begun.
   Time inputs_around(std::size_t lowest) const {
     return inputs_before(lowest, any_cycle) + blocking(lowest, [this](const TrafficFrame& other) {
              return comes_by_itself(other) || other.is_input();

@@ -70,7 +70,8 @@ class CycleFrames {
   Time services_behind_window() const noexcept;
   /// Returns whether a cycle has room for a request with its answer.
   bool has_room_for_services() const noexcept { return room_for_services() >= longest_service_; }
-  /// Bus time of the SDO answers to the requests of `rounds` rounds.
+  /// Bus time of the SDO answers to all requests that the master sends in `rounds` rounds of
+  /// services; see BusTraffic::service_round.
   Time answers_in(int rounds) const {
     return rounds * work_before(frames_.size(), &TrafficFrame::is_answer);
   }

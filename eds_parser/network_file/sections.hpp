@@ -9,7 +9,7 @@ namespace takt {
 
 inline constexpr KeyOrigin bus_yml = KeyOrigin::bus_yml;
 
-/// Returns the rows of the file as a whole: its sections.
+/// Returns the table of the top-level keys of the network file.
 std::span<const Key<NetworkSpec>> network_keys() noexcept;
 
 /// The end of the message about an unknown key in a map that has `driver`. ros2_canopen passes the

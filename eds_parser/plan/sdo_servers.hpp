@@ -14,8 +14,8 @@ struct DeviceSdoServer {
   std::uint16_t index = 0;
   SdoChannel channel;
   SourcePos pos;  ///< place in the network file
-  /// The statement of the device data if nothing else says that the server is on, else an empty
-  /// text.
+  /// If only the device data say that this server is on, this text quotes them. Otherwise it is
+  /// empty.
   std::string doubt{};
 };
 

@@ -11,8 +11,8 @@ struct ObjectQuantity {
   Quantity quantity = Quantity::position;
   /// `sign` applies. If false, the value is a magnitude, such as a limit or a window.
   bool directed = true;
-  /// `offset` of a position applies. If false, the position is a difference. The offset of any
-  /// other quantity always applies.
+  /// The object is a place, so `offset` of positions applies. False for a distance, such as a
+  /// window. The offset of any other quantity always applies.
   bool absolute = false;
 };
 

@@ -58,10 +58,11 @@ struct MotionAxis {
   Time homing_timeout{};      ///< longest time of a homing run
 };
 
-/// Returns the CiA 402 axes that have a statusword (6041) and an actual position (6064) in TPDOs
-/// and a target position in the same unit without an offset (60B0) in RPDOs, in the order of the
-/// nodes. The target is 607A; without it, it is the first interpolation data record (60C1:01). At
-/// most 127 are returned. Both sides of the master number the axes in this order.
+/// Returns the CiA 402 axes for motions, in the order of the nodes. Such an axis has a statusword
+/// (6041) and an actual position (6064) in TPDOs, and a target position in an RPDO. Both positions
+/// have the same unit. The target is 607A; without it, it is the first interpolation data record
+/// (60C1:01). An axis with a position offset (60B0) in an RPDO is left out. At most 127 axes are
+/// returned. Both sides of the master number the axes in this order.
 std::vector<MotionAxis> motion_axes(const BusPlan& plan);
 
 }  // namespace takt

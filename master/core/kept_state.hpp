@@ -18,9 +18,9 @@
 namespace takt {
 
 /// Saves or restores the state of a machine as a sequence of words, so that another machine with
-/// the same plan can continue from it. Each machine lists its values in `keep(state)`. It leaves
-/// out values that follow from the plan, and values that are only needed during a transfer or a
-/// request. The derived class `Words` provides the words.
+/// the same plan can continue from it. Each machine lists its values in `keep(state)`. The list
+/// has neither values that follow from the plan nor values that are needed only during a transfer
+/// or a request. The derived class `Words` provides the words.
 template <class Words>
 class KeptState {
  public:

@@ -44,8 +44,8 @@ Change begin_of(const Transfer& t, double velocity) noexcept {
                    t.min_acceleration);
 }
 
-/// Returns the part of the motion after the cruise as a change backwards in time: from the end of
-/// the motion to the velocity of the cruise.
+/// Returns the phases after the cruise in reverse order: the change from the end state, with its
+/// acceleration negated, to the velocity of the cruise.
 Change end_of(const Transfer& t, double velocity) noexcept {
   return change_to(velocity, t.end_velocity, -t.end_acceleration, -t.min_acceleration,
                    -t.max_acceleration);

@@ -126,9 +126,10 @@ Phases FarthestMotion::phases(double duration) const noexcept {
 }
 
 std::array<double, 4> FarthestMotion::bends() const noexcept {
-  // A bend is a duration at which the derivative of the slope changes its sign. For a fall of
-  // length u without holds, the derivative is 3 u^2 - K^2 / u^2 times a positive factor. If the
-  // acceleration a is held before or after the fall, the derivative has the sign of 4 u - 3 a.
+  // A bend is a duration at which the derivative of the slope changes its sign. Let u be the length
+  // of the fall and K the gain. If no acceleration is held, the derivative has the sign of
+  // 3 u^2 - K^2 / u^2. If the acceleration a is held before or after the fall, the derivative has
+  // the sign of 4 u - 3 a.
   const double size = std::abs(gain_);
   const double limit = gain_ > 0.0 ? transfer_.max_acceleration : -transfer_.min_acceleration;
   const double root = std::sqrt(std::max(square(limit) - size, 0.0));

@@ -9,8 +9,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Tolerance of the difference between both clocks of a machine. All programs on one machine see
-/// the same difference, except for what NTP corrects between two readings.
+/// Tolerance of CLOCK_REALTIME minus CLOCK_MONOTONIC: the difference that the image states against
+/// that of this machine. On one machine both are equal, except for what NTP corrects between the
+/// two readings.
 constexpr Time same_clock = 5ms;
 
 bool is_of_this_machine(const image_t& image, Time offset) noexcept {

@@ -14,8 +14,8 @@ namespace takt {
 /// drive stops along its ramp, unless the network file states another fallback.
 void compile_speed_axes(std::span<const NodePdos> nodes, BusPlan& plan, NetworkReport& report);
 
-/// Returns true if the device data or the network file state the words of a speed axis for this
-/// node.
+/// Returns true if the device data or the network file have a `speed_axis` section for this node,
+/// and the network file does not switch the axis off.
 bool has_speed_words(const NodeSource& node);
 
 }  // namespace takt

@@ -79,8 +79,8 @@ void NodeSession::on_heartbeat(const Heartbeat& sign, Time now) noexcept {
 }
 
 /// Boots a node again if it has left OPERATIONAL by itself, for example because it has missed the
-/// heartbeat of the master. The first heartbeat with another state is ignored, because the node may
-/// have sent it before it has received NMT start.
+/// heartbeat of the master. One heartbeat with PRE-OPERATIONAL or STOPPED is ignored, because the
+/// node may have sent it before it received NMT start.
 void NodeSession::look_for_fall(NmtState state, Time now) noexcept {
   const bool out = status_.boot == BootState::ready && wanted_ == NmtState::operational &&
                    (state == NmtState::preoperational || state == NmtState::stopped);

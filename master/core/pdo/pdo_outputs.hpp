@@ -56,10 +56,11 @@ class PdoOutputs {
   bool pending() const noexcept {
     return std::ranges::any_of(rows_, [](const Row& r) { return r.open && r.ready && r.pending; });
   }
-  /// Selects frames if the packed ones do not all fit into `bits`. The selection has all
-  /// synchronous frames, because they belong together, and as many of the others as fit; the others
-  /// are preferred in turn. Returns an empty span if the synchronous frames alone do not fit. The
-  /// span is valid until the next pack().
+  /// Returns a selection of the packed frames that fits into `bits`. Call it if they do not all
+  /// fit. The selection has all synchronous frames, because they belong together, and as many of
+  /// the others as fit. The first of the others that does not fit is the first choice of the next
+  /// call. Returns an empty span if the synchronous frames alone do not fit. The span is valid
+  /// until the next pack().
   std::span<const Frame> pack_less(std::int64_t bits,
                                    std::int64_t (*bits_of)(const Frame&) noexcept) noexcept;
   /// Notes that the first `count` of the packed frames were sent; the others are tried again.
@@ -104,8 +105,9 @@ class PdoOutputs {
   bool is_overruled(SignalIndex signal) const noexcept {
     return stopping_ || outputs_[output_of(signal)].forced;
   }
-  /// Commands the value that the last lead() has commanded once more. It is not judged: the axis
-  /// stands, although the limits would have it brake. Does nothing if another value is in force.
+  /// Commands once more the value that the last lead() has commanded. The value is not judged: the
+  /// axis stands, although the limits would have it brake. Does nothing if the ordered stop,
+  /// force() or the fallback determines the value.
   void hold(SignalIndex signal, OutputMoment moment) noexcept;
   /// Notes that the motion of this output stood still for so many cycles before this one. They do
   /// not count for the limits of its next step.
@@ -117,7 +119,8 @@ class PdoOutputs {
   void release_lead(SignalIndex signal) noexcept { set_led(signal, false); }
   /// Sets the value of an output of a motion without judging it: a target position that has no
   /// effect because its axis is not enabled, or the velocity offset 0 of an axis whose target
-  /// position stands still. This is no command. Returns false if another value is in force.
+  /// position stands still. This is no command. Returns false and changes nothing if the output
+  /// has no value yet, or if the ordered stop, force() or a fallback determines it.
   bool trail(SignalIndex signal, std::int64_t value) noexcept;
   /// The command of the output stays valid in this cycle, if it was valid before.
   void keep_alive(SignalIndex signal, OutputMoment moment) noexcept {

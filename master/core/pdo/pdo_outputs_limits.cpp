@@ -225,8 +225,9 @@ bool PdoOutputs::covered(std::size_t place, std::int64_t mode, bool target_is_ne
 }
 
 /// Checks a mode of operation or an offset from within the bus thread. A controlword is normally
-/// checked when the outputs are packed, because the target may be commanded after it. It is checked
-/// here only if commands to the node are already refused; its failure then prolongs the refusal.
+/// checked when the outputs are packed, because the target may be commanded after it. A
+/// controlword is checked here only if commands to the node are already refused and it would enable
+/// the axis. If the check fails, the refusal goes on.
 bool PdoOutputs::suits_targets(SignalIndex signal, std::int64_t value,
                                OutputMoment moment) noexcept {
   for (const std::uint16_t place : limits_.dependents(signal)) {

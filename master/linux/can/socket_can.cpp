@@ -156,7 +156,8 @@ std::expected<SocketCanPort, BusError> SocketCanPort::open(const SocketCanOption
       setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) != 0) {
     return std::unexpected{error_of(name, "a socket option can't be set", errno)};
   }
-  // Room for the burst after a stall. Only a privileged process can exceed net.core.rmem_max.
+  // The receive buffer has to hold the frames that arrive while this thread is stalled. Only a
+  // privileged process can exceed net.core.rmem_max.
   if (!set_option(fd, SOL_SOCKET, SO_RCVBUFFORCE, 1 << 20)) {
     set_option(fd, SOL_SOCKET, SO_RCVBUF, 1 << 20);
   }

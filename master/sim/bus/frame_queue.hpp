@@ -34,8 +34,8 @@ class FrameQueue {
   auto begin() const noexcept { return frames_.begin() + static_cast<std::ptrdiff_t>(first_); }
   auto end() const noexcept { return frames_.begin() + static_cast<std::ptrdiff_t>(end_); }
 
-  /// Appends a frame and returns it, to be filled in its place, where it still holds an earlier
-  /// frame. Requires that the queue is not full.
+  /// Appends a frame and returns it. The caller has to overwrite all of it, because it still has
+  /// the data of an earlier frame. Requires that the queue is not full.
   QueuedFrame& push_back() noexcept {
     if (end_ == capacity_) close_gap();
     return frames_[end_++];

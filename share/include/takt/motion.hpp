@@ -283,8 +283,9 @@ class Axes {
                   const MotionBounds& bounds = {});
   /// Begins to keep these velocities, and returns when taktd has begun. The axes keep them until
   /// stop(), until the end of their range, or until this program is silent. If the call fails, it
-  /// stops the axes. A speed axis takes the velocity in its unit; of the bounds it takes the
-  /// acceleration alone, and without one it follows the ramps of its drive.
+  /// stops the axes. A speed axis takes the velocity in its unit, and only the acceleration of
+  /// the bounds. Without it, the limit of the network file applies; without both, the drive follows
+  /// its own ramps.
   Done jog(const Eigen::Ref<const Eigen::VectorXd>& velocities, const MotionBounds& bounds = {});
   /// Begins to follow a leader, and returns when taktd has begun. The axes approach the moving
   /// state of the leader within their limits, and follow it until stop(), until another motion
