@@ -5,7 +5,7 @@
 #include "apps/command_line/finding_text.hpp"
 #include "apps/logic/logic_options.hpp"
 #include "apps/logic/logic_run.hpp"
-#include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/network_file/yaml/yaml_tree.hpp"
 
 namespace {
 

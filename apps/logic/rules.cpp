@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "apps/command_line/duration.hpp"
-#include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/network_file/yaml/yaml_tree.hpp"
 #include "eds_parser/report/report.hpp"
 #include "eds_parser/report/suggest.hpp"
 

@@ -6,7 +6,7 @@
 #include "apps/command_line/failure.hpp"
 #include "apps/command_line/known_words.hpp"
 #include "apps/takt/key_schema.hpp"
-#include "eds_parser/network_file/key_reference.hpp"
+#include "eds_parser/network_file/keys/key_reference.hpp"
 
 namespace takt {
 

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/network_file/key_reference.hpp"
-#include "eds_parser/network_file/sections.hpp"
+#include "eds_parser/network_file/keys/key_reference.hpp"
+#include "eds_parser/network_file/keys/sections.hpp"
 
 namespace takt {
 namespace {

@@ -4,8 +4,8 @@
 #include <set>
 #include <system_error>
 
-#include "eds_parser/network_file/read_devices.hpp"
-#include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/network_file/keys/read_devices.hpp"
+#include "eds_parser/network_file/yaml/yaml_tree.hpp"
 
 namespace takt {
 namespace {

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/network_file/read_devices.hpp"
-#include "eds_parser/network_file/read_network.hpp"
+#include "eds_parser/network_file/keys/read_devices.hpp"
+#include "eds_parser/network_file/keys/read_network.hpp"
 #include "eds_parser/plan/network_compiler.hpp"
 #include "eds_parser/print/plan/print_plan.hpp"
 #include "eds_parser/read/eds.hpp"

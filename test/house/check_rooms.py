@@ -51,9 +51,13 @@ ROOMS = {
                         "eds_parser/report eds_parser/dictionary eds_parser/specification eds_parser/plan/pdo "
                         "eds_parser/plan/device eds_parser/plan/boot eds_parser/plan/image eds_parser/plan/limits"),
     "eds_parser/budget": ("response times of all frames", "eds_parser/report eds_parser/plan"),
-    "eds_parser/network_file": ("reads the YAML file into a specification, and runs all steps up to the plan",
-                                EDS + " eds_parser/lcm eds_parser/check eds_parser/specification eds_parser/plan "
-                                "eds_parser/budget"),
+    "eds_parser/network_file/yaml": ("reads maps of YAML by tables of keys", "eds_parser/report eds_parser/specification"),
+    "eds_parser/network_file/keys": ("the keys of network files and of device data, and their readers",
+                                     EDS + " eds_parser/lcm eds_parser/network_file/yaml eds_parser/specification "
+                                     "eds_parser/plan"),
+    "eds_parser/network_file": ("runs all steps from a network file to the plan",
+                                EDS + " eds_parser/lcm eds_parser/network_file/keys eds_parser/network_file/yaml "
+                                "eds_parser/check eds_parser/specification eds_parser/plan eds_parser/budget"),
     "eds_parser/export": ("writes the plan for other tools: DBC, C++ header, LCM types", "eds_parser/report eds_parser/lcm"),
     "eds_parser/print": ("dictionaries, budgets and findings as text and JSON",
                          "eds_parser/report eds_parser/dictionary eds_parser/plan eds_parser/budget"),
@@ -149,7 +153,8 @@ ROOMS = {
     "apps/follow": ("takt-follow", "apps/axis apps/command_line apps/plot/motion master/lcm"),
     "apps/jog": ("takt-jog", "apps/axis apps/command_line apps/plot/motion master/lcm"),
     "apps/home": ("takt-home", "apps/axis apps/command_line apps/plot/motion master/lcm"),
-    "apps/logic": ("takt-logic", "apps/axis apps/command_line apps/plot eds_parser/network_file eds_parser/report master/lcm"),
+    "apps/logic": ("takt-logic", "apps/axis apps/command_line apps/plot eds_parser/network_file "
+                                 "eds_parser/network_file/yaml eds_parser/report master/lcm"),
     "apps/takt/live": ("commands for a running daemon: status, top, timing, EMCY, record",
                        "apps/command_line master/core master/explain master/gateway/message master/gateway/notice "
                        "master/rt/exchange master/linux " + LCM),
@@ -163,10 +168,11 @@ ROOMS = {
     "apps/takt/complete": ("names of nodes, objects and signals for the completion of shells",
                            "apps/command_line apps/takt/live eds_parser/network_file master/gateway/message master/linux"),
     "apps/takt/import": ("explains what takt makes of a bus.yml or a nodelist",
-                         "apps/command_line master/lcm eds_parser/specification eds_parser/network_file " + EDS),
+                         "apps/command_line master/lcm eds_parser/specification eds_parser/network_file eds_parser/network_file/keys "
+                         "eds_parser/network_file/yaml " + EDS),
     "apps/takt/learn": ("makes network files from recordings",
                         "apps/command_line master/wire master/trace eds_parser/specification "
-                        "eds_parser/network_file eds_parser/write " + EDS),
+                        "eds_parser/network_file eds_parser/network_file/keys eds_parser/write " + EDS),
     "apps/takt/smooth/judge": ("finds what makes axes rough in the signals of a recording", "master/wire"),
     "apps/takt/smooth": ("gets these signals from recordings and from a running bus, and reports the result",
                          "apps/command_line apps/takt/live apps/takt/learn apps/takt/smooth/judge master/wire master/trace "
@@ -196,7 +202,7 @@ ROOMS = {
     "apps/takt/trajectory": ("plans trajectories without a bus", "apps/command_line apps/plot master/motion"),
     "apps/takt": ("the tool: commands on files",
                   "apps/command_line eds_parser/check eds_parser/write eds_parser/export eds_parser/budget "
-                  "eds_parser/network_file eds_parser/print eds_parser/print/plan master/lcm master/lcm/envelope "
+                  "eds_parser/network_file eds_parser/network_file/keys eds_parser/print eds_parser/print/plan master/lcm master/lcm/envelope "
                   "master/linux master/linux/bus master/explain/frame master/trace master/black_box " + EDS),
     "apps/taktd/process": ("a process of a service: stderr, signals, systemd, waiting",
                            "master/linux master/gateway master/gateway/notice"),

@@ -7,9 +7,9 @@
 
 #include "apps/takt/import/unasked.hpp"
 #include "eds_parser/ini/number.hpp"
-#include "eds_parser/network_file/key_reference.hpp"
+#include "eds_parser/network_file/keys/key_reference.hpp"
 #include "eds_parser/network_file/load_network.hpp"
-#include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/network_file/yaml/yaml_tree.hpp"
 #include "eds_parser/table/name_of.hpp"
 
 namespace takt {

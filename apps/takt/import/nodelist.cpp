@@ -10,7 +10,7 @@
 
 #include "eds_parser/ini/ini.hpp"
 #include "eds_parser/ini/value_reader.hpp"
-#include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/network_file/yaml/yaml_tree.hpp"
 #include "eds_parser/read/eds.hpp"
 #include "eds_parser/report/text.hpp"
 

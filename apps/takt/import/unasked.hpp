@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/network_file/yaml/yaml_tree.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 
 namespace takt {

@@ -11,8 +11,8 @@
 #include "apps/command_line/whole_number.hpp"
 #include "apps/takt/learn/network_text.hpp"
 #include "apps/takt/learn/recording.hpp"
+#include "eds_parser/network_file/keys/read_devices.hpp"
 #include "eds_parser/network_file/load_network.hpp"
-#include "eds_parser/network_file/read_devices.hpp"
 
 namespace takt {
 namespace learn {

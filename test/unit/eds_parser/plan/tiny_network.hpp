@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/network_file/read_network.hpp"
+#include "eds_parser/network_file/keys/read_network.hpp"
 #include "eds_parser/plan/network_compiler.hpp"
 #include "eds_parser/read/eds.hpp"
 

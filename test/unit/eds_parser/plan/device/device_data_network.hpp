@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "eds_parser/network_file/read_devices.hpp"
+#include "eds_parser/network_file/keys/read_devices.hpp"
 #include "test/unit/eds_parser/plan/tiny_network.hpp"
 
 namespace takt::test {

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <gtest/gtest.h>
 
+#include "eds_parser/network_file/keys/read_devices.hpp"
 #include "eds_parser/network_file/load_network.hpp"
-#include "eds_parser/network_file/read_devices.hpp"
 #include "eds_parser/print/plan/print_plan.hpp"
 #include "test/unit/eds_parser/plan/device/device_data_network.hpp"
 

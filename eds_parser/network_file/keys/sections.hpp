@@ -1,5 +1,5 @@
 #pragma once
-#include "eds_parser/network_file/key_table.hpp"
+#include "eds_parser/network_file/yaml/key_table.hpp"
 #include "eds_parser/specification/network_spec.hpp"
 
 namespace takt {

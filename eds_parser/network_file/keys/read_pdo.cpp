@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "eds_parser/network_file/sections.hpp"
+#include "eds_parser/network_file/keys/sections.hpp"
 #include "eds_parser/table/number_in.hpp"
 
 namespace takt {

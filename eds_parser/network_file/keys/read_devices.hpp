@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/network_file/key_table.hpp"
+#include "eds_parser/network_file/yaml/key_table.hpp"
 #include "eds_parser/specification/device_data.hpp"
 
 namespace takt {

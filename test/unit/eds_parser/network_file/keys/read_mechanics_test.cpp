@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "eds_parser/network_file/key_reference.hpp"
-#include "eds_parser/network_file/read_network.hpp"
-#include "eds_parser/network_file/sections.hpp"
+#include "eds_parser/network_file/keys/key_reference.hpp"
+#include "eds_parser/network_file/keys/read_network.hpp"
+#include "eds_parser/network_file/keys/sections.hpp"
 #include "test/unit/eds_parser/plan/tiny_network.hpp"
 
 namespace takt {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 
-#include "eds_parser/network_file/sections.hpp"
+#include "eds_parser/network_file/keys/sections.hpp"
 
 namespace takt {
 namespace {

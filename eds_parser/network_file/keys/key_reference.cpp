@@ -1,10 +1,10 @@
-#include "eds_parser/network_file/key_reference.hpp"
+#include "eds_parser/network_file/keys/key_reference.hpp"
 
 #include <algorithm>
 #include <set>
 
-#include "eds_parser/network_file/read_devices.hpp"
-#include "eds_parser/network_file/sections.hpp"
+#include "eds_parser/network_file/keys/read_devices.hpp"
+#include "eds_parser/network_file/keys/sections.hpp"
 
 namespace takt {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "eds_parser/network_file/sections.hpp"
+#include "eds_parser/network_file/keys/sections.hpp"
 #include "eds_parser/table/image_layout.hpp"
 #include "eds_parser/table/sim_names.hpp"
 

@@ -1,10 +1,10 @@
-#include "eds_parser/network_file/key_reference.hpp"
+#include "eds_parser/network_file/keys/key_reference.hpp"
 
 #include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "eds_parser/network_file/read_network.hpp"
+#include "eds_parser/network_file/keys/read_network.hpp"
 
 namespace takt {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/network_file/yaml/yaml_tree.hpp"
 #include "eds_parser/report/network_report.hpp"
 #include "eds_parser/report/source.hpp"
 #include "eds_parser/specification/network_spec.hpp"

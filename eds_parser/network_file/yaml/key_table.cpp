@@ -1,4 +1,4 @@
-#include "eds_parser/network_file/key_table.hpp"
+#include "eds_parser/network_file/yaml/key_table.hpp"
 
 #include <algorithm>
 #include <cctype>

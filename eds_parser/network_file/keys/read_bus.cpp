@@ -2,7 +2,7 @@
 #include <cctype>
 
 #include "eds_parser/lcm/lcm_url.hpp"
-#include "eds_parser/network_file/sections.hpp"
+#include "eds_parser/network_file/keys/sections.hpp"
 
 // This file reads all sections of a network file except `master` and the nodes.
 

@@ -3,7 +3,7 @@
 #include <limits>
 #include <string>
 
-#include "eds_parser/network_file/sections.hpp"
+#include "eds_parser/network_file/keys/sections.hpp"
 
 namespace takt {
 namespace {

@@ -1,4 +1,4 @@
-#include "eds_parser/network_file/map_reader.hpp"
+#include "eds_parser/network_file/yaml/map_reader.hpp"
 
 #include <algorithm>
 #include <array>

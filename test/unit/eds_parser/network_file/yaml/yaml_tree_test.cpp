@@ -1,4 +1,4 @@
-#include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/network_file/yaml/yaml_tree.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "eds_parser/network_file/read_devices.hpp"
+#include "eds_parser/network_file/keys/read_devices.hpp"
 
 #include "eds_parser/dictionary/pdo_description.hpp"
-#include "eds_parser/network_file/sections.hpp"
-#include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/network_file/keys/sections.hpp"
+#include "eds_parser/network_file/yaml/yaml_tree.hpp"
 
 namespace takt {
 

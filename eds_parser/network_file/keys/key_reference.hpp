@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/network_file/key_table.hpp"
+#include "eds_parser/network_file/yaml/key_table.hpp"
 
 namespace takt {
 

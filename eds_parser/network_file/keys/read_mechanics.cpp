@@ -1,6 +1,6 @@
 #include <numbers>
 
-#include "eds_parser/network_file/sections.hpp"
+#include "eds_parser/network_file/keys/sections.hpp"
 
 namespace takt {
 namespace {

@@ -1,4 +1,4 @@
-#include "eds_parser/network_file/read_network.hpp"
+#include "eds_parser/network_file/keys/read_network.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

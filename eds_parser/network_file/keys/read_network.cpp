@@ -1,11 +1,11 @@
-#include "eds_parser/network_file/read_network.hpp"
+#include "eds_parser/network_file/keys/read_network.hpp"
 
 #include <algorithm>
 #include <set>
 #include <utility>
 
-#include "eds_parser/network_file/sections.hpp"
-#include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/network_file/keys/sections.hpp"
+#include "eds_parser/network_file/yaml/yaml_tree.hpp"
 #include "eds_parser/report/suggest.hpp"
 
 namespace takt {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "eds_parser/network_file/map_reader.hpp"
+#include "eds_parser/network_file/yaml/map_reader.hpp"
 #include "eds_parser/table/firmware.hpp"
 #include "eds_parser/table/time.hpp"
 
