@@ -8,7 +8,7 @@
 #include "apps/takt/learn/network_text.hpp"
 #include "apps/takt/learn/recording.hpp"
 #include "apps/takt/simulate/simulation.hpp"
-#include "eds_parser/network_file/read_devices.hpp"
+#include "eds_parser/network_file/keys/read_devices.hpp"
 #include "eds_parser/read/eds.hpp"
 #include "test/support/folder.hpp"
 
