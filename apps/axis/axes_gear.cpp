@@ -61,7 +61,7 @@ Done Axes::State::gear(const Gear& gear, const MotionBounds& bounds) {
   for (std::size_t i = 0; i < phases.size(); ++i) message.goals[i].position = phases[i];
   message.id = note_begin();
   if (!group.send_gear(message)) {
-    return obstacle(Obstacle::Kind::no_bus, "LCM did not take the gear");
+    return obstacle(Obstacle::Kind::no_bus, "LCM did not accept the command");
   }
   return wait_for_answer();
 }

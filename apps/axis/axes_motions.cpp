@@ -116,7 +116,7 @@ Done Axes::State::begin(const std::string& kind, const Values& values, const Mot
   command.id = note_begin();
   jog_goes_on_ = kind == "jog";
   if (group.send_motion(command)) return {};
-  return obstacle(Obstacle::Kind::no_bus, "LCM did not take the command");
+  return obstacle(Obstacle::Kind::no_bus, "LCM did not accept the command");
 }
 
 Done Axes::State::wait_for_answer() {

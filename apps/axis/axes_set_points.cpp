@@ -39,9 +39,9 @@ struct Axes::State::SetPoints {
 /// Returns why these axes do not take set-points of this kind now.
 Done Axes::State::check_set_points(const Values& values, const SetPoints& kind) {
   if (values.size() != size() || !values.allFinite()) {
-    return obstacle(
-        Obstacle::Kind::wrong_use,
-        fmt::format("{} values, or one that is not finite, for {} axes", values.size(), size()));
+    return obstacle(Obstacle::Kind::wrong_use,
+                    fmt::format("{} values for {} axes, or one of the values is not finite",
+                                values.size(), size()));
   }
   if (!is_current()) return restarted();
   if (readiness_ == Readiness::not_enabled) return not_enabled();
@@ -272,10 +272,11 @@ Done Axes::State::wait_for_profiles(std::chrono::nanoseconds longest) {
   for (const Index axis : axes) {
     if (!has_reached(axis)) before_target.push_back(axis);
   }
-  return obstacle(Obstacle::Kind::stopped,
-                  text_of_each(before_target,
-                               "{} stands, but its drive has not reached its target: bit 10 of its "
-                               "statusword 0x{:04X} is 0"));
+  return obstacle(
+      Obstacle::Kind::stopped,
+      text_of_each(before_target,
+                   "{} is at standstill, but its drive has not reached its target: bit 10 of its "
+                   "statusword 0x{:04X} is 0"));
 }
 
 /// Brings axes to rest that are not in cyclic synchronous position mode. A drive in profile

@@ -89,8 +89,11 @@ Done Axes::State::set(const std::string& name, double value) {
   const auto place = find_signal(name, Signals::outputs);
   if (!place) return std::unexpected{place.error()};
   if (leads(*place)) {
-    return obstacle(Obstacle::Kind::wrong_use,
-                    fmt::format("{} leads an axis: set() is for other outputs", name));
+    return obstacle(
+        Obstacle::Kind::wrong_use,
+        fmt::format(
+            "{} commands an axis, so enable() and the motions set it: set() is for other outputs",
+            name));
   }
   const std::array formats{format_of(group.input().signals()[*place])};
   const auto raw = Units{formats}.raw_of(0, value);

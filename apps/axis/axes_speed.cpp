@@ -151,9 +151,11 @@ Done Axes::State::reset_speed() {
 Done Axes::State::check_speeds(const Values& velocities, const MotionBounds& bounds) const {
   if (velocities.size() != size() ||
       (bounds.acceleration.size() > 1 && bounds.acceleration.size() != size())) {
-    return obstacle(Obstacle::Kind::wrong_use,
-                    fmt::format("{} values, or {} accelerations, for {} axes", velocities.size(),
-                                bounds.acceleration.size(), size()));
+    return obstacle(
+        Obstacle::Kind::wrong_use,
+        fmt::format("{} velocities and {} accelerations for {} axes: expected one velocity for "
+                    "each axis, and one acceleration for each axis, one for all axes, or none",
+                    velocities.size(), bounds.acceleration.size(), size()));
   }
   for (Index i = 0; i < size(); ++i) {
     const speed_axis_t& words = speed->at(i).words();

@@ -37,7 +37,7 @@ bool Axes::State::any(const AxisCondition& is) const { return std::ranges::any_o
 
 Done Axes::State::find() {
   if (options.timeout < shortest_timeout || options.timeout > longest_timeout) {
-    return obstacle(Obstacle::Kind::wrong_use, "the timeout is not one of 1 ms to 10 s");
+    return obstacle(Obstacle::Kind::wrong_use, "the timeout is outside 1 ms to 10 s");
   }
   const auto until = Clock::now() + options.longest;
   while (group.wait(axes_tick) != Input::fresh) {
@@ -179,7 +179,7 @@ void Axes::State::give_up_after_silence() {
   if ((held_.empty() && !has_set_points_) || silence <= options.timeout) return;
   held_.clear();
   end_set_points();
-  lost_text_ = fmt::format("this program was silent for {} ms, so its set-points were given up",
+  lost_text_ = fmt::format("this program was silent for {} ms, so its set-points were discarded",
                            silence / std::chrono::milliseconds{1});
 }
 

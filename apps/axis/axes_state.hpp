@@ -270,7 +270,7 @@ class Axes::State {
   Eigen::VectorXd decelerations_{};           // of target velocities that drives follow at once
   std::optional<Eigen::VectorXd> profile_targets_;  // the newest since the axes were stopped
   Clock::time_point last_values_{};                 // the newest image from which outputs were sent
-  std::string lost_text_;         // why set-points were given up, until a call tells it
+  std::string lost_text_;         // why set-points were discarded, until a call tells it
   std::int64_t request_id_ = 0;   // of the newest request
   std::int32_t id_ = 0;           // of the newest motion
   bool has_motion_ = false;       // false before the first motion, and after a stop

@@ -30,7 +30,8 @@ std::optional<double> ratio_of(std::string_view text) {
 }
 
 std::string no_ratio(const std::string& text) {
-  return ratio_of(text) ? std::string{} : text + " is neither a number nor two, such as 1/3";
+  return ratio_of(text) ? std::string{}
+                        : text + " is neither a finite number nor a finite ratio such as 1/3";
 }
 
 std::string not_finite(const std::string& text) {
@@ -52,7 +53,7 @@ ParsedFollow parse_follow(int argc, char** argv) {
       "Example:  takt-follow follow --axis slide --leader wheel --signal position_value \\\n"
       "              --ratio 1/4096 --velocity 5 --acceleration 40\n"
       "Lengths are in the unit of the axis (rad, m; counts if no unit is configured).\n"
-      "Exit codes: 0 the axis was stopped and disabled, 1 something blocks it, 2 wrong use,\n"
+      "Exit codes: 0 the axis was stopped and disabled, 1 something blocks the axis, 2 wrong use,\n"
       "3 no message of a daemon came.");
   app.set_version_flag("--version", "takt-follow " TAKT_VERSION);
   app.add_option("bus", options.program.bus,
@@ -60,32 +61,39 @@ ParsedFollow parse_follow(int argc, char** argv) {
   app.add_option_function<std::string>(
       "--axis", [&](const std::string& name) { options.program.axes = {name}; },
       "axis that follows (default: the only axis of the bus)");
-  app.add_option("--leader", options.leader, "axis that leads, or the node of --signal")
+  app.add_option("--leader", options.leader,
+                 "axis that leads, or the node whose input --signal names")
       ->required();
   app.add_option("--signal", options.signal,
                  "input of the leader to follow, for example position_value (default: the "
-                 "commanded position of the axis)");
+                 "commanded position of the axis that leads)");
   app.add_option_function<std::string>(
          "--ratio",
          [&](const std::string& text) { options.ratio = ratio_of(text).value_or(options.ratio); },
-         "units of the axis per unit of the leader, for example 0.5, -1/3 (1)")
+         "units of the axis per unit of the leader, for example 0.5 or -1/3 (1)")
       ->check(no_ratio);
-  app.add_option("--phase", options.phase,
-                 "catch up the position ratio * leader + PHASE (default: match the velocities)")
+  app.add_option(
+         "--phase", options.phase,
+         "reach and keep the position ratio * leader + PHASE (default: match only the velocities)")
       ->check(not_finite);
-  add_limit(app, "--modulo", options.modulo, "value at which the signal begins again");
+  add_limit(app, "--modulo", options.modulo,
+            "value at which the signal wraps around, for example the counts of one turn");
   add_duration(app, "--filter", options.filter_time,
                "time constant of the estimate of the signal's velocity, up to 10s (20ms)");
   add_limit(app, "--max-phase-error", options.max_phase_error,
-            "stop if the axis falls behind by more (default: catch up)");
+            "largest phase error; above it the axis stops (default: the axis falls behind and "
+            "catches up)");
   add_limit(app, "--velocity", options.velocity,
-            "velocity limit, unit/s (default: that of the network file)");
-  add_limit(app, "--acceleration", options.acceleration, "acceleration limit, unit/s^2 (the same)");
-  add_limit(app, "--jerk", options.jerk, "jerk limit, unit/s^3 (the same)");
+            "velocity limit, unit/s (default: the limit of the network file)");
+  add_limit(app, "--acceleration", options.acceleration,
+            "acceleration limit, unit/s^2 (default: the limit of the network file)");
+  add_limit(app, "--jerk", options.jerk,
+            "jerk limit, unit/s^3 (default: the limit of the network file)");
   add_duration(app, "--timeout", options.program.timeout,
-               "taktd stops the axis if this program is silent for so long, up to 10s (500ms)");
-  add_duration(app, "--for", options.seconds,
-               "follow for this time once the axis is locked, then stop");
+               "longest silence of this program, up to 10s; after it taktd stops the axis (500ms)");
+  add_duration(
+      app, "--for", options.seconds,
+      "follow for this time, which counts while the axis is locked to its leader, then stop");
   add_duration(app, "--wait", options.program.wait,
                "longest wait for the daemon and the drive (10s)");
   app.add_option("--plot", options.program.plot,

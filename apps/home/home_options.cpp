@@ -10,8 +10,7 @@ namespace takt {
 
 ParsedHome parse_home(int argc, char** argv) {
   HomeOptions options;
-  CLI::App app{"Homes axes: each drive finds its home position by the method that it has.",
-               "takt-home"};
+  CLI::App app{"Homes axes: each drive finds its home position by its homing method.", "takt-home"};
   app.footer(
       "Example:  takt-home demo shoulder elbow\n"
       "The method, the speeds and the longest time are those of `homing:` in the network file.\n"
@@ -26,11 +25,12 @@ ParsedHome parse_home(int argc, char** argv) {
       "--together", [&] { options.homing.order = HomingOptions::Order::together; },
       "home all axes at once, not one after the other");
   app.add_flag("--reset", options.reset, "reset the faults of the axes first");
-  add_duration(app, "--within", options.homing.longest,
-               "longest time of a homing run (default: that of the network file, else 60s)");
   add_duration(
-      app, "--timeout", options.program.timeout,
-      "the drives take their fallback if this program is silent for so long, up to 10s (500ms)");
+      app, "--within", options.homing.longest,
+      "longest time of a homing run (default: the time in the network file, otherwise 60s)");
+  add_duration(app, "--timeout", options.program.timeout,
+               "longest silence of this program, up to 10s; after it the drives take their "
+               "fallback (500ms)");
   add_duration(app, "--wait", options.program.wait,
                "longest wait for the daemon and the drives (10s)");
   app.add_option("--plot", options.program.plot,

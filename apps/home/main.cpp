@@ -11,7 +11,7 @@ namespace {
 void show(const takt::Axes& axes) {
   for (Eigen::Index i = 0; i < axes.size(); ++i) {
     const std::string& unit = axes.unit(i);
-    fmt::print("{} {} and stands at {:.4f} {}\n", axes.name(i),
+    fmt::print("{} {}, its position is {:.4f} {}\n", axes.name(i),
                axes.homed(i) ? "is homed" : "is not homed", axes.positions()(i),
                unit.empty() ? "counts" : unit);
   }

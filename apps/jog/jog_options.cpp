@@ -23,13 +23,13 @@ ParsedJog parse_jog(int argc, char** argv) {
   JogOptions options;
   CLI::App app{"Moves one axis for as long as a key is held. taktd runs the motion.", "takt-jog"};
   app.footer(
-      "Keys: right arrow, l or + moves forward, left arrow, h or - backward; each other key stops\n"
-      "the axis; q ends the program, and so does Ctrl-C.\n"
+      "Keys: right arrow, l or + moves the axis forward; left arrow, h or - moves it backward.\n"
+      "Every other key stops the axis. q and Ctrl-C stop the axis and end the program.\n"
       "Example:  takt-jog demo --axis shoulder --velocity 0.5\n"
       "Lengths are in the unit of the axis (rad, m; counts if no unit is configured), velocities "
       "in\n"
       "this unit per second. An inverter has speeds in its unit (rpm, Hz) and no lengths.\n"
-      "Exit codes: 0 the axis was stopped and disabled, 1 something blocks it, 2 wrong use,\n"
+      "Exit codes: 0 the axis was stopped and disabled, 1 something blocks the axis, 2 wrong use,\n"
       "3 no message of a daemon came.");
   app.set_version_flag("--version", "takt-jog " TAKT_VERSION);
   app.add_option("bus", options.program.bus,
@@ -46,14 +46,16 @@ ParsedJog parse_jog(int argc, char** argv) {
          "acceleration limit, unit/s^2 (default: the velocity is reached in 0.25 s; an inverter "
          "follows its own ramp)")
       ->check(CLI::PositiveNumber & CLI::Validator{moving, ""});
-  app.add_option("--jerk", options.jerk, "jerk limit, unit/s^3 (default: that of the network file)")
+  app.add_option("--jerk", options.jerk,
+                 "jerk limit, unit/s^3 (default: the limit of the network file)")
       ->check(CLI::PositiveNumber & CLI::Validator{moving, ""});
   add_duration(app, "--dead-man", options.dead_man,
-               "the axis stops if the key is not repeated for so long (250ms)");
+               "longest time between two repetitions of the key; after it the axis stops (250ms)");
   add_duration(app, "--first", options.first,
-               "the same after the first press, before the terminal repeats (700ms)");
+               "longest time from the press of the key to its first repetition; after it the axis "
+               "stops (700ms)");
   add_duration(app, "--timeout", options.program.timeout,
-               "taktd stops the axis if this program is silent for so long, up to 10s (500ms)");
+               "longest silence of this program, up to 10s; after it taktd stops the axis (500ms)");
   add_duration(app, "--for", options.seconds, "jog for this time without a keyboard, then stop");
   add_duration(app, "--wait", options.program.wait,
                "longest wait for the daemon and the drive (10s)");

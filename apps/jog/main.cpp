@@ -11,8 +11,9 @@ namespace {
 takt::Done run(const takt::JogOptions& options) {
   using takt::Obstacle;
   if (!options.seconds && !takt::Keyboard::exists()) {
-    return std::unexpected{Obstacle{.kind = Obstacle::Kind::wrong_use,
-                                    .text = "stdin is no terminal: give --for TIME"}};
+    return std::unexpected{
+        Obstacle{.kind = Obstacle::Kind::wrong_use,
+                 .text = "stdin is not a terminal, so keys can't be read: give --for TIME"}};
   }
   return takt::run_with_plot(options.program, takt::open_axis,
                              [&](takt::Axes& axis) { return takt::JogRun{axis, options}.run(); });

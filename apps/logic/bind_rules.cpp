@@ -166,7 +166,7 @@ class LogicProgram::Binder {
     const auto use = whole_.emplace(found->signal, !found->bit).first;
     if (use->second != !found->bit) {
       report_.error(rule.pos, "target", "other rules set ", found->bit ? "all" : "single bits",
-                    " of this output");
+                    " of this output: set either the whole output or single bits of it");
       return;
     }
     target.is_marker = false;

@@ -17,14 +17,13 @@ ParsedLogic parse_logic(int argc, char** argv) {
       "A rule of the file:  - {set: io.lamp, when: io.button and not shoulder.fault, off_delay: "
       "1s}\n"
       "Ctrl-C ends the program; the outputs take the fallback of `on_timeout`.\n"
-      "Exit codes: 0 ended by a signal or --for, 1 something blocks it, 2 wrong use or a wrong "
-      "file,\n"
-      "3 no message of a daemon came.");
+      "Exit codes: 0 ended by a signal or --for, 1 something blocks the program, 2 wrong use or a\n"
+      "wrong file, 3 no message of a daemon came.");
   app.set_version_flag("--version", "takt-logic " TAKT_VERSION);
   app.add_option("rules", options.file, "file with the rules")->required()->type_name("FILE");
   app.add_option("bus", options.program.bus,
                  "name of the bus (default: the first bus whose daemon sends)");
-  app.add_flag("--check", options.check, "print the rules, without a bus");
+  app.add_flag("--check", options.check, "print the rules and end; this needs no bus");
   app.add_flag("--quiet", options.quiet, "do not print the changes of outputs and markers");
   app.add_option("--plot", options.program.plot,
                  "write a picture of all inputs and outputs of the rules, as an SVG file")

@@ -20,7 +20,8 @@ takt::Done run(const takt::LogicOptions& options) {
   if (!text) return wrong_file("can't read " + options.file);
   takt::Findings findings;
   std::vector<takt::Rule> rules = takt::read_rules(*text, options.file, findings);
-  if (takt::print_findings(findings)) return wrong_file("no rule of " + options.file + " runs");
+  if (takt::print_findings(findings))
+    return wrong_file("no rule of " + options.file + " is run, because the file has errors");
   if (options.check) {
     for (const takt::Rule& rule : rules) fmt::print("{}\n", takt::rule_text(rule));
     return {};

@@ -145,7 +145,8 @@ class Reader {
     if (found != nullptr) {
       rule.second = read_expression(*found);
     } else if (rule.kind == RuleKind::latch) {
-      report_.error(node.pos, "rule", "`off` is missing: a latch needs what resets it");
+      report_.error(node.pos, "rule",
+                    "`off` is missing: a latch needs an expression that resets it");
     }
   }
 

@@ -26,7 +26,7 @@ def arguments():
     parser.add_argument("--jog", type=float, metavar="VELOCITY", help="keep this velocity instead")
     parser.add_argument("--for", type=float, default=2.0, dest="seconds", help="time of the jog (2)")
     for limit in LIMITS:
-        parser.add_argument(f"--{limit}", type=float, default=0.0, help=f"limit of {limit} (that of the network file)")
+        parser.add_argument(f"--{limit}", type=float, default=0.0, help=f"limit of {limit} (default: from the network file)")
     given = parser.parse_args()
     if (given.position is None) == (given.jog is None):
         parser.error("give a position, or --jog VELOCITY")

@@ -65,7 +65,8 @@ TEST_F(Follow, WhatIsWrongIsSaid) {
   Process no_ratio{follow(daemon_, {"--leader", "shoulder", "--ratio", "1/0"}),
                    folder_ / "no_ratio"};
   EXPECT_EQ(no_ratio.wait([this] { hear_once(); }), 2);
-  EXPECT_NE(no_ratio.output().find("1/0 is neither a number nor two"), std::string::npos);
+  EXPECT_NE(no_ratio.output().find("1/0 is neither a finite number nor a finite ratio"),
+            std::string::npos);
 }
 
 }  // namespace

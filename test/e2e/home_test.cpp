@@ -77,9 +77,9 @@ TEST_F(Home, HomesAxesAndDisablesThem) {
   start("17");
   Process program = home({"shoulder", "elbow"});
   EXPECT_EQ(wait(program), 0) << program.output();
-  EXPECT_NE(program.output().find("shoulder is homed and stands at 0.00"), std::string::npos)
+  EXPECT_NE(program.output().find("shoulder is homed, its position is 0.00"), std::string::npos)
       << program.output();
-  EXPECT_NE(program.output().find("elbow is homed and stands at"), std::string::npos);
+  EXPECT_NE(program.output().find("elbow is homed, its position is"), std::string::npos);
   EXPECT_TRUE(daemon_->hear([&] { return !is_enabled("shoulder") && !is_enabled("elbow"); }));
   EXPECT_GE(daemon_->events("homed"), 2U);
   EXPECT_EQ(daemon_->events("fallback_begun"), 0U);

@@ -56,7 +56,7 @@ def wrong_use(tools):
     tools.says("takt-jog moves at no velocity of 0", ["takt-jog", "--velocity", "0"], 2, "0 is not a finite number other than 0")
     tools.says("so has one of takt-follow", ["takt-follow", "--leadr", "x"], 2, "did you mean '--leader'?")
     tools.says("takt-follow asks for the leader", ["takt-follow"], 2, "--leader is required")
-    tools.says("takt-follow takes no ratio of 1/0", ["takt-follow", "--leader", "x", "--ratio", "1/0"], 2, "neither a number nor two")
+    tools.says("takt-follow takes no ratio of 1/0", ["takt-follow", "--leader", "x", "--ratio", "1/0"], 2, "1/0 is neither a finite number nor a finite ratio")
     tools.says("so has one of takt-logic", ["takt-logic", "rules.yaml", "--chek"], 2, "did you mean '--check'?")
     tools.says("takt-logic prints its rules", ["takt-logic", ROOT / "share/demo/logic/rules.yaml", "--check"], 0, "count parts when")
     tools.says("so has one of takt-home", ["takt-home", "demo", "--togehter"], 2, "did you mean '--together'?")

@@ -134,7 +134,7 @@ check("or of the type that is given", bus.sdo_read("shoulder.0x2000:3", "i16") =
 bus.sdo_write("shoulder.0x2000:3", 7, "u16")
 check("also to write it", daemon.objects[5, 0x2000, 3] == b"\x07\0")
 for call, words in (((bus.sdo_write, "shoulder.0x2000:3", 7), "give `type`"), ((bus.sdo_write, "shoulder.0x2000:3", 70000, "u16"), "can't hold"),
-                    ((bus.sdo_read, "shoulder.0x2000:3", "u17"), "none of the types"), ((bus.sdo_read, "shoulder.colour"), "give its index"),
+                    ((bus.sdo_read, "shoulder.0x2000:3", "u17"), "not one of the types"), ((bus.sdo_read, "shoulder.colour"), "give its index"),
                     ((bus.sdo_read, "wrist.0x2000:3"), "no node 'wrist'"), ((bus.sdo_write, "shoulder.statusword", 1.5), "does not fit 1.5")):
     kind, text = obstacle(*call)
     check(f"a wrong access is named: {words}", kind == "wrong use" and words in text, (kind, text))

@@ -87,7 +87,7 @@ axes.profile_move(5.0, wait=False)
 drive.drive_itself = lambda: None
 kind, text = obstacle(axes.wait)
 check("a drive that stands before its target is named", kind == "stopped" and
-      "shoulder stands, but its drive has not reached its target" in text, (kind, text))
+      "shoulder is at standstill, but its drive has not reached its target" in text, (kind, text))
 daemon, axes, drive = in_mode(1)
 axes.profile_move(5.0, wait=False)
 check("a wait has its limit", obstacle(axes.wait, 0.1)[0] == "time over" and axes.moving)
@@ -169,7 +169,7 @@ axes.command_velocities(1.0)
 for _ in range(300):
     daemon.pass_cycle()
 kind, text = obstacle(axes.run, 0.1)
-check("a silence gives a velocity up", kind == "stopped" and "so its set-points were given up" in text, (kind, text))
+check("a silence gives a velocity up", kind == "stopped" and "so its set-points were discarded" in text, (kind, text))
 commanded = []
 recorder = type("Recorder", (dict,), {"__setitem__": lambda self, key, value: commanded.append(value)})
 drive.targets = recorder(drive.targets)
@@ -199,11 +199,11 @@ axes.set_mode(3, "elbow")
 check("one axis can have another mode", [drive.mode for drive in daemon.drives] == [8, 3])
 texts = obstacle(axes.command_velocities, 1, 1)[1], obstacle(axes.move, 1.0, 1.0)[1]
 check("then neither kind of motion is for all axes", "shoulder is in mode 8" in texts[0] and
-      "elbow: taktd does not count it as enabled" in texts[1], texts)
+      "elbow: taktd does not treat the axis as enabled" in texts[1], texts)
 axes.set_mode(8, 1)
 axes.move(1.0, 1.0)
 check("and come back", axes.positions == [1.0, 1.0])
-check("a wrong axis is named", "'wrist' is none of the axes" in obstacle(axes.set_mode, 3, "wrist")[1])
+check("a wrong axis is named", "'wrist' is not one of the axes" in obstacle(axes.set_mode, 3, "wrist")[1])
 
 for place, (node, index, *words) in enumerate(LAYOUT):
     LAYOUT[place] = (node, 0x60C1 if index == 0x607A else index, *words)

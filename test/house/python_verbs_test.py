@@ -86,7 +86,7 @@ check("and the drives are left alone", daemon.drives[0].controlword == 0 and not
 for _ in range(300):
     daemon.pass_cycle()
 check("it ends with a silence of the program", daemon.io_life < daemon.cycle)
-check("and the next run() says so", "its set-points were given up" in obstacle(axes.run, 0.1)[1])
+check("and the next run() says so", "its set-points were discarded" in obstacle(axes.run, 0.1)[1])
 axes.run(1.0)
 check("and does not come again by itself", daemon.io_life < daemon.cycle)
 axes.set("io.valve", 0.5)
@@ -97,7 +97,7 @@ axes.run(0.1)
 check("and ends the value", daemon.io_life == life)
 for name, value, words in (("io.valve", 40.0, "can't hold 40.0"), ("io.valve", float("nan"), "can't hold nan"),
                            ("io.switches", 1.0, "is an input"), ("io.lamp", 1.0, "there are: io.switches, io.valve"),
-                           ("shoulder.controlword", 0.0, "is a word of an axis")):
+                           ("shoulder.controlword", 0.0, "commands an axis")):
     kind, text = obstacle(axes.set, name, value)
     check("a wrong output is named", kind == "wrong use" and words in text and daemon.io_life == life, (kind, text))
 daemon.holder = "another"

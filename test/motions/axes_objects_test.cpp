@@ -95,7 +95,7 @@ TEST_F(AxesObjects, OutputsAreGivenUpAfterASilence) {
   std::this_thread::sleep_for(2100ms);
   const Obstacle lost = obstacle_of(axes.run(10ms));
   EXPECT_EQ(lost.kind, Kind::stopped);
-  EXPECT_THAT(lost.text, HasSubstr("its set-points were given up"));
+  EXPECT_THAT(lost.text, HasSubstr("its set-points were discarded"));
   EXPECT_TRUE(axes.run(10ms)) << "it is told once";
 }
 
@@ -109,7 +109,7 @@ TEST_F(AxesObjects, OutputsThatCantBeSetAreRefusedInWords) {
   EXPECT_THAT(text("io.lamp", 1),
               AllOf(HasSubstr("no output 'io.lamp'"), HasSubstr("this node has: ")));
   EXPECT_THAT(text("lamp", 1), HasSubstr("no node 'lamp'"));
-  EXPECT_THAT(text("shoulder.0x607A", 1), HasSubstr("leads an axis"));
+  EXPECT_THAT(text("shoulder.0x607A", 1), HasSubstr("commands an axis"));
   EXPECT_THAT(text("io.0x6411:1", -5), HasSubstr("io"));
   EXPECT_EQ(io_value(0x6411), 0);
   EXPECT_THAT(obstacle_of(axes.signal("io.0x6000:9")).text, HasSubstr("no value 'io.0x6000:9'"));

@@ -215,7 +215,7 @@ TEST_F(AxesSetPoints, AreGivenUpAfterASilence) {
   std::this_thread::sleep_for(2100ms);
   const Obstacle lost = obstacle_of(axes_->run(10ms));
   EXPECT_EQ(lost.kind, Kind::stopped);
-  EXPECT_THAT(lost.text, HasSubstr("its set-points were given up"));
+  EXPECT_THAT(lost.text, HasSubstr("its set-points were discarded"));
   EXPECT_EQ(value(shoulder, 0x60FF), 0);
 }
 

@@ -292,7 +292,7 @@ class Axes(View, Bus):
             return self._link.axes[names.index(axis)]
         if isinstance(axis, int) and 0 <= axis < len(names):
             return self._link.axes[axis]
-        raise Obstacle("wrong use", f"'{axis}' is none of the axes {', '.join(names)}")
+        raise Obstacle("wrong use", f"'{axis}' is not one of the axes {', '.join(names)}")
 
     def _needs_position(self) -> None:
         if self._speed:

@@ -32,7 +32,7 @@ class Bus:
         environment. `check_images`: accept only messages that taktd has signed; None:
         TAKT_CHECK_IMAGES is "true". share/doc/security.md describes both."""
         if not 0.001 <= timeout <= 10.0:
-            raise Obstacle("wrong use", f"a timeout of {timeout} s is not one of 1 ms to 10 s")
+            raise Obstacle("wrong use", f"a timeout of {timeout} s is outside 1 ms to 10 s")
         self._link = Link(bus, timeout, longest, keys, check_images)
         self._services, self._outputs = Services(self._link), Outputs(self._link)
         self._events: deque[event_t] = deque(maxlen=MOST_EVENTS)

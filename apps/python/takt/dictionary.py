@@ -57,7 +57,7 @@ def code_of(name: str, word: str | None, known: int | None) -> int | None:
     if word is None:
         return known
     if word not in TYPES:
-        raise Obstacle("wrong use", f"{name}: '{word}' is none of the types {', '.join(TYPES)}")
+        raise Obstacle("wrong use", f"{name}: '{word}' is not one of the types {', '.join(TYPES)}")
     return TYPES[word]
 
 

@@ -221,7 +221,7 @@ class Drives:
                     "--no-motions, and are 6041 and 6064 in TPDOs and 607A in an RPDO of the "
                     "drive?")
         return "" if axis.motion.state != NOT_ENABLED else (
-            f"{axis.name}: taktd does not count it as enabled: is its mode of operation "
+            f"{axis.name}: taktd does not treat the axis as enabled: is its mode of operation "
             f"{axis.motion_mode}, and is its target position sent?")
 
     def _target(self, axis: Axis) -> int | None:

@@ -40,7 +40,7 @@ def read_keys(path: str) -> dict[str, bytes]:
     except ValueError:
         keys = {}
     if len(keys) != len(lines) or any(len(secret) != 32 for secret in keys.values()):
-        raise ValueError(f"key file {path}: each line is a name of its own and 64 hexadecimal digits")
+        raise ValueError(f"key file {path}: each line needs a unique name and 64 hexadecimal digits")
     return keys
 
 

@@ -39,7 +39,7 @@ def _enter(link: Link, drives: Drives, axes: list[Axis]) -> None:
     if not link.wait(lambda: there() or disabled(), link.longest) or disabled():
         raise Obstacle("blocked", "; ".join(filter(None, map(drives.why, axes))) or "; ".join(
             f"{axis.name}: it does not show homing mode (0x6061 is {drives.shown_mode(axis)}): is "
-            "0x6060 in an RPDO, and has the drive this mode (0x6502)?"
+            "0x6060 in an RPDO, and does the drive support this mode (0x6502)?"
             for axis in axes if drives.shown_mode(axis) != HOMING))
 
 

@@ -174,7 +174,8 @@ class Link:
             except ValueError:  # the type has other fields
                 if kind is layout_t and self.session is None:
                     raise Obstacle("wrong use", "taktd sends another layout_t than this package "
-                                                "knows: install that of its version") from None
+                                                "knows: install the package of that "
+                                                "taktd") from None
             except struct.error:
                 pass
             else:
@@ -208,8 +209,8 @@ class Link:
 
     def _on_layout(self, layout: layout_t) -> None:
         if layout.schema != SCHEMA:
-            raise Obstacle("wrong use", f"taktd speaks schema {layout.schema} of the messages, "
-                                        f"this program {SCHEMA}")
+            raise Obstacle("wrong use", f"taktd uses schema {layout.schema} of the messages, "
+                                        f"and this program uses {SCHEMA}")
         if self.session is not None:
             self._restarted |= (layout.session, layout.hash) != (self.session, self._hash)
             return

@@ -23,7 +23,7 @@ class Outputs:
     def signal(self, name: str) -> float:
         link, place = self._link, self._place(name)
         if place not in link.values:
-            raise Obstacle("blocked", f"{name}: no value of it has come")
+            raise Obstacle("blocked", f"{name}: no value has come")
         if place in link.stale:
             raise Obstacle("blocked", f"{name}: its newest value has not come in time")
         return decode(link.signals[place], link.values[place])
@@ -35,8 +35,8 @@ class Outputs:
         if not signal.output:
             raise Obstacle("wrong use", f"{name} is an input of the master: no program sets it")
         if any(place in axis.places.values() for axis in link.axes):
-            raise Obstacle("wrong use", f"{name} is a word of an axis, which enable() and motions "
-                                        "command")
+            raise Obstacle("wrong use", f"{name} commands an axis, so enable() and the motions "
+                                        "set it")
         raw = encode(signal, value)
         if raw is None:
             raise Obstacle("wrong use", f"{name} can't hold {value} {signal.unit}".rstrip())
@@ -98,10 +98,10 @@ class Outputs:
                  if (place in places if places else signal.node == node)]
         what = "names several signals" if places else "names no signal of the PDOs"
         raise Obstacle("wrong use", f"'{name}' {what} of bus {self._link.bus}; there are: "
-                                    f"{', '.join(known) or 'none of this node'}")
+                                    f"{', '.join(known) or 'no signals of this node'}")
 
     def take_loss(self) -> str:
-        """Says, once, that values were given up after a silence. Empty: none were."""
+        """Says, once, that values were discarded after a silence. Empty: none were."""
         lost, self._lost = self._lost, ""
         return lost
 
@@ -109,7 +109,7 @@ class Outputs:
         silence = self._link.now() - self._sent
         if any(self._values.values()) and silence > self._link.timeout:
             self._lost = (f"this program was silent for {silence * 1000:.0f} ms, so its set-points "
-                          "were given up")
+                          "were discarded")
         if silence > self._link.timeout:
             self._values = {}
 

@@ -102,8 +102,8 @@ class Profiles:
             raise Obstacle("time over", "the axes still move")
         if late():
             raise Obstacle("stopped", "; ".join(
-                f"{axis.name} stands, but its drive has not reached its target: its statusword is "
-                f"0x{axis.statusword:04X}" for axis in late()))
+                f"{axis.name} is at standstill, but its drive has not reached its target: its "
+                f"statusword is 0x{axis.statusword:04X}" for axis in late()))
         self._given = None
 
     def stop(self) -> None:

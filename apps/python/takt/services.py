@@ -31,7 +31,7 @@ class Services:
     def nmt(self, command: str, node: str) -> None:
         request = request_t()
         if command not in NMT:
-            raise Obstacle("wrong use", f"'{command}' is none of {', '.join(NMT)}")
+            raise Obstacle("wrong use", f"'{command}' is not one of {', '.join(NMT)}")
         request.service, request.nmt_command = "nmt", NMT[command]
         request.data = b""
         request.node_id = 0 if node == "all" else self._node_id(node)

@@ -136,15 +136,15 @@ Finding beat_finding(const AxisView& view, const Arrivals& seen, const Rhythm& r
   const double apart = std::abs(1 / ms(rhythm.period) - 1 / ms(view.cycles.period));
   return {.cause = Cause::clock_beat,
           .text = fmt::format(
-              "Set-points come every {:.4f} ms and SYNC every {:.4f} ms: the sender runs on a "
-              "clock of its own, and its set-points wander over SYNC once in {:.2f} s. In motion, "
-              "{} got no set-point and {} got two.",
+              "Set-points come every {:.4f} ms and SYNC every {:.4f} ms: the sender does not use "
+              "the clock of SYNC, so its set-points drift through a whole period of SYNC once in "
+              "{:.2f} s. In motion, {} got no set-point and {} got two.",
               ms(rhythm.period), ms(view.cycles.period / view.cycles.stride), 1e-3 / apart,
               counted(seen.skipped.count + seen.late.count + seen.early.count, "cycle"),
               seen.overwritten.count + seen.late.count + seen.early.count),
           .remedy =
               "Let the sender compute and send one set-point for each SYNC that it receives, "
-              "instead of using a timer of its own.",
+              "instead of using its own timer.",
           .count = seen.skipped.count + seen.overwritten.count + seen.late.count + seen.early.count,
           .first = earliest({seen.late, seen.early, seen.skipped, seen.overwritten})};
 }
@@ -170,8 +170,8 @@ void add_late(const AxisView& view, const Arrivals& seen, const Rhythm& rhythm,
     findings.push_back(
         {.cause = Cause::bus_load,
          .gravity = gravity_of(late.count),
-         .text = fmt::format("Other frames hold the wire when the set-point is due: {} came "
-                             "behind SYNC, by up to {:.3f} ms, {}.",
+         .text = fmt::format("Other frames occupy the bus when the set-point is due: {} came after "
+                             "the next SYNC instead of before it, by up to {:.3f} ms, {}.",
                              counted(late.count, "set-point"), ms(worst), first_text(late)),
          .remedy = "Give the RPDO a lower COB-ID, send it earlier after SYNC, send less "
                    "(inhibit times, fewer PDOs), or raise the bit rate. `takt budget` computes "
@@ -183,13 +183,12 @@ void add_late(const AxisView& view, const Arrivals& seen, const Rhythm& rhythm,
   findings.push_back(
       {.cause = Cause::late,
        .gravity = gravity_of(late.count),
-       .text =
-           fmt::format("{} came behind the SYNC that should be after it, by up to {:.3f} ms, {}. "
-                       "The drive gets none in one cycle and two in the next.{}",
-                       counted(late.count, "set-point"), ms(worst), first_text(late),
-                       seen.early.count == 0
-                           ? ""
-                           : fmt::format(" {} more came one SYNC too early.", seen.early.count)),
+       .text = fmt::format("{} came after the next SYNC instead of before it, by up to {:.3f} ms, "
+                           "{}. The drive gets no set-point in one cycle and two in the next.{}",
+                           counted(late.count, "set-point"), ms(worst), first_text(late),
+                           seen.early.count == 0 ? ""
+                                                 : fmt::format(" {} more came one SYNC too early.",
+                                                               seen.early.count)),
        .remedy = fmt::format("Set-points usually come {:.3f} ms after SYNC, in a period of {:.3f} "
                              "ms: send them earlier, and from a real-time thread.",
                              ms(rhythm.usual_phase), ms(view.cycles.period)),
@@ -203,13 +202,13 @@ void add_early(const AxisView& view, const Arrivals& seen, const Rhythm& rhythm,
   findings.push_back(
       {.cause = Cause::early,
        .gravity = gravity_of(early.count),
-       .text = fmt::format("{} came before the SYNC that should be in front of it, by up to {:.3f} "
-                           "ms, {}. The drive gets two in one "
-                           "cycle and none in the next.",
-                           counted(early.count, "set-point"),
-                           ms(*std::ranges::max_element(seen.earliness)), first_text(early)),
+       .text =
+           fmt::format("{} came before the previous SYNC instead of after it, by up to {:.3f} ms, "
+                       "{}. The drive gets two set-points in one cycle and none in the next.",
+                       counted(early.count, "set-point"),
+                       ms(*std::ranges::max_element(seen.earliness)), first_text(early)),
        .remedy = fmt::format("Set-points usually come {:.3f} ms after SYNC, in a period of {:.3f} "
-                             "ms: send them after SYNC was seen, not by a timer.",
+                             "ms: send them when SYNC has come, not by a timer.",
                              ms(rhythm.usual_phase), ms(view.cycles.period)),
        .count = early.count,
        .first = early.first});
@@ -245,17 +244,17 @@ void judge_arrivals(const AxisView& view, Findings& findings) {
          .first = seen.skipped.first});
   }
   if (seen.overwritten.count != 0) {
-    findings.push_back(
-        {.cause = Cause::overwritten,
-         .gravity = gravity_of(seen.overwritten.count),
-         .text =
-             fmt::format("{} in motion got two set-points, {}: the second one replaces "
-                         "the first one before the drive has used it.",
-                         counted(seen.overwritten.count, "cycle"), first_text(seen.overwritten)),
-         .remedy = "Send one set-point for each SYNC. A sender that catches up after a delay "
-                   "should leave out what is too late, and no second one may run.",
-         .count = seen.overwritten.count,
-         .first = seen.overwritten.first});
+    findings.push_back({.cause = Cause::overwritten,
+                        .gravity = gravity_of(seen.overwritten.count),
+                        .text = fmt::format(
+                            "{} in motion got two set-points, {}: the second one replaces "
+                            "the first one before the drive has used it.",
+                            counted(seen.overwritten.count, "cycle"), first_text(seen.overwritten)),
+                        .remedy = "Send one set-point for each SYNC. After a delay, the sender "
+                                  "should leave out the set-points that are too late instead of "
+                                  "sending all of them. Look for a second sender, too.",
+                        .count = seen.overwritten.count,
+                        .first = seen.overwritten.first});
   }
 }
 

@@ -109,7 +109,7 @@ void judge_ripple(const Following& following, Findings& findings) {
   const double allowed = following.by_velocity ? 0.12 : 0.06;
   if (following.ripple < allowed || following.ripple_units < 2) return;
   const std::string frequency =
-      following.frequency == 0 ? "" : fmt::format(", mostly with {:.1f} Hz", following.frequency);
+      following.frequency == 0 ? "" : fmt::format(", mostly at {:.1f} Hz", following.frequency);
   findings.push_back(
       {.cause = Cause::actual_ripple,
        .text = fmt::format(

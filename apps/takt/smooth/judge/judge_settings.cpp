@@ -39,12 +39,12 @@ void judge_interpolation(const AxisView& view, Findings& findings) {
   findings.push_back(
       {.cause = Cause::interpolation_unset,
        .gravity = Gravity::warning,
-       .text = fmt::format(
-           "{} It interpolates over the period that it keeps, by default often 1 ms, while its "
-           "set-points come every {:.3f} ms.",
-           settings.interpolation_refused ? "The drive has refused the write to 60C2."
-                                          : "The boot does not write 60C2.",
-           ms(period)),
+       .text =
+           fmt::format("{} The drive interpolates over the period that is in 60C2, by default "
+                       "often 1 ms, while its set-points come every {:.3f} ms.",
+                       settings.interpolation_refused ? "The drive has refused the write to 60C2."
+                                                      : "The boot does not write 60C2.",
+                       ms(period)),
        .remedy = settings.interpolation_refused
                      ? std::string{"Look in the manual for the periods that the drive accepts in "
                                    "60C2, and use one of them as the period of SYNC."}
@@ -60,7 +60,7 @@ void judge_settings(const AxisView& view, Findings& findings) {
     findings.push_back(
         {.cause = Cause::no_sync,
          .text = fmt::format("There is no SYNC: set-points come by event, about every {:.3f} ms, "
-                             "and the clock of the drive knows nothing of the clock of the sender.",
+                             "and the clocks of the drive and of the sender are not synchronised.",
                              ms(view.cycles.period)),
          .remedy = "Produce SYNC with the period of the set-points, give the RPDO transmission "
                    "type 1, and write that period to 60C2."});

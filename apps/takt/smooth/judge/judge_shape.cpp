@@ -94,7 +94,7 @@ bool add_coarse(const AxisView& view, Findings& findings) {
        .remedy = rounded ? "The sender rounds its positions: convert them to increments without "
                            "rounding before."
                          : "Choose finer units in the drive (0x608F, 0x6091, 0x6092), or a longer "
-                           "period of the set-points with 60C2 for it."});
+                           "period of the set-points, with the same period in 60C2."});
   return true;
 }
 

@@ -113,7 +113,7 @@ bool add_slow_values(const AxisView& view, Findings& findings) {
       {.cause = Cause::slow_values,
        .text = fmt::format("The value of the set-point changes only every {} cycles, about every "
                            "{:.3f} ms, while a set-point is sent every {:.3f} ms: the axis moves "
-                           "in stairs.",
+                           "in steps.",
                            runs.usual, ms(period), ms(cycles.period)),
        .remedy = fmt::format("Compute a set-point for each SYNC. If the application is too slow, "
                              "let the master or the drive make the path: a motion of the master, "
@@ -135,7 +135,7 @@ void add_value_beat(const AxisCycles& cycles, std::size_t times, double apart, b
            slower ? "A value is sent twice" : "A value is left out", apart, times,
            seconds(cycles.cycles[first].end), ms(cycles.period) * factor, ms(cycles.period)),
        .remedy = "Let the application compute one set-point for each SYNC or each image that it "
-                 "receives, instead of using a timer of its own.",
+                 "receives, instead of using its own timer.",
        .count = times,
        .first = cycles.cycles[first].end});
 }
@@ -149,11 +149,11 @@ void add_duplicated(const AxisCycles& cycles, const Strange& strange, Findings& 
   findings.push_back(
       {.cause = Cause::duplicated,
        .gravity = times > 2 ? Gravity::error : Gravity::warning,
-       .text = fmt::format("In motion, a value is sent again {}, first at {:.3f} s. A longer step "
-                           "makes up for it {}: the velocity drops to zero and jumps above its "
-                           "value.",
-                           times_text(times), seconds(cycles.cycles[first].end),
-                           times_text(strange.doubles.size())),
+       .text = fmt::format(
+           "In motion, a value is sent again {}, first at {:.3f} s. A longer step "
+           "makes up for it {}: the velocity drops to zero and then jumps above its normal value.",
+           times_text(times), seconds(cycles.cycles[first].end),
+           times_text(strange.doubles.size())),
        .remedy = "The application did not deliver its set-point in time, so the sender repeated "
                  "the old one: begin the computation with the arrival of the image, and give the "
                  "application a real-time priority.",
@@ -171,8 +171,9 @@ void add_value_skipped(const AxisCycles& cycles, const std::vector<std::size_t>&
        .text = fmt::format("In motion, a step is twice as long as its neighbours {}, first at "
                            "{:.3f} s: a set-point between them was computed but not sent.",
                            times_text(skips.size()), seconds(first)),
-       .remedy = "Count the cycles of the sender and of the application: where the application is "
-                 "one ahead, the older set-point was replaced before it was sent.",
+       .remedy =
+           "Compare the cycle counters of the sender and of the application: where the application "
+           "is one cycle ahead, it has replaced a set-point before the sender sent it.",
        .count = skips.size(),
        .first = first});
 }
