@@ -6,7 +6,6 @@
 #include "eds_parser/plan/frame_time.hpp"
 
 namespace takt {
-namespace {}  // namespace
 
 CycleFrames::CycleFrames(const BusTraffic& traffic, const BusPlan& plan,
                          const BudgetOptions& options, OtherTraffic other_traffic)

@@ -105,7 +105,7 @@ ROOMS = {
     "master/sim/service": ("services of a simulated device: SDO, EMCY, heartbeat, guarding, SYNC, TIME, LSS",
                            "master/wire master/sim/dictionary"),
     "master/sim/pdo": ("PDOs of a simulated device", "master/wire master/sim/dictionary master/sim/service"),
-    "master/sim/mechanics": ("what stands behind a simulated axis: motor, load, brake, encoder, controllers", ""),
+    "master/sim/mechanics": ("the mechanics of a simulated axis: motor, load, brake, encoder, controllers", ""),
     "master/sim/model": ("applications of simulated devices: CiA 402, 401, 406",
                          "master/sim master/sim/dictionary master/sim/service master/sim/pdo master/sim/mechanics"),
     "master/sim/family": ("simulated devices of particular families", "master/sim/dictionary master/sim/model"),
@@ -354,7 +354,7 @@ def upward(rooms):
     for room, (_, may) in rooms.items():
         for other in may.split():
             if other not in above and not other.endswith(".hpp"):
-                yield room, 1, f"the table of rooms lets it include {other}, which does not stand above it"
+                yield room, 1, f"the table of rooms lets it include {other}, which is not above it in the table"
         above.add(room)
 
 

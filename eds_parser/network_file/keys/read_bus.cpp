@@ -89,7 +89,7 @@ constexpr Key<RecordingOptions> black_box_keys[] = {
     key<&RecordingOptions::folder>("folder", "none",
                                    "The daemon records, and writes faults to this folder."),
     key<read_size>("size_mb", whole(1, 1024, "MiB"), "16",
-                   "The memory of the recorder, which exists twice."),
+                   "The memory of the recorder. `taktd` allocates it twice."),
     key<&RecordingOptions::keep>("keep", whole(1, 10'000, "recordings"), "20",
                                  "The number of recordings of this bus that are kept."),
 };
@@ -104,8 +104,9 @@ constexpr Key<RealtimeOptions> realtime_option_keys[] = {
     key<&RealtimeOptions::cpu>("cpu", whole(0, 1023), "any", "The CPU of the bus thread."),
     key<&RealtimeOptions::spin>("spin_us", whole(0, 10'000, "us"), "100",
                                 "For this time, the bus thread waits actively before SYNC."),
-    key<&RealtimeOptions::late_limit>("late_limit_us", whole(0, 1'000'000, "us"), "none",
-                                      "With `mode: enforce`, a SYNC that is later ends the run."),
+    key<&RealtimeOptions::late_limit>(
+        "late_limit_us", whole(0, 1'000'000, "us"), "none",
+        "With `mode: enforce`, a SYNC that is later than this ends the run."),
 };
 constexpr Key<NetworkSpec> realtime_keys[] = {
     group<&NetworkSpec::realtime, realtime_option_keys>(),

@@ -129,7 +129,7 @@ constexpr Key<PdoRule> pdo_rule_keys[] = {
                                    "A mapping may be reduced, but not extended beyond its "
                                    "default."),
     key<&PdoRule::no_gaps>("no_gaps", "false",
-                           "A PDO is only possible together with the one before it."),
+                           "A PDO can be used only together with the PDO of the previous number."),
     key<&PdoRule::function>("function", word_of(function_words), "`process_data`",
                             "`parameter_channel`: the RPDO, and the TPDO that answers it, are "
                             "used by requests only (`takt param`)."),
@@ -155,10 +155,10 @@ constexpr Key<InhibitRule> inhibit_keys[] = {
 };
 
 constexpr Key<TimerRule> timer_keys[] = {
-    key<&TimerRule::meaning>("meaning", word_of(timer_words), "`restarts`",
-                             "`restarts`: every transmission restarts the timer (CiA 301). "
-                             "`additional`: it sends in addition to changes. `alone`: changes "
-                             "send nothing while it is set."),
+    key<&TimerRule::meaning>(
+        "meaning", word_of(timer_words), "`restarts`",
+        "`restarts`: every transmission restarts the timer (CiA 301). `additional`: the timer "
+        "sends in addition to changes. `alone`: while the timer is set, changes send nothing."),
     reason_key<TimerRule>(),
 };
 
@@ -167,8 +167,8 @@ constexpr Key<SyncRule> sync_keys[] = {
                                    "The first firmware in which the SYNC that the device itself "
                                    "sends triggers its TPDOs."),
     key<&SyncRule::tx_identifier>("tx_identifier", object_index, "none",
-                                  "This object is its identifier for sending SYNC; the rule only "
-                                  "holds while it is equal to 0x1005."),
+                                  "The object with the COB-ID on which the device sends SYNC; the "
+                                  "rule holds only while its value is equal to 0x1005."),
     reason_key<SyncRule>(),
 };
 
@@ -268,12 +268,12 @@ constexpr Key<DeviceData> device_keys[] = {
     list_key<&DeviceData::sdo_servers, server_keys>(
         "sdo_servers", "none",
         "SDO servers that may be on from the factory, although the EDS has them off or does not "
-        "have them. If one meets another node, the plan warns."),
+        "have them. If one of them uses a COB-ID of another node, the plan warns."),
     key<read_speed_words>("speed_axis", {.type = KeyType::map, .parts = speed_axis_rows}, "none",
                           "An inverter: its control word and its status word."),
     map_key<&DeviceData::boot, boot_keys>("boot", "CiA 302-2", "How to boot the device."),
     key<&DeviceData::on_sync_loss>("on_sync_loss", "unknown",
-                                   "A sentence on what the outputs do when SYNC stays away for "
+                                   "A sentence on what the outputs do when SYNC is missing for "
                                    "longer than 0x1006 allows. `takt audit` then relies on it."),
     key<read_emcy>("emcy", {.type = KeyType::numbered, .range = emcy_codes}, "none",
                    "Error codes in words: `{0x2310: \"overcurrent\"}`."),

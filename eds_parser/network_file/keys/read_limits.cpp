@@ -45,18 +45,21 @@ constexpr Key<AxisLimitsSpec> axis_keys[] = {
                     "position offset 0x60B0."),
     magnitude_key<&AxisLimitsSpec::velocity>(
         "velocity",
-        "Of positions per cycle, of 0x60FF plus the velocity offset 0x60B1, and of 0x6081."),
+        "Applies to the change of positions per cycle, to 0x60FF plus the velocity offset 0x60B1, "
+        "and to 0x6081."),
     magnitude_key<&AxisLimitsSpec::acceleration>(
         "acceleration",
-        "Second difference of positions, difference of velocities (0x60FF plus 0x60B1) except in "
-        "profile velocity mode, and 0x6083 and 0x6084."),
-    magnitude_key<&AxisLimitsSpec::jerk>("jerk", "Not checked: for planned motion."),
+        "Applies to the second difference of positions, to the difference of velocities (0x60FF "
+        "plus 0x60B1) except in profile velocity mode, and to 0x6083 and 0x6084."),
+    magnitude_key<&AxisLimitsSpec::jerk>(
+        "jerk", "Limits planned motions only; takt does not check set-points against it."),
     magnitude_key<&AxisLimitsSpec::following_error>(
         "following_error",
         "The largest following error in a motion that `taktd` runs, which stops the motion."),
     magnitude_key<&AxisLimitsSpec::step>(
         "step", "Change of a position set-point from one cycle to the next."),
-    magnitude_key<&AxisLimitsSpec::torque>("torque", "Of 0x6071 plus the torque offset 0x60B2."),
+    magnitude_key<&AxisLimitsSpec::torque>("torque",
+                                           "Applies to 0x6071 plus the torque offset 0x60B2."),
     magnitude_key<&AxisLimitsSpec::modulo>(
         "modulo", "The length after which a rotary axis wraps around. Otherwise 0x607B of `sdo`."),
 };

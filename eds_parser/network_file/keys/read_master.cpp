@@ -62,8 +62,8 @@ constexpr Key<MasterSpec> master_keys[] = {
     key<&MasterSpec::reset_all_nodes>("reset_all_nodes", "false",
                                       "The loss of a mandatory node resets all nodes.", bus_yml),
     key<&MasterSpec::stop_all_nodes>("stop_all_nodes", "false",
-                                     "The loss of a mandatory node stops all nodes, until they "
-                                     "are reset or started. Takes precedence.",
+                                     "The loss of a mandatory node stops all nodes, until they are "
+                                     "reset or started. Takes precedence over `reset_all_nodes`.",
                                      bus_yml),
     key<&MasterSpec::boot_time_ms>("boot_time", whole(0, 3'600'000, "ms"), "0",
                                    "The time in which all mandatory nodes have to boot. 0: there "
@@ -74,9 +74,10 @@ constexpr Key<MasterSpec> master_keys[] = {
     key<&MasterSpec::stop_timeout_ms>("stop_timeout", whole(100, 60'000, "ms"),
                                       "from the drives: 5000 to 30000, at least 10 cycles",
                                       "The limit of the whole [ordered stop](ordered_stop.md)."),
-    key<&MasterSpec::stop_disarm>("stop_disarm", word_of(disarm_words), "`sdo`",
-                                  "What the master disarms when every axis is confirmed, before "
-                                  "SYNC and heartbeat end."),
+    key<&MasterSpec::stop_disarm>(
+        "stop_disarm", word_of(disarm_words), "`sdo`",
+        "How the master ends the supervision in the devices when the stop of every axis is "
+        "confirmed, before SYNC and heartbeat end."),
     key<&MasterSpec::service_frames>("service_frames", whole(1, 250, "frames"),
                                      "what fits, at most 16 in each 10 ms",
                                      "The largest number of SDO and NMT frames that the master "
@@ -96,9 +97,10 @@ void check_sync_source(const MasterSpec& master, NetworkReport& report) {
   const bool followed = master.sync_source.given && *master.sync_source != "master";
   const auto needs_source = [&](const auto& value, const std::string& key) {
     if (followed || !value.given) return;
-    report.error(value.pos, "sync-source", "`", key,
-                 "` is for a SYNC that another device makes: name this device with `sync_source` "
-                 "(a node, or `external`)");
+    report.error(
+        value.pos, "sync-source", "`", key,
+        "` is for a SYNC that another device produces: name this device with `sync_source` "
+        "(a node, or `external`)");
   };
   needs_source(master.sync_timeout_us, "sync_timeout");
   needs_source(master.on_sync_loss, "on_sync_loss");

@@ -104,7 +104,7 @@ constexpr Key<BrakeParameters> brake_keys[] = {
         "opening", "0.05", "s, 0 to 10: the axis is enabled when its brake has opened."),
     bounded_key<&BrakeParameters::closing, 0.0, 10.0>(
         "closing", "0.03",
-        "s, 0 to 10: if the axis stands, the drive holds it until its brake has closed."),
+        "s, 0 to 10: if the axis is at standstill, the drive holds it until its brake has closed."),
 };
 
 /// Reads `[lo, hi]`, in this order.

@@ -152,8 +152,8 @@ constexpr Key<SimSpec> sim_keys[] = {
     key<read_quirks>("quirks", {.type = KeyType::list, .words = sim_quirks}, "none",
                      "Faults and special features, which [faults.md](faults.md) describes."),
     key<read_mechanics>("mechanics", {.type = KeyType::map, .parts = mechanics_rows}, "none",
-                        "What stands behind each axis of a `drive402`; `{}`: a servo motor of "
-                        "400 W with a load. See [simulation.md](simulation.md)."),
+                        "The mechanics of each axis of a `drive402`; `{}`: a servo motor of 400 W "
+                        "with a load. See [simulation.md](simulation.md)."),
 };
 
 void check_sim(const KeyInput& in, const SimSpec& sim) {
@@ -312,7 +312,7 @@ constexpr Key<NodeSpec> node_keys[] = {
                            "none", "The torque offset (0x60B2) of the motions that `taktd` runs."),
     key<with<read_speed_axis, &NodeSpec::speed_axis>>(
         "speed_axis", {.type = KeyType::map, .parts = speed_axis_rows}, "from the device data",
-        "The words of an inverter, see [speed.md](speed.md). What is not stated is that of the "
+        "The words of an inverter, see [speed.md](speed.md). Keys that are left out come from the "
         "device data."),
     map_key<&NodeSpec::on_timeout, timeout_keys, check_timeout>(
         "on_timeout", "drives `quick_stop` after 50 ms, inverters stop after 500 ms, others `hold`",

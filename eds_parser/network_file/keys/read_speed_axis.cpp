@@ -31,7 +31,7 @@ constexpr Key<SpeedCommandsSpec> command_keys[] = {
                                   "The bits of the control word that hold the command."),
     key<&SpeedCommandsSpec::off>("off", word16, "as `stop`", "The drive is not to move."),
     key<&SpeedCommandsSpec::stop>("stop", word16, "required",
-                                  "The drive stops along its ramp, and stands."),
+                                  "The drive stops along its ramp and stays at standstill."),
     key<&SpeedCommandsSpec::run>("run", word16, "required",
                                  "The drive follows the set speed: forward if there is "
                                  "`run_reverse`, otherwise by its sign."),
@@ -82,7 +82,7 @@ constexpr Key<SpeedStates> state_keys[] = {
     map_key<&SpeedStates::at_speed, pattern_keys, check_pattern>("at_speed", "not shown",
                                                                  "The set speed is reached."),
     map_key<&SpeedStates::standstill, pattern_keys, check_pattern>("standstill", "actual speed 0",
-                                                                   "The drive stands."),
+                                                                   "The drive is at standstill."),
     map_key<&SpeedStates::fault, pattern_keys, check_pattern>("fault", "not shown",
                                                               "The drive has a fault."),
 };
@@ -108,10 +108,11 @@ constexpr Key<SpeedAxisSpec> speed_axis_keys[] = {
                                                     "Values of the control word."),
     map_key<&SpeedAxisSpec::states, state_keys>("states", "not shown",
                                                 "What the status word shows."),
-    key<read_word<&SpeedAxisSpec::fault_reset>>(
-        "fault_reset", word_of(fault_reset_words), "`edge`",
-        "`edge`: the drive obeys the change to `reset`. `level`: it obeys `reset` itself."),
-    key<&SpeedAxisSpec::ramps>("ramps", "none", "Where the ramps of the drive are, in words."),
+    key<read_word<&SpeedAxisSpec::fault_reset>>("fault_reset", word_of(fault_reset_words), "`edge`",
+                                                "`edge`: the drive obeys the change to `reset`. "
+                                                "`level`: the drive obeys the value `reset`."),
+    key<&SpeedAxisSpec::ramps>("ramps", "none",
+                               "Where the ramps of the drive are set: text for `takt plan`."),
     key<&SpeedAxisSpec::source>("source", "none",
                                 "Where the facts come from, if not from the manual."),
 };

@@ -38,7 +38,7 @@ class SyncSteps : BootPart {
     if (!context.makes_sync()) return;
     steps
         .integer(BootAction::write_if_differs, {0x1005, 0},
-                 *context.master.sync_cob_id | 0x4000'0000, "this node makes SYNC from now on")
+                 *context.master.sync_cob_id | 0x4000'0000, "this node produces SYNC from now on")
         .mask = 0x7FFF'FFFF;
   }
 

@@ -184,7 +184,8 @@ class Judge {
       return pdo.is_tpdo && pdo.use == PdoUse::exchanged && by_sync;
     });
     if (synchronous == node_.pdos.end()) return;
-    const std::string what = label(*synchronous) + " is synchronous, and this node makes the SYNC";
+    const std::string what =
+        label(*synchronous) + " is synchronous, and this node produces the SYNC";
     sync_identifier(what);
     if (firmware && *firmware >= needed) return;
     if (!firmware) {

@@ -51,7 +51,7 @@ void add_cycle(PlanLines& lines, const BusPlan& plan) {
   lines.line(
       "{:>9}  SYNC {}{}{}", "0 us", to_string(c.sync_cob_id),
       c.sync_overflow == 0 ? ", without counter" : fmt::format(", counter 1..{}", c.sync_overflow),
-      c.sync_followed ? ", made by " + sync_producer_text(plan) : "");
+      c.sync_followed ? ", produced by " + sync_producer_text(plan) : "");
   lines.line("{:>9}  the last of {} synchronous TPDOs has arrived, if all devices answer at once",
              us_text(budget.earliest), std::ranges::count_if(plan.pdos.tpdos, &PdoRow::cyclic));
   lines.line("{:>9}  receive window ends: a TPDO that has not arrived counts as missing",

@@ -85,7 +85,7 @@ TEST(SyncSource, IsRefusedWhereItIsNoNodeOrHasNoPeriod) {
               HasSubstr("needs `sync_period`"));
   EXPECT_THAT(compile("master: {sync_period: 10000, sync_timeout: 15000}\n" + nodes)
                   .declared("sync-source"),
-              HasSubstr("`sync_timeout` is for a SYNC that another device makes"));
+              HasSubstr("`sync_timeout` is for a SYNC that another device produces"));
 }
 
 TEST(SyncSource, IsRefusedWhereTheNodeCannotBeConfiguredToProduceIt) {

@@ -36,7 +36,7 @@ TEST(DeviceDataFirmware, RefusesALenzeThatSendsItsSyncOnAnotherIdentifierThanItR
         "}}, sdo: [{index: 0x1005, value: 0x40000080}, {index: 0x5E8F, value: " + code + "}]");
   };
   const std::string declared = producer("0x81").declared("device-data");
-  EXPECT_NE(declared.find("this node makes the SYNC on 0x081, but receives it on 0x080"),
+  EXPECT_NE(declared.find("this node produces the SYNC on 0x081, but receives it on 0x080"),
             std::string::npos)
       << declared;
   EXPECT_EQ(producer("0x80").declared("device-data"), "");

@@ -56,7 +56,7 @@ const Refusal refusals[] = {
     {"lenze8400",
      "firmware: \"16\", tpdo: {1: {transmission: 240}}, sdo: [{index: 0x1005, value: 0x40000080}, "
      "{index: 0x5E8F, value: 0x81}]",
-     "makes the SYNC on 0x081, but receives it on 0x080",
+     "produces the SYNC on 0x081, but receives it on 0x080",
      "only where its SYNC Tx and Rx identifiers are the same"},
 };
 
