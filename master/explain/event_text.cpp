@@ -39,7 +39,8 @@ std::string first_time_text(const BusPlan& plan, SignalIndex signal) {
 
 std::string held_line(const BusPlan& plan, const Event& event) {
   const std::string held = fmt::format("RPDO{} is held back until ", event.value);
-  if (event.detail == 0) return held + "each of its signals has a commanded, safe or seeded value";
+  if (event.detail == 0)
+    return held + "each of its signals has a value from a command, the network file or the device";
   const auto awaited = static_cast<SignalIndex>(event.detail - 1);
   return fmt::format(
       "{}{} has come from the device for the first time: takt checks the first position command "
@@ -221,7 +222,8 @@ std::string output_line(const BusPlan& plan, const Event& event) {
       return fmt::format("no fresh command for {}{}: its fallback is sent",
                          signal_name(plan, event.value), within(plan, event));
     case EventKind::fallback_ended:
-      return fmt::format("fresh commands for {} again", signal_name(plan, event.value));
+      return fmt::format("fresh commands for {} have come: they are sent again",
+                         signal_name(plan, event.value));
     case EventKind::limit_exceeded:
       return limit_text(plan, event);
     case EventKind::limit_read:

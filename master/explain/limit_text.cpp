@@ -64,9 +64,10 @@ std::string limit_text(const BusPlan& plan, const Event& event) {
                   number(double{measured}, unit), number(double{limit}, unit));
   if ((event.detail & held_set_point) != 0) {
     return fmt::format(
-        "the set-point {} that {} still has {} the command that would make the axis follow it, and "
-        "the outputs of the node take their fallback until a set-point is within the limits again",
-        number(commanded, signal.unit), output, limits);
+        "{} still has the set-point {}, which {} the command that would make the axis follow this "
+        "set-point, and the outputs of the node take their fallback until a set-point is within "
+        "the limits again",
+        output, number(commanded, signal.unit), limits);
   }
   return fmt::format(
       "command {} to {} {} it, and the outputs of the node take their fallback until a command is "
@@ -86,7 +87,7 @@ std::string read_limit_text(const BusPlan& plan, const Event& event) {
     return "limit: " + what;
   }
   return fmt::format(
-      "no limit: {}, is implausible and is ignored; write `limits: {{{}: ...}}` in the network "
+      "the limit {}, is implausible and is ignored; write `limits: {{{}: ...}}` in the network "
       "file",
       what, key);
 }

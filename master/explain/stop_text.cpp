@@ -63,7 +63,7 @@ std::string reaction_text(const Event& event) {
     case LossReaction::report:
       break;
   }
-  return "the loss is reported";
+  return "the master only reports the loss";
 }
 
 std::string axis_stop_text(const BusPlan& plan, const Event& event) {
@@ -81,7 +81,7 @@ std::string axis_stop_text(const BusPlan& plan, const Event& event) {
     case AxisVerdict::refused:
       return refusal_text(event);
     case AxisVerdict::unproven:
-      return "was disabled before a value could show that it stood still";
+      return "was disabled before any value showed that it was at standstill";
   }
   return "was not stopped";
 }
@@ -115,8 +115,8 @@ std::string still_armed_text(const Event& event) {
                       abort_digits(static_cast<std::uint32_t>(event.value)));
   }
   return fmt::format(
-      "the write that disarms {} failed, because the device {}: it may report the loss of its "
-      "master",
+      "the write to {} that ends the supervision of the master failed, because the device {}: the "
+      "device may report the loss of its master",
       to_string(object), why);
 }
 

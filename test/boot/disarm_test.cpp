@@ -88,10 +88,12 @@ TEST(Disarming, SaysForHowLongTheDeviceGaveNoAnswer) {
 
   EXPECT_EQ(plant.stop(), StopResult::confirmed);
 
-  EXPECT_NE(plant.text_of(EventKind::still_armed)
-                .find("the write that disarms 1016:01 failed, because the device gave no answer "
-                      "within 300 ms: it may report the loss of its master"),
-            std::string::npos)
+  EXPECT_NE(
+      plant.text_of(EventKind::still_armed)
+          .find(
+              "the write to 1016:01 that ends the supervision of the master failed, because the "
+              "device gave no answer within 300 ms: the device may report the loss of its master"),
+      std::string::npos)
       << plant.text_of(EventKind::still_armed);
 }
 

@@ -214,7 +214,7 @@ TEST_F(AxesStream, RefuseAFirstPointThatIsNotWhereTheyStand) {
   ASSERT_TRUE(axes_->stream(std::span{&start, 1}));
   const Obstacle why = obstacle_of(give(0.6, 0.02, 5));
   EXPECT_EQ(why.kind, Kind::refused);
-  EXPECT_THAT(why.text, HasSubstr("is not where the axis stands"));
+  EXPECT_THAT(why.text, HasSubstr("is not at the position of the axis"));
 }
 
 }  // namespace

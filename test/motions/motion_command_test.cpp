@@ -188,7 +188,7 @@ TEST(MotionCommand, AHaltOfTheDriveStopsTheMotion) {
   bus.send_controlword(0, 0x010F);
   ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == stopping; }, 10));
   EXPECT_EQ(bus.axis(0).outcome, stopped);
-  EXPECT_TRUE(bus.said("motion_stopped", "has a Halt"));
+  EXPECT_TRUE(bus.said("motion_stopped", "the Halt bit"));
   ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == standing; }));
   bus.move_one(2, 50.0);
   ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).ended_id == 2; }, 20));
@@ -341,8 +341,8 @@ TEST(MotionCommand, RefusesWithTheReason) {
   refusal([](Command& m) { m.goals[0].node = "knee"; }, "'knee' has no axis 1");
   refusal([](Command& m) { m.goals[0].axis = 3; }, "has no axis 3");
   refusal([](Command& m) { m.goals.clear(); }, "it names no axis");
-  refusal([](Command& m) { m.kind = "fly"; }, "its kind is none of");
-  refusal([](Command& m) { m.synchronisation = "some"; }, "its synchronisation is none of");
+  refusal([](Command& m) { m.kind = "fly"; }, "its kind is not one of");
+  refusal([](Command& m) { m.synchronisation = "some"; }, "its synchronisation is not one of");
   refusal([](Command& m) { m.timeout_ms = 10'001; }, "its timeout of 10001 ms");
   refusal([](Command& m) { m.goals[0].max_velocity = 41.0; },
           "`limits:` of the network file or the drive allow 40");

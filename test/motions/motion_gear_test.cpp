@@ -149,7 +149,7 @@ TEST(MotionGear, ARingOfGearsIsRefused) {
     back.goals = {MotionBus::goal("shoulder", 0.0)};
     bus.send(back);
     bus.run(20);
-    EXPECT_TRUE(bus.said("motion_refused", "this one follows the axis")) << signal;
+    EXPECT_TRUE(bus.said("motion_refused", "the leader follows this axis")) << signal;
     EXPECT_EQ(bus.axis(0).state, standing);
     EXPECT_EQ(bus.axis(1).state, moving) << "the gear that ran goes on";
   }
@@ -177,7 +177,7 @@ TEST(MotionGear, WhatIsWrongWithAGearIsSaid) {
   refusal(follows("elbow", "position_actual_value"), "an axis can't lead itself");
   refusal([](motion_gear_t& gear) { gear.leader_axis = 3; }, "has no axis 3 that taktd can move");
   refusal([](motion_gear_t& gear) { gear.signal = "light"; }, "has no input 'light'");
-  refusal([](motion_gear_t& gear) { gear.phase = "there"; }, "its phase is none of");
+  refusal([](motion_gear_t& gear) { gear.phase = "there"; }, "its phase is neither");
   refusal([](motion_gear_t& gear) { gear.modulo = -1.0; }, "its modulo is negative");
   refusal([](motion_gear_t& gear) { gear.filter_time = 11.0; }, "its filter time is not between");
   refusal([](motion_gear_t& gear) { gear.numerator = {std::nan("")}; }, "its ratio is infinite");

@@ -183,10 +183,10 @@ TEST(MotionStream, RefusesAStreamThatDoesNotBeginWhereTheAxisStands) {
   };
   motion_point_t first = wave(0.0, {1.0});
   first.position[0] = 0.001;
-  begin(first, "is not where the axis stands");
+  begin(first, "is not at the position of the axis");
   first = wave(0.0, {1.0});
   first.velocity[0] = 0.1;
-  begin(first, "is not where the axis stands");
+  begin(first, "is not at the position of the axis");
   first = wave(0.0, {1.0, 1.0});
   begin(first, "needs one position");
   first = wave(0.0, {1.0});

@@ -34,8 +34,8 @@ std::string StreamBuffer::add(motion_point_t point) {
   if (point.position.size() != axes || point.velocity.size() != axes ||
       (!point.acceleration.empty() && point.acceleration.size() != axes)) {
     return fmt::format(
-        "point {} of the stream needs one position and one velocity for each of {} axes, and one "
-        "acceleration for each axis or none",
+        "point {} of the stream needs one position and one velocity for each of {} axes, and "
+        "either one acceleration for each axis or no acceleration",
         number, axes);
   }
   if (number > 0 && !(point.time > last.time && point.time <= last.time + longest_step)) {

@@ -31,8 +31,8 @@ class StreamBuffer:
         last, time = self._points[-1], float(time)
         number = 0 if self._end() == 1 and time == 0.0 else self._end()
         if not len(position) == len(velocity) == last.num_axes or len(acceleration) not in (0, last.num_axes):
-            return (f"point {number} of the stream needs one position and one velocity for each of {last.num_axes} axes, and one "
-                    "acceleration for each axis or none")
+            return (f"point {number} of the stream needs one position and one velocity for each of {last.num_axes} axes, and "
+                    "either one acceleration for each axis or no acceleration")
         if number and not last.time < time <= last.time + LONGEST_STEP:
             return (f"point {number} of the stream is at {time:g} s: it must be later than the point before, which is at "
                     f"{last.time:g} s, by {LONGEST_STEP:g} s at most")

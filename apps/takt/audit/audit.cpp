@@ -32,8 +32,8 @@ class NodeAuditor {
  private:
   void report_state() {
     const auto behaviour = values_.get({0x1029, 1});
-    const std::string source =
-        behaviour ? " (1029:01 = " + std::to_string(*behaviour) + ")" : " (no 1029, so like 0)";
+    const std::string source = behaviour ? " (1029:01 = " + std::to_string(*behaviour) + ")"
+                                         : " (the device has no 1029, which acts like 0)";
     constexpr const char* states[] = {"goes to PRE-OPERATIONAL", "STAYS OPERATIONAL",
                                       "goes to STOPPED",
                                       "changes its state as the manufacturer defines"};

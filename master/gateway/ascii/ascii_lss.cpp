@@ -120,9 +120,9 @@ Read<void> read_lss(Words words, AsciiCommand& out) {
     out.lss.op = row.op;
     return row.read(words, out);
   }
-  return unsupported(
-      "'" + words[0].text +
-      "' is not offered; a bit rate is activated with taktd stopped (takt lss set-bitrate)");
+  return unsupported("'" + words[0].text +
+                     "' is not possible while taktd runs: stop taktd, and activate the bit rate "
+                     "with takt lss set-bitrate");
 }
 
 }  // namespace takt::ascii

@@ -25,7 +25,7 @@ std::expected<std::vector<std::byte>, std::string> from_base64(std::string_view 
   std::size_t size = 0;
   if (::sodium_base642bin(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), text.data(),
                           text.size(), nullptr, &size, nullptr, padded) != 0) {
-    return std::unexpected{std::string{"this is no base64"}};
+    return std::unexpected{std::string{"this is not base64"}};
   }
   bytes.resize(size);
   return bytes;

@@ -39,7 +39,7 @@ Task commanded_leader(const motion_gear_t& gear, std::size_t node,
   if (found == known.axes.end()) {
     return refused(
         fmt::format("its leader '{:.64}' has no axis {} that taktd can move: name a "
-                    "signal of it",
+                    "signal of this node",
                     gear.leader, number + 1));
   }
   const auto place = static_cast<std::size_t>(found - known.axes.begin());
@@ -124,7 +124,7 @@ std::expected<std::vector<motion::GearTask>, MotionRefusal> gear_tasks(
   const auto leader = leader_of(gear, axes, known);
   if (!leader) return std::unexpected{leader.error()};
   if (!gear.phase.empty() && gear.phase != "here" && gear.phase != "at") {
-    return std::unexpected{MotionRefusal{.why = "its phase is none of \"here\", \"at\""}};
+    return std::unexpected{MotionRefusal{.why = "its phase is neither \"here\" nor \"at\""}};
   }
   std::vector<motion::GearTask> tasks;
   for (std::size_t i = 0; i < axes.size(); ++i) {

@@ -129,8 +129,9 @@ void MotionCommands::take(const motion_command_t& command, const CommandContext&
   if (!known || (axes->empty() && command.kind != "alive")) {
     return refuse(
         command,
-        {.why = known ? "it names no axis"
-                      : "its kind is none of \"move\", \"move_by\", \"jog\", \"stop\", \"alive\""},
+        {.why = known
+                    ? "it names no axis"
+                    : "its kind is not one of \"move\", \"move_by\", \"jog\", \"stop\", \"alive\""},
         context);
   }
   if (command.kind == "stop") return take_stop(command, *axes, context);
@@ -230,10 +231,9 @@ bool MotionCommands::begin_stream(const motion_stream_t& stream, const motion_co
 
 bool MotionCommands::has_timeout(const motion_command_t& command, const CommandContext& context) {
   if (is_motion_timeout(command.timeout_ms)) return true;
-  refuse(
-      command,
-      {.why = fmt::format("its timeout of {} ms is not one of 0 to 10,000 ms", command.timeout_ms)},
-      context);
+  refuse(command,
+         {.why = fmt::format("its timeout of {} ms is outside 0 to 10,000 ms", command.timeout_ms)},
+         context);
   return false;
 }
 

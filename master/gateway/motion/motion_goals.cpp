@@ -95,7 +95,7 @@ std::expected<MotionJob, MotionRefusal> motion_job(const motion_command_t& comma
   const auto synchronisation = synchronisation_of(command.synchronisation);
   if (!synchronisation) {
     return std::unexpected{
-        MotionRefusal{.why = "its synchronisation is none of \"time\", \"phase\", \"none\""}};
+        MotionRefusal{.why = "its synchronisation is not one of \"time\", \"phase\", \"none\""}};
   }
   MotionJob job{.name = {.id = command.id, .sender = command.sender}, .instance = command.instance};
   job.group.goal = command.kind == "jog" ? motion::Goal::velocity : motion::Goal::position;

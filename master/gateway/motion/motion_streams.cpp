@@ -106,8 +106,8 @@ std::optional<MotionRefusal> MotionStreams::add_point(Stream& stream, const moti
   if (!fits(point.position) || !fits(point.velocity) ||
       !(fits(point.acceleration) || point.acceleration.empty())) {
     return MotionRefusal{.why =
-                             "it needs one position and one velocity for each axis, and one "
-                             "acceleration for each axis or none"};
+                             "it needs one position and one velocity for each axis, and either one "
+                             "acceleration for each axis or no acceleration"};
   }
   if (stream.times.size() == motion::StreamPlayer::capacity) {
     return MotionRefusal{.why = fmt::format("{} points wait already", stream.times.size())};
@@ -117,7 +117,7 @@ std::optional<MotionRefusal> MotionStreams::add_point(Stream& stream, const moti
     return MotionRefusal{.why = fmt::format("it is more than {} s in the future", longest_ahead)};
   }
   if (stream.last.front().time < now) {
-    return MotionRefusal{.why = "it is too late: the points before have ended"};
+    return MotionRefusal{.why = "it is too late: the points before it have ended"};
   }
   const double most = longest_step / static_cast<double>(axes);
   if (time - stream.last.front().time > most * period_) {

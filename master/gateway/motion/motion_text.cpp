@@ -49,14 +49,14 @@ std::string_view text(const motion::PlanRefusal& refusal) noexcept {
     case streaming:
       return "the axis follows a stream: stop it first";
     case geared:
-      return "the axis follows a gear, which ends first";
+      return "the axis follows a gear, which has to end first";
     case moving:
       return "the axis moves: a stream begins at rest";
     case ring:
-      return "the axis can't follow its leader, because this one follows the axis, directly or "
+      return "the axis can't follow its leader, because the leader follows this axis, directly or "
              "through other axes";
     case other_start:
-      return "the first point of the stream is not where the axis stands, at rest";
+      return "the first point of the stream is not at the position of the axis, with velocity 0";
     case too_long:
       return "the motion, or the start of the jog, would take too long";
     case impossible:
@@ -129,7 +129,7 @@ std::string_view text(motion::StopCause cause) noexcept {
     case node_lost:
       return "the node is lost";
     case halted:
-      return "the controlword of the drive has a Halt";
+      return "the Halt bit in the controlword of the drive is set";
     case no_statusword:
       return "the statusword of the drive is missing";
     case following_error:
@@ -155,7 +155,7 @@ std::string_view text(motion::StopCause cause) noexcept {
     case phase_error:
       return "the phase error of its gear is above its limit";
   }
-  return "for an unknown reason";
+  return "the reason is unknown";
 }
 
 std::string_view text(motion::HomingState homing) noexcept {
@@ -163,13 +163,13 @@ std::string_view text(motion::HomingState homing) noexcept {
   switch (homing) {
     case none:
       return "the axis is not homed, which `homing:` of the network file requires before it goes "
-             "to a position: home it first; move_by and jog are possible without";
+             "to a position: home it first; move_by and jog are possible without homing";
     case runs:
       return "the homing of the axis has not ended";
     case failed:
       return "the last homing of the axis has failed, and `homing:` of the network file requires "
              "it before the axis goes to a position: home it first; move_by and jog are possible "
-             "without";
+             "without homing";
     case homed:
       break;
   }

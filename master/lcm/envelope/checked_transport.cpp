@@ -6,8 +6,6 @@
 #include "master/lcm/channel_names.hpp"
 
 namespace takt {
-namespace {}  // namespace
-
 CheckedTransport::CheckedTransport(std::unique_ptr<Transport> inner, WatchedKeyFile keys,
                                    std::function<Time()> wall)
     : inner_{std::move(inner)}, keys_{std::move(keys)}, wall_{std::move(wall)} {

@@ -11,8 +11,6 @@
 #include "master/linux/clock.hpp"
 
 namespace takt {
-namespace {}  // namespace
-
 std::expected<LcmClient, std::string> LcmClient::open(
     const std::string& url, const std::vector<std::string>& patterns,
     const std::optional<WatchedKeyFile>& signers) {

@@ -37,7 +37,7 @@ bool TcpqBroker::wanted(std::string_view channel) const {
 
 void TcpqBroker::subscribe(const std::string& pattern) {
   if (const auto added = own_.add(pattern); !added) {
-    options_.say("LCM hub: '" + pattern + "' can't be subscribed: " + added.error());
+    options_.say("LCM hub: taktd can't subscribe to '" + pattern + "': " + added.error());
   }
 }
 
@@ -82,10 +82,10 @@ bool TcpqBroker::make_room(Time now) {
       clients_, [](const auto& client) { return !client->connection.opened(); });
   if (unasked == clients_.end()) unasked = std::ranges::find(clients_, false, &Client::has_asked);
   if (unasked != clients_.end()) {
-    close(**unasked, full + ", and this one had not requested anything yet");
+    close(**unasked, full + ", and the closed one had neither subscribed nor published anything");
   } else if (Client* const idle = idle_client(now)) {
     displaced_ = now;
-    close(*idle, full + ", and this one had sent nothing for 10 s");
+    close(*idle, full + ", and the closed one had sent nothing for 10 s");
   } else {
     if (reported_.allow(full, options_.clock())) {
       options_.say("LCM hub: a new connection was refused: " + full);
@@ -108,7 +108,7 @@ TcpqBroker::Client* TcpqBroker::idle_client(Time now) {
 void TcpqBroker::close_unopened(Time now) {
   for (const auto& client : clients_) {
     if (client->connection.opened() || now - client->since < opening_limit) continue;
-    close(*client, "its opening was incomplete after 2 s");
+    close(*client, "its handshake was incomplete after 2 s");
   }
 }
 
@@ -151,7 +151,7 @@ void TcpqBroker::take(Client& client, const tcpq::Message& message, Time now,
       return;
     case tcpq::Type::publish:
       if (message.channel.size() > longest_name) {
-        return close(client, "the name of a channel has at most 63 characters");
+        return close(client, "it published on a channel whose name has more than 63 characters");
       }
       relay(message);
       if (own_.match(message.channel)) handler(message.channel, message.data);

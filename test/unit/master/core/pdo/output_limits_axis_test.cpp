@@ -57,10 +57,11 @@ TEST(LimitsAtEnabling, RefuseTheControlwordIfTheTargetIsNotAtTheActualPosition) 
     std::vector<Event> reported = axes.reported();
     std::erase_if(reported, [](const Event& one) { return one.kind != EventKind::limit_exceeded; });
     ASSERT_EQ(reported.size(), 1U);
-    EXPECT_THAT(describe(axes.plan(), reported[0]),
-                HasSubstr("the set-point 0.008 rad that signal (607A:00) still has is outside its "
-                          "limits: step 0.492, limit 0.01; takt does not send the command that "
-                          "would make the axis follow it"));
+    EXPECT_THAT(
+        describe(axes.plan(), reported[0]),
+        HasSubstr("signal (607A:00) still has the set-point 0.008 rad, which is outside its "
+                  "limits: step 0.492, limit 0.01; takt does not send the command that "
+                  "would make the axis follow this set-point"));
   }
 }
 

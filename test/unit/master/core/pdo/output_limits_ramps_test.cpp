@@ -78,7 +78,7 @@ TEST(LimitsWithRamps, LetNoModeMakeAJumpOfATargetThatTheDriveHasNotReached) {
   axis.feedback(20, enabled, profile_velocity);
   axis.cycle();
   EXPECT_EQ(axis.controlword(), quick_stop);
-  EXPECT_THAT(axis.refusals(), ElementsAre(HasSubstr("still has is outside its limits")));
+  EXPECT_THAT(axis.refusals(), ElementsAre(HasSubstr(", which is outside its limits: ")));
 }
 
 TEST(LimitsWithRamps, LetTheNextModeBeginNearTheActualVelocity) {

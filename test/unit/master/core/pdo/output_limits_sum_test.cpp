@@ -110,7 +110,7 @@ TEST(LimitsOfSums, LetNoModeMakeASumValidThatIsOutside) {
   axis.set(mode_output, cyclic_velocity);
   axis.cycle();
   EXPECT_EQ(axis.controlword(), quick_stop);
-  EXPECT_THAT(axis.refusals(), ElementsAre(HasSubstr("still has is outside its limits: velocity "
+  EXPECT_THAT(axis.refusals(), ElementsAre(HasSubstr(", which is outside its limits: velocity "
                                                      "0.12, limit 0.1")));
 }
 

@@ -220,8 +220,8 @@ TEST_F(TcpqLimits, AnOpeningThatIsIncompleteAfterTwoSecondsIsClosed) {
 
   EXPECT_EQ(broker->clients(), 1U);
   EXPECT_TRUE(broker->wanted("A"));
-  EXPECT_EQ(reported, (std::vector<std::string>{"LCM hub: a connection was closed: its opening was "
-                                                "incomplete after 2 s"}));
+  EXPECT_EQ(reported, (std::vector<std::string>{"LCM hub: a connection was closed: its handshake "
+                                                "was incomplete after 2 s"}));
 }
 
 TEST_F(TcpqLimits, SixtyFourSilentConnectionsLockNobodyOut) {
