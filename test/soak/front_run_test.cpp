@@ -216,7 +216,7 @@ TEST_F(FrontDefects, OneForgedImageDeafensAProgram) {
     newest[program] = image.cycle;
     return true;
   };
-  EXPECT_EQ(broken({.hears = hears}), "no message deafens an application");
+  EXPECT_EQ(broken({.hears = hears}), "no message stops a program from using images");
 }
 
 /// Any velocity counts as standstill, so axes are disabled while they brake, and the stop is
@@ -232,7 +232,7 @@ TEST_F(FrontDefects, NothingIsSeenOfTheStop) {
       }
     }
   };
-  EXPECT_EQ(broken({.plan = blind}), "no stop claims more than was seen");
+  EXPECT_EQ(broken({.plan = blind}), "no stop confirms more than was seen");
 }
 
 }  // namespace

@@ -168,7 +168,7 @@ TEST_F(Judges, BlameAnImageThatWasPublishedBeforeItsSync) {
   images.judge({{.cycle = 1, .sync_time = 9ms, .publish_time = 8ms}, values, {}});
 
   ASSERT_FALSE(verdict.good());
-  EXPECT_EQ(verdict.violation()->invariant, "times of an image");
+  EXPECT_EQ(verdict.violation()->invariant, "an image is published after its SYNC");
 }
 
 TEST_F(Judges, BlameAValueWithoutItsSign) {

@@ -186,7 +186,7 @@ class FrontWalk {
     };
     options.released = [this, number](Time now) { wire_.released(SenderBit{1} << number, now); };
     options.deaf = [this](const std::string& what) {
-      verdict_.report_violation("no message deafens an application", what);
+      verdict_.report_violation("no message stops a program from using images", what);
     };
     const FrontDefect& defect = options_.front;
     if (defect.instance) options.instance = std::bind_front(defect.instance, number);
@@ -280,8 +280,9 @@ class FrontWalk {
     }
     for (const auto& application : applications_) {
       if (leads(application)) continue;
-      verdict_.report_violation("every application leads its axes again",
-                                application->text() + " does not lead all axes after 60 s");
+      verdict_.report_violation(
+          "every application commands its axes again",
+          application->text() + " does not command all of its axes after 60 s");
     }
   }
 

@@ -63,7 +63,7 @@ void RandomProgramFaults::begin(Time now) {
       return stall_process(now);
     case 4:
       daemon_dies_ = cast_.daemon.runs();
-      return announce(now, "the daemon dies", {});
+      return announce(now, "taktd dies", {});
     case 5:
       return stall_application(now);
     case 6:
@@ -117,7 +117,7 @@ void RandomProgramFaults::stall_application(Time now) {
 /// Lets an application jump, by little more than its limits permit or by far more.
 void RandomProgramFaults::let_jump(Time now) {
   const std::int64_t counts = std::int64_t{16} << random_.below(16);
-  announce(now, "an application jumps", {});
+  announce(now, "an application commands a jump", {});
   application().jump(random_.chance(0.5) ? counts : -counts);
 }
 
@@ -145,7 +145,7 @@ void RandomProgramFaults::bring_rival(Time now) {
 
 void RandomProgramFaults::slow_down_lcm(Time now) {
   const Time lasts = span();
-  announce(now, "messages are slow", lasts);
+  announce(now, "messages are delayed", lasts);
   cast_.lcm.set_delay(1ms + random_.up_to(300ms));
   agenda_.add(now + lasts, [this] { cast_.lcm.set_delay(VirtualLcm::usual_delay); });
 }

@@ -77,7 +77,8 @@ void ImageJudge::judge(const ImageView& image) {
                                                         " after " + std::to_string(cycle_));
   }
   if (image.publish_time < image.sync_time) {
-    verdict_.report_violation("times of an image", "published before its SYNC");
+    verdict_.report_violation("an image is published after its SYNC",
+                              "it was published before its SYNC");
   }
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const PdoRow& row = plan_.pdos.tpdos[i];

@@ -116,8 +116,8 @@ void HomingJudge::reported(const motion_t& motions, Time now) {
       if (!named || motion.homing != is_homed || axes_[i].homed_since) continue;
       if (now - axes_[i].unhomed_since < report_time) continue;
       report_violation(i, "an axis is homed only after a good run",
-                       "it is reported as homed, but its drive has ended no run well since its "
-                       "node was found");
+                       "it is reported as homed, but its drive has shown no successful homing run "
+                       "since its node booted or taktd started");
     }
   }
 }

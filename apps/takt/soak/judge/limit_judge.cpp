@@ -225,8 +225,9 @@ void LimitJudge::judge_way(const Place& place, double value, const Way& way) {
     if (counts <= most || !std::isfinite(rate)) return;
     report_violation(
         place, value, kind,
-        fmt::format("the value is {:.0f} counts away from the one before, {:.0f} are allowed",
-                    counts, most));
+        fmt::format(
+            "the value is {:.0f} counts away from the previous value; {:.0f} counts are allowed",
+            counts, most));
   };
   judge(place.limit->step, LimitKind::step);
   judge(place.limit->rate, place.limit->rate_of);
@@ -238,8 +239,9 @@ void LimitJudge::judge_bend(const Place& place, double value, const Way& way) {
   if (!is_too_sharp(place.limit->bend, way, *place.last_way)) return;
   report_violation(
       place, value, LimitKind::acceleration,
-      fmt::format("the value is {:.0f} counts away in {} cycles, after {:.0f} in {}", way.length,
-                  way.cycles, place.last_way->length, place.last_way->cycles));
+      fmt::format(
+          "the value changes by {:.0f} counts in {} cycles, after {:.0f} counts in {} cycles",
+          way.length, way.cycles, place.last_way->length, place.last_way->cycles));
 }
 
 void LimitJudge::sent(SignalIndex index, std::uint64_t bits, bool begins) {
@@ -316,7 +318,7 @@ void LimitJudge::judge_place(Place& place, Change change, Time now) {
   if (way && !free && follows(place)) judge_bend(place, value, *way);
   const bool begins = !place.value || place.ramped;
   if (begins && !free && place.limit->feedback && in_force(place)) {
-    report_violation(place, value, LimitKind::step, "the first value is far from the actual one");
+    report_violation(place, value, LimitKind::step, "the first value is far from the actual value");
   }
   place.last_way = follows(place) && !in_profile(place) ? way : std::nullopt;
   place.value = value;

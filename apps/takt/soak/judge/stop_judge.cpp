@@ -43,7 +43,7 @@ void StopJudge::hear(const Event& event) {
 void StopJudge::judge(StopResult result) {
   const bool any = std::ranges::any_of(axes_, &Axis::blamed);
   if (any && result == StopResult::confirmed) {
-    verdict_.report_violation("no stop claims more than was seen",
+    verdict_.report_violation("no stop confirms more than was seen",
                               "the stop is confirmed, but an axis is reported as not stopped");
   }
   for (const Axis& axis : axes_) {
@@ -53,7 +53,7 @@ void StopJudge::judge(StopResult result) {
     const bool moved = axis.speed_then > 2 * axis.plan->velocity_window;
     if (!moved && !axis.powered) continue;
     verdict_.report_violation(
-        "no stop claims more than was seen",
+        "no stop confirms more than was seen",
         axis.node->name + (axis.powered ? " is confirmed, but its power stage is on"
                                         : " is confirmed, but was disabled at " +
                                               std::to_string(axis.speed_then) + " counts/s"));

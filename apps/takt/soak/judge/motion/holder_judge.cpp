@@ -26,7 +26,7 @@ void HolderJudge::moved(std::size_t node_index, const Move& move, Time now) {
   if (holder.sender != 0 && holder.sender != move.sender && now < holder.until) {
     verdict_.report_violation(
         "no sender moves what another holds",
-        fmt::format("{} is moved by program {}, but program {} holds it for another {} us",
+        fmt::format("program {1} moves {0}, but program {2} holds this axis for another {3} us",
                     plan_.nodes[node_index].name, std::countr_zero(move.sender),
                     std::countr_zero(holder.sender), (holder.until - now) / 1us));
   }

@@ -227,20 +227,20 @@ void MotionJudge::judge_way(std::size_t axis, const Way& way, unsigned syncs, Ti
   const unsigned cycles = plan_.cycle.sync ? std::max(syncs, 1U) : way.cycles;
   const double most = bounds->velocity * period * cycles * (1 + 1e-6) + 1;
   if (std::abs(way.length) > most) {
-    return report_violation(
-        axis, "a motion keeps its limits",
-        fmt::format(
-            "target position moves by {:.0f} counts in {} cycles, its velocity allows {:.1f}",
-            way.length, cycles, most));
+    return report_violation(axis, "a motion keeps its limits",
+                            fmt::format("target position moves by {:.0f} counts in {} cycles; the "
+                                        "velocity of the motion allows {:.1f} counts",
+                                        way.length, cycles, most));
   }
   const auto& last = axes_[axis].last_way;
   const double bend = bounds->acceleration * period * period;
   if (!last || !is_too_sharp(bend, way, *last)) return;
   report_violation(
       axis, "a motion keeps its limits",
-      fmt::format("target position moves by {:.0f} counts in {} cycles, after {:.0f} in {}; the "
-                  "acceleration is at most {:.3f} counts per cycle squared",
-                  way.length, way.cycles, last->length, last->cycles, bend));
+      fmt::format(
+          "target position moves by {:.0f} counts in {} cycles, after {:.0f} "
+          "counts in {} cycles; the acceleration is at most {:.3f} counts per cycle squared",
+          way.length, way.cycles, last->length, last->cycles, bend));
 }
 
 bool MotionJudge::explains(SignalIndex output, Time now) const noexcept {
