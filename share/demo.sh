@@ -22,7 +22,7 @@ build_failed() {
 
 build_programs() {
   sh share/install_packages.sh build run
-  say "Building taktd and takt-move (about three minutes the first time)"
+  say "Building taktd and takt-move (about two minutes the first time)"
   started=$(date +%s)
   mkdir -p $build && rm -f $build/demo-built
   # Without the tests, unless this folder has been configured before. The tool `takt` is as much to compile as the rest.

@@ -59,9 +59,9 @@ struct RealRange {
 /// The values that a key accepts.
 struct KeyValue {
   KeyType type = KeyType::value;
-  IntegerRange range{};                       ///< of an integer, or of the numbers of a map
-  RealRange numbers{};                        ///< of a number
-  IntegerRange entries{};                     ///< of the values of a list or a map without parts
+  IntegerRange range{};    ///< of an integer, or of the numbers of a map
+  RealRange numbers{};     ///< of a number
+  IntegerRange entries{};  ///< of each value, if the key is a list or a map of numbers
   std::span<const std::string_view> words{};  ///< words that are accepted, beside numbers if any
   KeyRows (*parts)() = nullptr;
 };

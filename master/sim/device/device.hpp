@@ -178,8 +178,8 @@ class Device final : private Dictionary {
   std::optional<LssSlave> lss_;  ///< present with the quirk "lss" or "no_node_id"
   std::vector<Tpdo> tpdos_;
   std::vector<Rpdo> rpdos_;
-  std::vector<Tpdo*> live_tpdos_;  ///< those that can act in OPERATIONAL, by number
-  std::vector<Rpdo*> live_rpdos_;  ///< those that can act in OPERATIONAL, by number
+  std::vector<Tpdo*> live_tpdos_;  ///< TPDOs that can be sent in OPERATIONAL, by number
+  std::vector<Rpdo*> live_rpdos_;  ///< RPDOs that have an effect in OPERATIONAL, by number
   MultiplexedPdos multiplexed_;
   std::unique_ptr<Model> model_;
   Routes routes_;

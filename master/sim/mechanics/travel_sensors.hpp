@@ -13,8 +13,9 @@ enum class TravelSwitch : std::uint8_t { negative_limit, positive_limit, home, p
 inline constexpr std::size_t travel_switches = 5;
 
 /// The switches that an axis meets on its way, and the index pulses of its encoder. The load
-/// operates the switches, but the position of an edge is the position of the motor, as a drive
-/// latches it. All positions are in counts, without the shift of homing.
+/// operates the switches. The position of an edge is that of the motor at this moment, because a
+/// drive latches the position of its motor. All positions are in counts, without the shift of
+/// homing.
 class TravelSensors {
  public:
   /// `turn` is a turn of the motor. `index` is the place of an index pulse if the table has none.
