@@ -27,6 +27,10 @@ lcm-gen -p --ppath "$tmp/python" "$prefix"/share/takt/lcm/*.lcm
 mkdir "$tmp/double" && echo 'class LCM: pass' >"$tmp/double/lcm.py"
 (cd / && PYTHONPATH=$prefix/share/takt/python:$tmp/python:$tmp/double python3 -c 'import takt; takt.Axes, takt.Bus, takt.image_t().encode()')
 
+# A program finds its files relative to itself: nothing that is installed knows where the sources were.
+root=$(cd "$here/../.." && pwd)
+! grep -rlF "$root" "$prefix" >&2 || { echo "the path of the sources is in these files" >&2; exit 1; }
+
 # systemd tries a taktd again without limit, and understands each line.
 unit="$prefix/lib/systemd/system/taktd@.service"
 sed '/^\[Service\]/,$d' "$unit" | grep -qx 'StartLimitIntervalSec=0' || { echo "taktd@.service gives up" >&2; exit 1; }
