@@ -29,6 +29,7 @@ using AddCommand = void (*)(CLI::App& app, int& exit_code);
 void add_audit(CLI::App& app, int& exit_code);
 void add_budget(CLI::App& app, int& exit_code);
 void add_complete(CLI::App& app, int& exit_code);
+void add_demo(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
 void add_dump(CLI::App& app, int& exit_code);
 void add_emcy(CLI::App& app, int& exit_code);

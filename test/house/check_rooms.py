@@ -165,6 +165,8 @@ ROOMS = {
                         "apps/command_line apps/takt/live apps/takt/service eds_parser/network_file"),
     "apps/takt/doctor": ("checks whether this machine is ready for a bus",
                          "apps/command_line apps/takt/live master/lcm/link " + LINUX),
+    "apps/takt/demo": ("runs the demo machine of an installed takt",
+                       "apps/command_line master/lcm/tcpq master/linux"),
     "apps/takt/complete": ("names of nodes, objects and signals for the completion of shells",
                            "apps/command_line apps/takt/live eds_parser/network_file master/gateway/message master/linux"),
     "apps/takt/import": ("explains what takt makes of a bus.yml or a nodelist",

@@ -71,7 +71,7 @@ def wrong_use(tools):
     tools.says("so has a PDO that takt can't read", ["takt", "smooth", DEMO, "--pdo", "205"], 2, "holds no frame")
     tools.says("a recording that is missing is named", ["takt", "smooth", "none.log"], 2, "none.log: can't be read")
     tools.says("takt without a command is wrong use", ["takt"], 2, "--help")
-    for command in ([], ["dump"], ["eds"], ["import"], ["learn"], ["plan"], ["budget"], ["sim"], ["simulate"], ["status"],
+    for command in ([], ["dump"], ["eds"], ["import"], ["learn"], ["plan"], ["budget"], ["sim"], ["simulate"], ["demo"], ["status"],
                     ["top"], ["sdo"], ["nmt"], ["trajectory"]):
         tools.says(" ".join(["takt", *command, "--help"]) + " has an example", ["takt", *command, "--help"], 0, "Example")
 
