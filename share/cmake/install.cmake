@@ -52,9 +52,10 @@ foreach(program IN LISTS programs)
 endforeach()
 install(FILES share/completions/_takt DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 
-# systemd reads lib/systemd below /usr and below /usr/local.
-install(FILES share/systemd/taktd@.service DESTINATION lib/systemd/system)
-install(FILES share/systemd/60-takt-can.link DESTINATION lib/systemd/network)
+# systemd reads lib/systemd below /usr and below /usr/local. A Debian package has its units in /lib/systemd.
+set(TAKT_SYSTEMD_DIR lib/systemd CACHE PATH "Folder of the unit and of the .link file, below the prefix or absolute")
+install(FILES share/systemd/taktd@.service DESTINATION ${TAKT_SYSTEMD_DIR}/system)
+install(FILES share/systemd/60-takt-can.link DESTINATION ${TAKT_SYSTEMD_DIR}/network)
 install(FILES share/systemd/takt.conf DESTINATION ${CMAKE_INSTALL_SYSCONFDIR}/security/limits.d)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/takt)
