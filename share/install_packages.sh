@@ -1,9 +1,10 @@
 #!/bin/sh
-# install_packages.sh PURPOSE... - installs what share/packages.txt lists for build, run, wheel or test and this machine lacks.
+# install_packages.sh PURPOSE... - installs what share/packages.txt lists for build, run, wheel, package, chroot or test and this machine
+# lacks.
 # With nothing to install it is silent and needs no rights.
 set -eu
 list=$(dirname "$0")/packages.txt
-[ $# -gt 0 ] || { echo "usage: $0 build|run|wheel|test..." >&2; exit 2; }
+[ $# -gt 0 ] || { echo "usage: $0 build|run|wheel|package|chroot|test..." >&2; exit 2; }
 
 wanted=
 for purpose; do

@@ -1,7 +1,8 @@
 #!/bin/sh
 # test.sh - everything that CI runs, a line a stage; ends with the count and exit code 0 if all is good.
-#   TAKT_STAGES  only these of: format release asan tsan fuzz tidy alone mutation trajectories (without: all but the last three, which
-#                belong to a release: they compile each source alone, and 200 changed copies, and plan 10^8 trajectories)
+#   TAKT_STAGES  only these of: format release asan tsan fuzz tidy alone mutation trajectories packages (without: all but the last four,
+#                which belong to a release: they compile each source alone, and 200 changed copies, plan 10^8 trajectories, and build the
+#                Debian packages twice and install them into a new Debian, which needs root)
 #   TAKT_FUZZ    seconds of the stage fuzz for EDS files; half of it for network files, a third for each other target (60)
 #   TAKT_PCH     OFF: no precompiled headers
 #   TAKT_JOBS    parallel jobs (number of processors)
@@ -89,6 +90,16 @@ check_trajectories() {
   python3 test/motion/judge_many.py --cases 100000000 && python3 test/motion/judge_many.py --cases 1000000 --class "wide limits"
 }
 
+# The second build is elsewhere and compiles everything again: the packages have the same bytes.
+check_packages() {
+  first=build/packages
+  second=build/packages-again
+  rm -rf "$first" "$second"
+  sh share/package.sh "$first" && CCACHE_DISABLE=1 sh share/package.sh "$second" || return 1
+  for package in "$first"/*.deb; do cmp "$package" "$second/${package##*/}" || return 1; done
+  sh test/house/package_test.sh "$first"
+}
+
 # build PRESET COMPILER [TARGET...]. Warnings are errors in release and fuzz, which compile all files.
 build() {
   preset=$1
@@ -142,6 +153,7 @@ for wanted in $stages; do
     alone) stage alone check_alone ;;
     mutation) stage mutation check_mutation ;;
     trajectories) stage trajectories check_trajectories ;;
+    packages) stage packages check_packages ;;
     release)
       if stage release-build build release c++; then
         stage release-tests run_tests release
