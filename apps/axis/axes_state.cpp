@@ -128,7 +128,8 @@ bool Axes::State::lacks_speed_axes() const {
 Done Axes::State::step(Interruption interruption) {
   const Input input = group.wait(axes_tick);
   for (event_t& event : group.take_events()) {
-    if (event.severity == 0) continue;
+    // A stop that somebody has requested is a note, but it is the reason why a motion has ended.
+    if (event.severity == 0 && event.kind != "motion_stopped") continue;
     if (events_.size() == most_kept_events) events_.erase(events_.begin());
     events_.push_back(std::move(event));
   }

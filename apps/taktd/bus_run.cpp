@@ -70,6 +70,7 @@ Time BusRun::serve() {
   if (gateway_) gateway_->serve();
   if (!stopping_) watch_lateness();
   recorder_.serve(front_.clocks.now());
+  front_.reporter.settle();
   return bridge_->next_message();
 }
 
@@ -163,6 +164,7 @@ bool BusRun::complete() {
   } while (bridge_->has_unsent_reports());
   judge_stop();
   const bool recorded = recorder_.finish(exit_ == Exit::good ? "" : why_, last_recording);
+  front_.reporter.settle();
   say(Weight::note, run_summary(*master_, *bridge_, front_.reporter.reported(Weight::error),
                                 front_.reporter.reported(Weight::warning)));
   return recorded;

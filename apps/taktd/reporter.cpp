@@ -12,11 +12,22 @@ bool Reporter::open_events(const std::string& path) {
   return events_ != nullptr;
 }
 
-void Reporter::say(Weight weight, const std::string& sentence) { log_.say(weight, sentence); }
+void Reporter::say(Weight weight, const std::string& sentence) {
+  settle();
+  log_.say(weight, sentence);
+}
+
+void Reporter::say(const Notice& notice) {
+  ++reported_[static_cast<std::size_t>(notice.weight)];
+  log_.say(notice.weight, notice.text);
+}
+
+void Reporter::settle() {
+  if (const auto notice = merged_.take()) say(*notice);
+}
 
 void Reporter::announce(const BusPlan& plan, const Notice& notice) {
-  ++reported_[static_cast<std::size_t>(notice.weight)];
-  say(notice.weight, notice.text);
+  if (const auto before = merged_.add(notice)) say(*before);
   if (!events_) return;
   report_lost();
   write(notice, node_name(plan, notice.node));
@@ -34,12 +45,13 @@ void Reporter::report_lost() {
       .kind = "events_lost",
       .weight = Weight::warning,
       .text = "--events: " + std::to_string(lost) + " lines could not be written and are lost"};
-  ++reported_[static_cast<std::size_t>(gap.weight)];
-  say(gap.weight, gap.text);
+  settle();
+  say(gap);
   write(gap, {});
 }
 
 void Reporter::finish(Time limit) {
+  settle();
   if (events_) {
     const bool through = events_->flush(limit);
     if (!through)

@@ -8,12 +8,13 @@
 #include "apps/taktd/process/error_log.hpp"
 #include "apps/taktd/process/line_writer.hpp"
 #include "eds_parser/table/bus_plan.hpp"
+#include "master/gateway/notice/merged_notices.hpp"
 #include "master/gateway/notice/notice.hpp"
 
 namespace takt {
 
-/// Writes notices as sentences to stderr and as JSON lines to a file. Used only by the front
-/// thread.
+/// Writes notices as sentences to stderr and as JSON lines to a file. Notices of one cause share a
+/// sentence; each has a line in the file. Used only by the front thread.
 class Reporter {
  public:
   /// Returns false and sets errno if the file cannot be opened.
@@ -21,6 +22,8 @@ class Reporter {
 
   /// `plan` is the plan of the bus that the notice is about.
   void announce(const BusPlan& plan, const Notice& notice);
+  /// Writes the sentence that waits for others of its cause. Call this after each round.
+  void settle();
   /// Writes a sentence of the daemon itself to stderr.
   void say(Weight weight, const std::string& sentence);
 
@@ -28,15 +31,18 @@ class Reporter {
   /// possible.
   void finish(Time limit);
 
+  /// Returns the number of sentences about notices.
   std::uint64_t reported(Weight weight) const noexcept {
     return reported_[static_cast<std::size_t>(weight)];
   }
 
  private:
   void write(const Notice& notice, std::string_view node);
+  void say(const Notice& notice);
   void report_lost();
 
   ErrorLog log_;
+  MergedNotices merged_;
   std::unique_ptr<LineWriter> events_;
   bool without_thread_reported_ = false;
   std::array<std::uint64_t, 3> reported_{};

@@ -1,4 +1,5 @@
 // Motions over LCM, from the bytes of motion_command_t to the simulated drives.
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
@@ -314,6 +315,10 @@ TEST(MotionCommand, StopEndsTheMotionOfTheWholeGroup) {
   ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == stopping; }, 5));
   EXPECT_EQ(bus.axis(1).state, stopping);
   ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == standing; }));
+  EXPECT_TRUE(bus.said("motion_stopped", "its sender has stopped it"));
+  EXPECT_TRUE(std::ranges::all_of(bus.notices, [](const Notice& notice) {
+    return notice.kind != "motion_stopped" || notice.weight == Weight::note;
+  })) << "a stop that the application requests is no warning";
   bus.move_one(2, 10.0);
   ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).state == moving; }, 20));
   EXPECT_TRUE(bus.enabled(0));

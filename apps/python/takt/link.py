@@ -263,7 +263,10 @@ class Link:
                 axis.motion, axis.motion_cycle = reported[axis.node_id, axis.number], motion.cycle
 
     def _on_event(self, event: event_t) -> None:
-        if event.session == self.session and event.severity > 0:
+        if event.session != self.session:
+            return
+        # A stop that somebody has requested is a note, but it is the reason why a motion has ended.
+        if event.severity > 0 or event.kind == "motion_stopped":
             self.events = self.events[1 - MOST_EVENTS:] + [event]
 
     def _on_status(self, status: status_t) -> None:

@@ -1,12 +1,17 @@
 #include "apps/taktd/process/error_log.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <spdlog/details/null_mutex.h>
 #include <spdlog/logger.h>
 #include <spdlog/sinks/base_sink.h>
+#include <string_view>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
 
 #include "apps/taktd/process/open_again.hpp"
+#include "eds_parser/table/number_in.hpp"
 
 namespace takt {
 namespace {
@@ -21,12 +26,42 @@ const char* colour_of(spdlog::level::level_enum level) noexcept {
   return level == spdlog::level::warn ? "\033[33m\033[1m" : "\033[32m";
 }
 
+std::string_view environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? std::string_view{} : std::string_view{value};
+}
+
+/// Returns true if the file is the one that JOURNAL_STREAM names as device:inode. A program that
+/// systemd has started may write elsewhere. systemd.exec(5).
+bool is_journal(int file) {
+  const std::string_view stream = environment("JOURNAL_STREAM");
+  const std::size_t colon = std::min(stream.find(':'), stream.size());
+  const auto device = number_in<std::uint64_t>(stream.substr(0, colon));
+  const auto inode = number_in<std::uint64_t>(stream.substr(std::min(colon + 1, stream.size())));
+  struct stat status{};
+  return device && inode && ::fstat(file, &status) == 0 && status.st_dev == *device &&
+         status.st_ino == *inode;
+}
+
+/// Puts the priority of syslog(3) before each line of a text.
+std::string with_priority(std::string_view text, spdlog::level::level_enum level) {
+  const std::string_view priority = level >= spdlog::level::err    ? "<3>"
+                                    : level == spdlog::level::warn ? "<4>"
+                                                                   : "<6>";
+  std::string lines{priority};
+  for (const char c : text) {
+    lines += c;
+    if (c == '\n') lines += priority;
+  }
+  return lines;
+}
+
 }  // namespace
 
 /// An spdlog sink that passes each line to a LineWriter.
 class ErrorLog::Sink final : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
  public:
-  Sink(LineWriter& writer, Colours colours) : writer_{writer}, colours_{colours} {}
+  Sink(LineWriter& writer, Form form) : writer_{writer}, form_{form} {}
 
  private:
   void sink_it_(const spdlog::details::log_msg& message) override {
@@ -34,28 +69,34 @@ class ErrorLog::Sink final : public spdlog::sinks::base_sink<spdlog::details::nu
     formatter_->format(message, buffer);
     std::string line{buffer.data(), buffer.size()};
     while (line.ends_with('\n')) line.pop_back();
-    if (colours_ == Colours::ansi && message.color_range_end > message.color_range_start) {
+    if (form_ == Form::coloured && message.color_range_end > message.color_range_start) {
       line.insert(message.color_range_end, "\033[m");
       line.insert(message.color_range_start, colour_of(message.level));
     }
-    writer_.add(line);
+    writer_.add(form_ == Form::journal ? with_priority(line, message.level) : line);
   }
   void flush_() override {}
 
   LineWriter& writer_;
-  Colours colours_;
+  Form form_;
 };
 
 FileDescriptor ErrorLog::stderr_again() { return open_again(STDERR_FILENO); }
 
 ErrorLog::ErrorLog(FileDescriptor file, LineWriter::StartThread start)
-    : ErrorLog{::isatty(file.get()) != 0 ? Colours::ansi : Colours::none, std::move(file),
-               std::move(start)} {}
+    : ErrorLog{form_of(file.get()), std::move(file), std::move(start)} {}
 
-ErrorLog::ErrorLog(Colours colours, FileDescriptor file, LineWriter::StartThread start)
+ErrorLog::Form ErrorLog::form_of(int file) {
+  if (is_journal(file)) return Form::journal;
+  const bool colours =
+      ::isatty(file) != 0 && environment("NO_COLOR").empty() && environment("TERM") != "dumb";
+  return colours ? Form::coloured : Form::plain;
+}
+
+ErrorLog::ErrorLog(Form form, FileDescriptor file, LineWriter::StartThread start)
     : writer_{std::move(file), std::move(start)} {
-  log_ = std::make_unique<spdlog::logger>("taktd", std::make_shared<Sink>(writer_, colours));
-  log_->set_pattern("%H:%M:%S.%e %^%=7l%$ %v");
+  log_ = std::make_unique<spdlog::logger>("taktd", std::make_shared<Sink>(writer_, form));
+  log_->set_pattern(form == Form::journal ? "%v" : "%H:%M:%S.%e %^%=7l%$ %v");
 }
 
 ErrorLog::~ErrorLog() = default;

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -11,8 +12,10 @@ class logger;
 
 namespace takt {
 
-/// Writes sentences for people to stderr, with the time of day. No caller waits if stderr accepts
-/// no data. The log counts the lines that are lost and reports their number with the next line.
+/// Writes sentences for people to stderr, with the time of day. If stderr leads to the journal of
+/// systemd (JOURNAL_STREAM), each line has its priority instead, as in "<4>", because the journal
+/// has the time: sd-daemon(3). No caller waits if stderr accepts no data. The log counts the lines
+/// that are lost and reports their number with the next line.
 class ErrorLog {
  public:
   /// Writes to `file` instead of stderr.
@@ -27,10 +30,11 @@ class ErrorLog {
   bool flush(Time limit) { return writer_.flush(limit); }
 
  private:
-  enum class Colours : bool { none, ansi };
+  enum class Form : std::uint8_t { plain, coloured, journal };
 
   class Sink;
-  ErrorLog(Colours colours, FileDescriptor file, LineWriter::StartThread start);
+  ErrorLog(Form form, FileDescriptor file, LineWriter::StartThread start);
+  static Form form_of(int file);
   static FileDescriptor stderr_again();
 
   LineWriter writer_;

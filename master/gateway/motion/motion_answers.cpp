@@ -7,6 +7,16 @@
 #include "master/gateway/motion/motion_text.hpp"
 
 namespace takt {
+namespace {
+
+/// Returns the severity of a stop: one that somebody has requested is a note.
+Weight weight_of(motion::StopCause cause) noexcept {
+  using enum motion::StopCause;
+  const bool requested = cause == application || cause == ordered_stop || cause == nmt_command;
+  return requested ? Weight::note : Weight::warning;
+}
+
+}  // namespace
 
 std::string MotionAnswers::name_of(std::size_t axis) const {
   const std::string& node = plan_.nodes[axes_[axis].node_index].name;
@@ -55,7 +65,7 @@ void MotionAnswers::stopped(std::size_t axis, std::int32_t id, const motion::Sto
       "motion_stopped",
       fmt::format("motion {} has stopped because of {}: {}", id,
                   name_of(std::min<std::size_t>(stop.axis, axes_.size() - 1)), text(stop.cause)),
-      axis, context);
+      axis, context, weight_of(stop.cause));
 }
 
 void MotionAnswers::homing_changed(std::size_t axis, motion::HomingState before,

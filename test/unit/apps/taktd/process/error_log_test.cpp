@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "apps/taktd/process/open_again.hpp"
@@ -54,6 +55,35 @@ TEST(ErrorLog, SaysEachSentenceWithTheTimeOfDayAndItsWeight) {
               ContainsRegex("^[0-9:]{8}\\.[0-9]{3}  info   one\n"
                             "[0-9:]{8}\\.[0-9]{3} warning two\n"
                             "[0-9:]{8}\\.[0-9]{3}  error  three\n$"));
+}
+
+TEST(ErrorLog, GivesTheJournalPrioritiesAndNoTime) {
+  Pipe pipe = make_pipe();
+  struct stat status{};
+  ASSERT_EQ(::fstat(pipe.writer.get(), &status), 0);
+  const std::string stream = std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
+  ASSERT_EQ(::setenv("JOURNAL_STREAM", stream.c_str(), 1), 0);
+  ErrorLog log{std::move(pipe.writer)};
+  ::unsetenv("JOURNAL_STREAM");
+
+  log.say(Weight::note, "one");
+  log.say(Weight::warning, "two\n  more");
+  log.say(Weight::error, "three");
+
+  EXPECT_EQ(read_until(pipe.reader, "three\n"), "<6>one\n<4>two\n<4>  more\n<3>three\n");
+}
+
+TEST(ErrorLog, OfAnotherFileThanTheJournalHasTheTime) {
+  for (const char* const stream : {"", "1:2", "x", "1", ":", "18446744073709551616:1"}) {
+    Pipe pipe = make_pipe();
+    ASSERT_EQ(::setenv("JOURNAL_STREAM", stream, 1), 0);
+    ErrorLog log{std::move(pipe.writer)};
+    ::unsetenv("JOURNAL_STREAM");
+
+    log.say(Weight::note, "one");
+
+    EXPECT_THAT(read_until(pipe.reader, "one\n"), HasSubstr("  info   one")) << stream;
+  }
 }
 
 /// The test would hang if a writer waited, because the pipe is full long before the last message.
