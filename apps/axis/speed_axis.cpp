@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "apps/axis/group/speed_pattern.hpp"
 #include "eds_parser/table/data_type.hpp"
 
 namespace takt {
@@ -51,11 +52,6 @@ void SpeedAxis::set_goal(SpeedGoal goal, double speed, double acceleration) noex
 void SpeedAxis::reset_fault() noexcept {
   reset_steps_ = 0;
   drive_.reset_fault();
-}
-
-bool SpeedAxis::shows(const speed_pattern_t& pattern, std::uint16_t word) noexcept {
-  const std::int32_t bits = word & pattern.mask;
-  return pattern.mask != 0 && std::ranges::find(pattern.values, bits) != pattern.values.end();
 }
 
 void SpeedAxis::step(const ImageInput& input) noexcept {

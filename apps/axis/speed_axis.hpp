@@ -61,7 +61,6 @@ class SpeedAxis {
   std::string why_not_ready() const;
 
  private:
-  static bool shows(const speed_pattern_t& pattern, std::uint16_t word) noexcept;
   bool is_stale(const ImageInput& input) const noexcept;
   void leave_with_drive() noexcept;
   void ramp(double seconds) noexcept;

@@ -96,7 +96,7 @@ TEST_F(ToolsAndDaemon, StatusReportsBusAndNodes) {
   const Ended plain = takt({"status"});
   EXPECT_EQ(plain.exit_code, 0) << plain.output;
   for (const char* text :
-       {"demo on", "1000 kbit/s", "error active", "shoulder", "elbow", "operational"}) {
+       {"demo  on sim", "1000 kbit/s", "error active", "shoulder", "elbow", "operational"}) {
     EXPECT_NE(plain.output.find(text), std::string::npos) << text << '\n' << plain.output;
   }
 

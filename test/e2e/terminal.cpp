@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <pty.h>
@@ -25,6 +26,7 @@ Terminal::Terminal(std::vector<std::string> arguments) {
   const winsize size{.ws_row = 20, .ws_col = 140, .ws_xpixel = 0, .ws_ypixel = 0};
   pid_ = ::forkpty(&fd_, nullptr, nullptr, &size);
   if (pid_ == 0) {
+    ::setenv("TERM", "xterm", 1);
     ::execv(pointers[0], pointers.data());
     ::_exit(127);
   }

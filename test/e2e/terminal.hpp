@@ -8,7 +8,7 @@
 
 namespace takt::test {
 
-/// A program in its own terminal of 140 columns by 20 rows. The destructor kills it.
+/// A program in its own terminal (`xterm`) of 140 columns by 20 rows. The destructor kills it.
 class Terminal {
  public:
   explicit Terminal(std::vector<std::string> arguments);

@@ -2,6 +2,7 @@
 """tools_beside_daemon_test.py BIN: a taktd on the simulated bus, an application that moves its axes, and tools that ask it
 meanwhile. Each program ends with its good exit code. Under ThreadSanitizer a data race is another exit code.
 """
+import os
 import pathlib
 import signal
 import socket
@@ -42,16 +43,17 @@ class Bus:
         said = open(self.folder / f"{name}.log", "w")
         return subprocess.Popen([self.binaries / name, *arguments, "--lcm-url", self.url], stdout=said, stderr=said)
 
-    def tool(self, *arguments):
-        return subprocess.run([self.binaries / "takt", *arguments, "--lcm-url", self.url], capture_output=True, text=True)
+    def tool(self, *arguments, **environment):
+        return subprocess.run([self.binaries / "takt", *arguments, "--lcm-url", self.url], capture_output=True, text=True,
+                              env={**os.environ, **{name: str(value) for name, value in environment.items()}})
 
     def said(self, name):
         return (self.folder / f"{name}.log").read_text()
 
-    def await_good(self, *arguments):
+    def await_good(self, *arguments, **environment):
         """Until the tool ends with 0: the daemon may still boot its devices."""
         until = time.monotonic() + PATIENCE
-        while (result := self.tool(*arguments)).returncode != 0 and time.monotonic() < until:
+        while (result := self.tool(*arguments, **environment)).returncode != 0 and time.monotonic() < until:
             time.sleep(0.2)
         check(result.returncode == 0, f"takt {' '.join(arguments)}: exit code {result.returncode}", result.stderr)
         return result.stdout
@@ -63,7 +65,13 @@ def main(binaries):
         # A move that takt-move computes itself outlives the cycles that a busy machine misses.
         daemon = bus.start("taktd", bus.network, "--bus", "sim", "--no-motions")
         try:
-            check("shoulder" in bus.await_good("status"), "takt status names the axis")
+            status = bus.await_good("status")
+            check("shoulder" in status and "stat " in status, "takt status names the axis and shows its statusword", status)
+            for page in ("axes", "words", "io", "pdos", "timing", "nodes"):
+                for width in (50, 80, 120):
+                    view = bus.await_good("top", "--page", page, COLUMNS=width)
+                    fits = all(len(line) <= width for line in view.splitlines())
+                    check(fits and view.count("\n") > 5 and "\033" not in view, f"page {page} at {width} columns", view)
             move = bus.start("takt-move", "--for", "6s", "--wait", str(PATIENCE))
             bus.await_good("sdo", "read", "shoulder", "6041:00")
             bus.await_good("timing")

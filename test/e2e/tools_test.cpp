@@ -195,15 +195,22 @@ TEST(AnEmptyBus, IsWrongUseForEachProgram) {
   }
 }
 
-TEST(Top, ShowsNodesAndValuesScrollsByArrowsAndQuitsOnQ) {
+TEST(Top, TurnsItsPagesScrollsByArrowsAndQuitsOnQ) {
   const Folder folder;
   DaemonProcess daemon{slow_network(folder.path())};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
 
   Terminal top{{TAKT, "top", "--lcm-url", daemon.lcm_url()}};
 
-  for (const char* text : {"shoulder", "operational", "elbow", "position_actual_value", " rad",
-                           "SYNC late by", "[1-", "arrows scroll"}) {
+  for (const char* text : {"shoulder", "switch on disabled", "elbow", " rad/s", "stat "}) {
+    EXPECT_TRUE(top.shows(text));
+  }
+  top.press("6");
+  EXPECT_TRUE(top.shows("operational"));
+  top.press("5");
+  EXPECT_TRUE(top.shows("SYNC late by"));
+  top.press("3");
+  for (const char* text : {"io.inputs_1_to_8", "arrows scroll", "[1-"}) {
     EXPECT_TRUE(top.shows(text));
   }
   top.press("\033[B\033[B");

@@ -155,9 +155,12 @@ ROOMS = {
     "apps/home": ("takt-home", "apps/axis apps/command_line apps/plot/motion master/lcm"),
     "apps/logic": ("takt-logic", "apps/axis apps/command_line apps/plot eds_parser/network_file "
                                  "eds_parser/network_file/yaml eds_parser/report master/lcm"),
+    "apps/takt/live/view": ("a running bus as text: pages of axes, values, PDOs, times and nodes, for each width of a terminal",
+                            "apps/axis/group master/core master/explain master/rt/exchange master/lcm "
+                            "master/gateway/message master/gateway/notice"),
     "apps/takt/live": ("commands for a running daemon: status, top, timing, EMCY, record",
-                       "apps/command_line master/core master/explain master/gateway/message master/gateway/notice "
-                       "master/rt/exchange master/linux " + LCM),
+                       "apps/command_line apps/takt/live/view master/explain master/gateway/message "
+                       "master/gateway/notice master/rt/exchange master/linux " + LCM),
     "apps/takt/service": ("commands that talk to devices: SDO, LSS, NMT, parameters, scan",
                           "apps/command_line apps/takt/live apps/takt/learn/device_files.hpp master/wire master/core "
                           "master/core/sdo master/core/lss master/lcm master/gateway/message master/gateway/command " + LINUX),

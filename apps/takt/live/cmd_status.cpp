@@ -7,10 +7,11 @@
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/json_text.hpp"
 #include "apps/takt/live/daemon_client.hpp"
-#include "apps/takt/live/pdo_table.hpp"
 #include "apps/takt/live/screen.hpp"
-#include "apps/takt/live/top_frame.hpp"
-#include "master/lcm/printable_text.hpp"
+#include "apps/takt/live/view/axis_view.hpp"
+#include "apps/takt/live/view/node_words.hpp"
+#include "apps/takt/live/view/pdo_table.hpp"
+#include "apps/takt/live/view/top_frame.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {
@@ -32,7 +33,13 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(status_t, bus, interface, bitrate, realtime, 
 
 namespace {
 
-constexpr Time pdos_limit = std::chrono::milliseconds{1500};
+/// The layout comes once a second, the PDOs twice.
+constexpr Time wait_limit = std::chrono::milliseconds{1500};
+
+/// Returns true unless an image is still to come. A bus that does not run may send none.
+bool has_image(const BusView& bus) {
+  return bus.status()->diagnosis.state != 0 || !bus.values().empty();
+}
 
 nlohmann::json json_of(const node_status_t& node) {
   nlohmann::json json = node;
@@ -76,14 +83,29 @@ struct StatusOptions {
 };
 
 void print(const std::vector<const BusView*>& buses) {
+  const std::size_t width = output_width();
   for (const BusView* const bus : buses) {
-    print_lines(status_lines(*bus));
-    if (bus->pdos()) {
-      for (const std::string& line : pdo_lines(*bus->pdos(), *bus->status())) {
-        std::printf("%s\n", printable_text(line).c_str());
-      }
-    }
+    print_lines(status_lines(*bus, width), width);
+    if (bus->pdos()) print_lines(pdo_table(*bus->pdos(), *bus->status(), width).all(), width);
   }
+}
+
+/// Returns the words of the axes of a bus; an empty list before its first image.
+nlohmann::json axes_json(const BusView& bus) {
+  const auto word = [](const std::optional<DriveWord>& of) {
+    if (!of) return nlohmann::json{};
+    return nlohmann::json{{"value", of->value}, {"text", of->text}};
+  };
+  nlohmann::json axes = nlohmann::json::array();
+  for (const AxisView& axis : axes_of(bus)) {
+    axes.push_back({{"axis", axis.name},
+                    {"node_id", axis.node},
+                    {"state", axis.state.text},
+                    {"mode", axis.mode},
+                    {"statusword", word(axis.statusword)},
+                    {"controlword", word(axis.controlword)}});
+  }
+  return axes;
 }
 
 void print_json(const std::vector<const BusView*>& buses) {
@@ -92,6 +114,7 @@ void print_json(const std::vector<const BusView*>& buses) {
     all.push_back(json_of(*bus->status()));
     if (bus->sync()) all.back()["sync"] = json_of(*bus->sync());
     if (bus->pdos()) all.back()["pdos"] = pdos_json(*bus->pdos());
+    all.back()["axes"] = axes_json(*bus);
   }
   const nlohmann::json document{{"buses", std::move(all)}};
   std::puts(json_text(document, 1).c_str());
@@ -99,17 +122,17 @@ void print_json(const std::vector<const BusView*>& buses) {
 
 int run(const StatusOptions& all) {
   const LiveOptions& options = all.live;
-  std::vector<std::string_view> channels{"STATUS", "SYNC"};
+  std::vector<std::string_view> channels{"STATUS", "SYNC", "LAYOUT", "IMAGE", "SPEED_AXES"};
   if (all.pdos) channels.push_back("PDOS");
   LcmClient lcm = open_live(options, channels);
   BusViews views;
   std::vector<const BusView*> buses = find_buses(lcm, views, options.bus_name);
-  if (all.pdos) {
-    listen(lcm, views, monotonic_now() + pdos_limit, [&] {
-      buses = chosen(views, options.bus_name);
-      return std::ranges::all_of(buses, [](const BusView* bus) { return bus->pdos().has_value(); });
+  listen(lcm, views, monotonic_now() + wait_limit, [&] {
+    buses = chosen(views, options.bus_name);
+    return std::ranges::all_of(buses, [&](const BusView* bus) {
+      return has_image(*bus) && (!all.pdos || bus->pdos().has_value());
     });
-  }
+  });
   options.json ? print_json(buses) : print(buses);
   std::fflush(stdout);
   refuse_two_daemons(buses);

@@ -8,9 +8,9 @@
 #include "apps/command_line/json_text.hpp"
 #include "apps/takt/live/daemon_client.hpp"
 #include "apps/takt/live/image_delay.hpp"
-#include "apps/takt/live/timing_table.hpp"
+#include "apps/takt/live/screen.hpp"
+#include "apps/takt/live/view/timing_table.hpp"
 #include "master/lcm/channel_names.hpp"
-#include "master/lcm/printable_text.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {
@@ -32,7 +32,8 @@ void print(const std::string& bus, const timing_t& timing, const TimingOptions& 
   } else {
     std::printf("%s at cycle %lld, the last second\n", bus.c_str(),
                 static_cast<long long>(timing.cycle));
-    for (const std::string& line : timing_lines(timing)) std::puts(printable_text(line).c_str());
+    const std::size_t width = output_width();
+    print_lines(timing_lines(timing, width), width);
   }
   std::fflush(stdout);
 }

@@ -1,43 +1,31 @@
 #include "apps/takt/live/screen.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <poll.h>
+#include <string>
+#include <string_view>
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
-#include "eds_parser/table/name_of.hpp"
-#include "master/lcm/printable_text.hpp"
+#include "eds_parser/table/number_in.hpp"
 
 namespace takt {
 namespace {
 
-bool begins_character(char c) noexcept { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
+constexpr std::size_t usual_width = 80;
+constexpr std::size_t least_columns = 20;
+constexpr std::size_t most_columns = 1000;
 
-std::string_view escape(Paint paint) noexcept {
-  static constexpr std::string_view sequences[]{"",         "\033[1m",  "\033[2m",
-                                                "\033[32m", "\033[33m", "\033[1;31m"};
-  return name_of(paint, sequences);
+std::string_view environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? std::string_view{} : std::string_view{value};
 }
 
-/// Returns the first `width` characters of `text` and subtracts their number from `width`.
-std::string_view cut(std::string_view text, std::size_t& width) noexcept {
-  std::size_t at = 0;
-  while (at < text.size()) {
-    if (begins_character(text[at])) {
-      if (width == 0) break;
-      --width;
-    }
-    ++at;
-  }
-  return text.substr(0, at);
-}
-
-std::size_t columns_of(std::string_view text) noexcept {
-  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
-}
+/// https://no-color.org
+bool shows_colours() { return moves_cursor() && environment("NO_COLOR").empty(); }
 
 termios saved_terminal{};
 
@@ -49,47 +37,21 @@ void put_back() {
 
 }  // namespace
 
-Line& Line::add(std::string_view text, Paint paint) {
-  pieces_.push_back({printable_text(text), paint});
-  return *this;
+std::size_t output_width() {
+  if (::isatty(STDOUT_FILENO) != 0) return Screen::size().columns;
+  const auto columns = number_in<std::size_t>(environment("COLUMNS"));
+  return std::clamp(columns.value_or(usual_width), least_columns, most_columns);
 }
 
-std::string Line::render(std::size_t width, bool colour) const {
-  std::string text;
-  for (const Piece& piece : pieces_) {
-    const std::string_view shown = cut(piece.text, width);
-    const bool painted = colour && piece.paint != Paint::plain;
-    if (painted) text += escape(piece.paint);
-    text += shown;
-    if (painted) text += "\033[0m";
-  }
-  return text;
+bool moves_cursor() {
+  const std::string_view terminal = environment("TERM");
+  return ::isatty(STDOUT_FILENO) != 0 && !terminal.empty() && terminal != "dumb";
 }
 
 void print_lines(const std::vector<Line>& lines, std::size_t width) {
-  const bool terminal = ::isatty(STDOUT_FILENO) != 0;
-  if (terminal) width = Screen::size().columns;
-  for (const Line& line : lines) std::puts(line.render(width, terminal).c_str());
-}
-
-std::string left(std::string_view text, std::size_t width) {
-  std::size_t room = width;
-  std::string padded{cut(text, room)};
-  return padded.append(room, ' ');
-}
-
-std::string right(std::string_view text, std::size_t width) {
-  const std::size_t columns = columns_of(text);
-  if (columns >= width) return left(text, width);
-  return std::string(width - columns, ' ') + std::string{text};
-}
-
-std::string bar(double share, std::size_t width) {
-  const double bounded = std::isfinite(share) ? std::clamp(share, 0.0, 1.0) : 0.0;
-  const auto full = static_cast<std::size_t>(std::lround(bounded * static_cast<double>(width)));
-  std::string text;
-  for (std::size_t i = 0; i < width; ++i) text += i < full ? "\u2588" : "\u2591";
-  return text;
+  if (::isatty(STDOUT_FILENO) != 0) width = Screen::size().columns;
+  const bool colours = shows_colours();
+  for (const Line& line : lines) std::puts(line.render(width, colours).c_str());
 }
 
 Screen::Screen() {
@@ -112,9 +74,10 @@ Screen::Size Screen::size() {
 
 void Screen::show(const std::vector<Line>& lines) const {
   const Size terminal = size();
+  const bool colours = shows_colours();
   std::string text = "\033[H";
   for (std::size_t row = 0; row < terminal.rows; ++row) {
-    if (row < lines.size()) text += lines[row].render(terminal.columns, true);
+    if (row < lines.size()) text += lines[row].render(terminal.columns, colours);
     text += "\033[K";
     if (row + 1 < terminal.rows) text += "\r\n";
   }
@@ -128,6 +91,10 @@ int Screen::key() {
   if (::poll(&input, 1, 0) <= 0 || ::read(STDIN_FILENO, bytes, 1) != 1) return 0;
   if (bytes[0] != '\033') return static_cast<unsigned char>(bytes[0]);
   if (::read(STDIN_FILENO, bytes + 1, 2) != 2 || bytes[1] != '[') return 0;
+  const bool numbered = bytes[2] >= '0' && bytes[2] <= '9';
+  char end = '~';
+  while (numbered && ::read(STDIN_FILENO, &end, 1) == 1 && end != '~') {
+  }
   return static_cast<unsigned char>(bytes[2]) | 0x80;
 }
 

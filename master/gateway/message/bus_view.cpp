@@ -10,16 +10,19 @@ namespace {
 
 constexpr std::size_t most_events = 50;
 constexpr std::size_t most_buses = 64;
-constexpr std::int32_t most_signals = 65536;
+constexpr std::size_t most_signals = 65536;
 
 /// Appends the list of a message to the `parts` that came before it, and moves them to `whole` with
-/// the last part. If a part is missing, all parts are dropped.
+/// the last part. All parts of a message have the same `key`. If a part is missing, all parts are
+/// dropped.
 template <class T, class List, class Count>
-void join(const T& part, std::optional<T>& parts, std::optional<T>& whole, List T::* list,
-          Count T::* count) {
+void join(const T& part, std::optional<T>& parts, std::optional<T>& whole, std::int64_t T::* key,
+          List T::* list, Count T::* count) {
   if (part.part == 0) {
     parts = part;
-  } else if (!parts || parts->cycle != part.cycle || part.part != parts->part + 1) {
+  } else if (!parts || (*parts).*key != part.*key || part.part != parts->part + 1) {
+    return parts.reset();
+  } else if (((*parts).*list).size() > most_signals) {
     return parts.reset();
   } else {
     List& joined = (*parts).*list;
@@ -39,6 +42,10 @@ void BusView::new_session(std::int64_t session) {
   session_ = session;
   status_parts_.reset();
   pdo_parts_.reset();
+  motions_.reset();
+  motion_parts_.reset();
+  speed_axes_.reset();
+  speed_parts_.reset();
   layout_parts_.clear();
   signals_.clear();
   values_.clear();
@@ -54,12 +61,13 @@ bool BusView::is_of_this_session(std::int64_t session) {
 
 void BusView::take(const status_t& status) {
   new_session(status.session);
-  join(status, status_parts_, status_, &status_t::nodes, &status_t::num_nodes);
+  join(status, status_parts_, status_, &status_t::cycle, &status_t::nodes, &status_t::num_nodes);
 }
 
 void BusView::take(const pdo_status_t& pdos) {
   if (is_of_this_session(pdos.session)) {
-    join(pdos, pdo_parts_, pdos_, &pdo_status_t::pdos, &pdo_status_t::num_pdos);
+    join(pdos, pdo_parts_, pdos_, &pdo_status_t::cycle, &pdo_status_t::pdos,
+         &pdo_status_t::num_pdos);
   }
 }
 
@@ -68,10 +76,27 @@ void BusView::take(const sync_status_t& sync) {
   sync_ = sync;
 }
 
+void BusView::take(const motion_t& motions) {
+  if (!is_of_this_session(motions.session)) return;
+  join(motions, motion_parts_, motions_, &motion_t::cycle, &motion_t::axes, &motion_t::num_axes);
+}
+
+void BusView::take(const speed_axes_t& axes) {
+  if (!is_of_this_session(axes.session)) return;
+  join(axes, speed_parts_, speed_axes_, &speed_axes_t::layout_hash, &speed_axes_t::axes,
+       &speed_axes_t::num_axes);
+}
+
+std::span<const speed_axis_t> BusView::speed_axes() const noexcept {
+  if (!speed_axes_ || signals_.empty() || speed_axes_->layout_hash != layout_hash_) return {};
+  return speed_axes_->axes;
+}
+
 void BusView::take(const layout_t& layout) {
   new_session(layout.session);
   if (layout.hash == layout_hash_ && !signals_.empty()) return;
-  if (layout.total_signals < 0 || layout.total_signals > most_signals) return;
+  if (layout.total_signals < 0) return;
+  if (static_cast<std::size_t>(layout.total_signals) > most_signals) return;
   for (std::size_t i = 0; i < layout.signals.size(); ++i) {
     const std::int32_t at = layout.first_signal + static_cast<std::int32_t>(i);
     if (layout.first_signal < 0 || at >= layout.total_signals) return;
@@ -152,10 +177,12 @@ std::string BusViews::take(std::string_view channel, Bytes data) {
     std::string_view what;
     std::string (*take)(BusView&, std::string_view, Bytes);
   };
-  static constexpr Kind kinds[] = {{"STATUS", take_as<status_t>},   {"LAYOUT", take_as<layout_t>},
-                                   {"IMAGE", take_as<image_t>},     {"TIMING", take_as<timing_t>},
-                                   {"PDOS", take_as<pdo_status_t>}, {"EVENT", take_as<event_t>},
-                                   {"SYNC", take_as<sync_status_t>}};
+  static constexpr Kind kinds[] = {
+      {"STATUS", take_as<status_t>},    {"LAYOUT", take_as<layout_t>},
+      {"IMAGE", take_as<image_t>},      {"TIMING", take_as<timing_t>},
+      {"PDOS", take_as<pdo_status_t>},  {"EVENT", take_as<event_t>},
+      {"SYNC", take_as<sync_status_t>}, {"SPEED_AXES", take_as<speed_axes_t>},
+      {"MOTION", take_as<motion_t>}};
   for (const Kind& kind : kinds) {
     const std::string_view bus = bus_of_channel(channel, kind.what);
     if (bus.empty()) continue;

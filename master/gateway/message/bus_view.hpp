@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,8 @@ class BusView {
   void take(const timing_t& timing) { timing_ = timing; }
   void take(const pdo_status_t& pdos);
   void take(const sync_status_t& sync);
+  void take(const speed_axes_t& axes);
+  void take(const motion_t& motions);
   void take(event_t event);
 
   /// Returns all nodes of one status_t round; empty before the first complete round.
@@ -31,6 +34,10 @@ class BusView {
   /// Returns all PDOs of one round; empty before the first complete round.
   const std::optional<pdo_status_t>& pdos() const noexcept { return pdos_; }
   const std::optional<sync_status_t>& sync() const noexcept { return sync_; }
+  /// Returns what the motions of all axes do; empty while the daemon runs none.
+  const std::optional<motion_t>& motions() const noexcept { return motions_; }
+  /// Returns the speed axes, whose positions are those of signals().
+  std::span<const speed_axis_t> speed_axes() const noexcept;
   const std::deque<event_t>& events() const noexcept { return events_; }
 
   /// Signals of the layout; empty until all parts have arrived.
@@ -57,6 +64,10 @@ class BusView {
   std::optional<sync_status_t> sync_;
   std::optional<pdo_status_t> pdos_;
   std::optional<pdo_status_t> pdo_parts_;  // incomplete
+  std::optional<motion_t> motions_;
+  std::optional<motion_t> motion_parts_;  // incomplete
+  std::optional<speed_axes_t> speed_axes_;
+  std::optional<speed_axes_t> speed_parts_;  // incomplete
   std::deque<event_t> events_;
   std::int64_t layout_hash_ = 0;
   std::map<std::int32_t, signal_t> layout_parts_;  // incomplete

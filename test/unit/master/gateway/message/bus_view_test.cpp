@@ -85,5 +85,54 @@ TEST(BusView, IsNotDeafenedByOneForgedMessageOfAnotherSession) {
   EXPECT_TRUE(view.events().empty());
 }
 
+TEST(BusView, HasTheSpeedAxesOfItsLayoutOnly) {
+  BusView view;
+  take(view, {0, 1, 2}, 7);
+  speed_axes_t axes{};
+  axes.session = 1;
+  axes.layout_hash = 5;
+  axes.parts = 1;
+  axes.num_axes = 1;
+  axes.axes.resize(1);
+  view.take(axes);
+  EXPECT_TRUE(view.speed_axes().empty()) << "before the layout";
+
+  layout_t layout{};
+  layout.session = 1;
+  layout.hash = 5;
+  layout.total_signals = layout.num_signals = 1;
+  layout.signals.resize(1);
+  view.take(layout);
+  EXPECT_EQ(view.speed_axes().size(), 1U);
+
+  axes.layout_hash = 6;
+  view.take(axes);
+  EXPECT_TRUE(view.speed_axes().empty()) << "their positions are those of another layout";
+}
+
+TEST(BusView, PutsMotionsTogetherAndIgnoresThoseOfAnotherSession) {
+  BusView view;
+  take(view, {0, 1, 2}, 7);
+  motion_t motions{};
+  motions.session = 1;
+  motions.cycle = 9;
+  motions.parts = 2;
+  motions.axes.resize(1);
+  view.take(motions);
+  EXPECT_FALSE(view.motions());
+
+  motions.part = 1;
+  view.take(motions);
+  ASSERT_TRUE(view.motions());
+  EXPECT_EQ(view.motions()->axes.size(), 2U);
+
+  motions.session = 2;
+  motions.part = 0;
+  motions.parts = 1;
+  motions.cycle = 10;
+  view.take(motions);
+  EXPECT_EQ(view.motions()->cycle, 9);
+}
+
 }  // namespace
 }  // namespace takt

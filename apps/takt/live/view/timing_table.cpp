@@ -1,4 +1,4 @@
-#include "apps/takt/live/timing_table.hpp"
+#include "apps/takt/live/view/timing_table.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <utility>
+
+#include "apps/takt/live/view/table.hpp"
 
 namespace takt {
 namespace {
@@ -28,14 +30,18 @@ Octaves filled(const timing_t& timing) {
   return range.end == 0 ? Octaves{} : range;
 }
 
-/// Returns the distribution as a row of bars. Every octave that is not empty has at least the
-/// lowest bar, so that rare times stay visible.
-std::string picture(const histogram_t& times, Octaves range) {
+/// Returns the distribution as a row of bars, each over `step` octaves. Every bar of octaves that
+/// are not empty has at least the lowest height, so that rare times stay visible.
+std::string picture(const histogram_t& times, Octaves range, std::size_t step) {
   static constexpr std::array bars{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
-  const std::int64_t most = times.bins.empty() ? 0 : *std::ranges::max_element(times.bins);
-  std::string text;
+  std::vector<std::int64_t> counts;
   for (std::size_t i = range.first; i < range.end; ++i) {
-    const std::int64_t count = i < times.bins.size() ? std::max<std::int64_t>(times.bins[i], 0) : 0;
+    if ((i - range.first) % step == 0) counts.push_back(0);
+    if (i < times.bins.size()) counts.back() += std::max<std::int64_t>(times.bins[i], 0);
+  }
+  const std::int64_t most = counts.empty() ? 0 : *std::ranges::max_element(counts);
+  std::string text;
+  for (const std::int64_t count : counts) {
     const double share = most <= 0 ? 0 : static_cast<double>(count) / static_cast<double>(most);
     text += count == 0 ? " " : bars[static_cast<std::size_t>(std::lround(share * 7))];
   }
@@ -61,19 +67,35 @@ std::string_view timing_label(std::string_view histogram) {
   return histogram;
 }
 
-std::vector<std::string> timing_lines(const timing_t& timing) {
+std::vector<Line> timing_lines(const timing_t& timing, std::size_t width) {
   const Octaves range = filled(timing);
-  if (range.end == 0) return {"no times were measured in the last second"};
-  std::vector<std::string> lines{fmt::format("{:16} {:>7} {:>9} {:>9} {:>9} {:>9}   {} .. {}", "us",
-                                             "times", "least", "median", "p99", "longest",
-                                             edge(range.first), edge(range.end))};
+  if (range.end == 0) return {Line{}.add("no times were measured in the last second")};
+  constexpr std::size_t most_bars = 18;
+  const std::size_t room = std::min(most_bars, std::max<std::size_t>(width, 3) - 2);
+  const std::size_t step = (range.end - range.first + room - 1) / room;
+  const std::string from = edge(range.first);
+  const std::string to = edge(range.end);
+  Table table{{{.title = "us"},
+               {.title = "times", .kind = Cell::number},
+               {.title = "least", .kind = Cell::number, .usual = 7},
+               {.title = "median", .kind = Cell::number, .usual = 7},
+               {.title = "p99", .kind = Cell::number, .usual = 7},
+               {.title = "longest", .kind = Cell::number, .usual = 7},
+               {.title = from + " .. " + to}}};
   for (const histogram_t& times : timing.histograms) {
     if (times.count == 0) continue;
-    lines.push_back(fmt::format("{:16} {:>7} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f}   {}",
-                                timing_label(times.name), times.count, times.minimum, times.median,
-                                times.p99, times.maximum, picture(times, range)));
+    const auto number = [](float microseconds) {
+      return PaintedText{fmt::format("{:.1f}", microseconds)};
+    };
+    table.add({{std::string{timing_label(times.name)}},
+               {std::to_string(times.count)},
+               number(times.minimum),
+               number(times.median),
+               number(times.p99),
+               number(times.maximum),
+               {picture(times, range, step)}});
   }
-  return lines;
+  return table.text(width).all();
 }
 
 nlohmann::json timing_json(const timing_t& timing) {

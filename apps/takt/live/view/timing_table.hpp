@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/takt/live/view/line.hpp"
 #include "master/lcm/messages.hpp"
 
 namespace takt {
@@ -13,8 +14,8 @@ namespace takt {
 std::string_view timing_label(std::string_view histogram);
 
 /// Returns a row for each histogram with its distribution as a bar chart, or a line that says that
-/// nothing was measured.
-std::vector<std::string> timing_lines(const timing_t& timing);
+/// nothing was measured. No line is longer than `width` columns.
+std::vector<Line> timing_lines(const timing_t& timing, std::size_t width);
 
 /// Returns the whole message, with times in microseconds.
 nlohmann::json timing_json(const timing_t& timing);

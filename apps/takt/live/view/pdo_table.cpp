@@ -1,11 +1,10 @@
-#include "apps/takt/live/pdo_table.hpp"
+#include "apps/takt/live/view/pdo_table.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "apps/takt/live/screen.hpp"
 #include "eds_parser/table/ids.hpp"
 
 namespace takt {
@@ -32,7 +31,7 @@ std::string label(const pdo_state_t& pdo) {
 }
 
 std::string state(const pdo_state_t& pdo) {
-  if (pdo.output != 0) return pdo.stale != 0 ? "held back" : "";
+  if (pdo.output != 0) return pdo.stale != 0 ? "held back" : pdo.count == 0 ? "never sent" : "";
   static constexpr std::pair<int, const char*> words[]{{arrived, "arrived"},
                                                        {missing, "missing"},
                                                        {late, "late"},
@@ -46,26 +45,51 @@ std::string state(const pdo_state_t& pdo) {
   return text;
 }
 
-std::string row(const pdo_state_t& pdo, const status_t& status) {
+Paint state_paint(const pdo_state_t& pdo) {
+  if (pdo.stale != 0) return Paint::bad;
+  return (pdo.flags & (missing | late | too_short | too_long)) != 0 ? Paint::warning : Paint::plain;
+}
+
+PaintedText fault_count(std::int64_t count) {
+  return {std::to_string(count), count == 0 ? Paint::dim : Paint::warning};
+}
+
+std::vector<PaintedText> row(const pdo_state_t& pdo, const status_t& status) {
   const CobId id = pdo.extended != 0 ? CobId::extended(static_cast<std::uint32_t>(pdo.cob_id))
                                      : CobId::base(static_cast<std::uint32_t>(pdo.cob_id));
-  std::string text = fmt::format(
-      "{:>4}  {}  {:<16}{:<11}{:>4}{:>8}{:>7}{:>8}{:>8}{:>8}{:>8}{:>8}  {}", pdo.node_id,
-      left(name_of(status, pdo.node_id), 16), label(pdo), to_string(id), pdo.transmission,
-      pdo.count, pdo.toggle != 0 ? 1 : 0, pdo.age < 0 ? "-" : std::to_string(pdo.age), pdo.missing,
-      pdo.late, pdo.too_short, pdo.too_long, state(pdo));
-  while (text.back() == ' ') text.pop_back();
-  return text;
+  return {{std::to_string(pdo.node_id)},
+          {name_of(status, pdo.node_id), Paint::title},
+          {label(pdo)},
+          {to_string(id)},
+          {std::to_string(pdo.transmission)},
+          {std::to_string(pdo.count)},
+          {pdo.toggle != 0 ? "1" : "0"},
+          {pdo.age < 0 ? "-" : std::to_string(pdo.age)},
+          fault_count(pdo.missing),
+          fault_count(pdo.late),
+          fault_count(pdo.too_short),
+          fault_count(pdo.too_long),
+          {state(pdo), state_paint(pdo)}};
 }
 
 }  // namespace
 
-std::vector<std::string> pdo_lines(const pdo_status_t& pdos, const status_t& status) {
-  std::vector<std::string> lines{
-      "NODE  NAME              PDO             COB-ID     TYPE   COUNT TOGGLE     AGE MISSING    "
-      "LATE   SHORT    LONG  IN THE NEWEST IMAGE"};
-  for (const pdo_state_t& pdo : pdos.pdos) lines.push_back(row(pdo, status));
-  return lines;
+Table::Text pdo_table(const pdo_status_t& pdos, const status_t& status, std::size_t width) {
+  Table table{{{.title = "NODE", .kind = Cell::number},
+               {.title = "NAME", .kind = Cell::name, .least = 6},
+               {.title = "PDO"},
+               {.title = "COB-ID"},
+               {.title = "TYPE", .kind = Cell::number},
+               {.title = "COUNT", .kind = Cell::number},
+               {.title = "TGL", .kind = Cell::number},
+               {.title = "AGE", .kind = Cell::number},
+               {.title = "MISSED", .kind = Cell::number},
+               {.title = "LATE", .kind = Cell::number},
+               {.title = "SHORT", .kind = Cell::number},
+               {.title = "LONG", .kind = Cell::number},
+               {.title = "NOW", .kind = Cell::words, .least = 8}}};
+  for (const pdo_state_t& pdo : pdos.pdos) table.add(row(pdo, status));
+  return table.text(width);
 }
 
 nlohmann::json pdos_json(const pdo_status_t& pdos) {
