@@ -9,6 +9,7 @@
 #include "apps/command_line/duration.hpp"
 #include "apps/command_line/failure.hpp"
 #include "apps/command_line/finding_text.hpp"
+#include "apps/command_line/help_text.hpp"
 #include "apps/command_line/known_words.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "eds_parser/budget/traffic.hpp"
@@ -59,7 +60,7 @@ int report(const BudgetArguments& options, const LoadedNetwork& network, const W
   } else {
     print_budget_text(std::cout, plan, budget);
     if (!fits) print_suggestions(std::cout, suggestions);
-    if (options.timeline) print_budget_timeline(std::cout, plan, budget);
+    if (options.timeline) print_budget_timeline(std::cout, plan, budget, text_width());
   }
   return fits ? 0 : 1;
 }

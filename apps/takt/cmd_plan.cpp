@@ -23,6 +23,7 @@ struct PlanOptions {
   std::string other;
   bool devices = false;
   bool json = false;
+  bool brief = false;
   bool quiet = false;
 };
 
@@ -122,10 +123,19 @@ int diff_devices(const PlanOptions& options) {
   return 0;
 }
 
+/// Prints one screen, in which the findings have their place.
+int print_brief(const LoadedNetwork& network) {
+  std::ostringstream text;
+  print_plan_brief(text, network.plan, network.findings);
+  std::cout << printable_lines(text.str());
+  return 0;
+}
+
 int print(const PlanOptions& options) {
   if (!options.other.empty()) return diff(options);
   if (options.devices) return diff_devices(options);
   const LoadedNetwork network = load_network(options.file);
+  if (options.brief && !has_error(network.findings)) return print_brief(network);
   if (!reported_good(network, options.quiet)) return invalid_file;
   PlanPrint what{.node = {}, .realtime = network.realtime, .lcm = network.lcm};
   if (!chosen_node(options, network.plan, what.node)) return invalid_file;
@@ -146,14 +156,20 @@ void add_plan(CLI::App& app, int& exit_code) {
       app, exit_code, "plan", "prints everything that taktd will do with a network file", print);
   command.add_option("NET", options.file, "network file (YAML, also a bus.yml)")->required();
   command.add_option("--node", options.node, "print only this node, by name or id");
-  command.add_flag("--json", options.json, "print one JSON document");
+  auto* json = command.add_flag("--json", options.json, "print one JSON document");
+  auto* brief = command.add_flag("--brief", options.brief,
+                                 "print one screen: nodes, cycle, load, limits and their sources, "
+                                 "findings");
+  brief->excludes(json);
   auto* other =
       command.add_option("--diff", options.other, "print what changes from NET to this file")
           ->type_name("OTHER");
   command
       .add_flag("--diff-devices", options.devices,
                 "print what the device data change, before and after")
-      ->excludes(other);
+      ->excludes(other)
+      ->excludes(brief);
+  other->excludes(brief);
   command.add_flag("--quiet", options.quiet, "leave out notes");
   command.footer(
       "The plan goes to stdout, findings go to stderr. Exit code 2: the file is invalid.\n"
@@ -163,6 +179,7 @@ void add_plan(CLI::App& app, int& exit_code) {
       "takt matches nodes by id, and lists steps and signals without their numbers. The exit\n"
       "codes are those of diff: 0 nothing differs, 1 something differs, 2 a file is invalid.\n\n"
       "Example:\n"
+      "  takt plan lift.yaml --brief\n"
       "  takt plan share/demo/two_axes.yaml --node shoulder\n"
       "  takt plan lift.yaml --diff lift_new.yaml\n"
       "  takt plan share/demo/lenze8400.yaml --diff-devices");

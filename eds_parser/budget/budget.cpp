@@ -218,6 +218,23 @@ BusBudget judged(BusTraffic traffic, const BusPlan& plan, const BudgetOptions& o
 
 }  // namespace
 
+std::optional<Time> BudgetRow::margin() const noexcept {
+  if (!worst || frame.kind == Traffic::sync) return std::nullopt;
+  std::optional<Time> left;
+  if (why != BudgetLimit::none) left = limit - *worst;
+  if (cycle != Time{0}) left = std::min(left.value_or(Time::max()), cycle - *worst);
+  return left;
+}
+
+const BudgetRow* BusBudget::tightest() const noexcept {
+  const BudgetRow* tightest = nullptr;
+  for (const BudgetRow& row : rows) {
+    const auto margin = row.margin();
+    if (margin && (tightest == nullptr || *margin < *tightest->margin())) tightest = &row;
+  }
+  return tightest;
+}
+
 bool BusBudget::fits() const noexcept {
   return !refused && std::ranges::all_of(rows, &BudgetRow::fits);
 }

@@ -23,6 +23,12 @@ struct BudgetRow {
 
   bool fits() const noexcept { return within(worst) || is_late_by_changes_only(); }
   bool fits_in_burst() const noexcept { return within(worst_in_burst); }
+  /// Returns whether this is an output that ends behind the next SYNC, but fits: SYNC may be late
+  /// by the tolerance, or by more if all event-driven outputs change at once.
+  bool is_behind_sync() const noexcept { return fits() && cycle != Time{0} && *worst > cycle; }
+  /// Returns the time left until its limit or until the next SYNC, whichever comes first; negative
+  /// if it ends later. Returns std::nullopt if it has neither or no bound, and for SYNC itself.
+  std::optional<Time> margin() const noexcept;
 
   /// Returns whether this is an output that delays the next SYNC by more than the tolerance only if
   /// all event-driven outputs change at once. Event-driven outputs have no deadline themselves.
@@ -54,6 +60,8 @@ struct BusBudget {
   bool fits_in_burst() const noexcept;
   /// Returns whether all frames fit, except in a cycle in which all event-driven outputs change.
   bool fits_but_for_changes() const noexcept;
+  /// Returns the frame with the smallest margin, or null if no frame has one.
+  const BudgetRow* tightest() const noexcept;
   /// Returns the longest time by which the outputs can delay the next SYNC.
   Time sync_delay() const noexcept;
   /// Returns the longest time by which service frames, and outputs behind them, can delay the next

@@ -16,14 +16,6 @@ Time ready_of(const BudgetRow& row, const BusPlan& plan) {
 
 }  // namespace
 
-std::optional<Time> CycleBar::margin() const noexcept {
-  std::optional<Time> left;
-  if (row->frame.kind == Traffic::sync) return left;
-  if (row->why != BudgetLimit::none) left = row->limit - end;
-  if (row->cycle != Time{0}) left = std::min(left.value_or(Time::max()), row->cycle - end);
-  return left;
-}
-
 double tick_step(double end, double most) {
   double step = 1;
   for (unsigned i = 0; end / step > most; ++i) step *= i % 3 == 1 ? 2.5 : 2;

@@ -14,10 +14,6 @@ struct CycleBar {
   Time ready{};  ///< earliest time at which it may be on the wire
   Time begin{};  ///< begin of the frame if it is as late as possible
   Time end{};
-
-  /// Returns the time left until its limit or until the next SYNC. Returns std::nullopt if it has
-  /// neither.
-  std::optional<Time> margin() const noexcept;
 };
 
 /// A marked point in time of the cycle.

@@ -35,10 +35,12 @@ constexpr std::string_view sync_colour = "#444444";
 constexpr std::string_view tpdo_colour = "#2e7d32";
 constexpr std::string_view rpdo_colour = "#1f5fa8";
 constexpr std::string_view late_colour = "#c0392b";
+constexpr std::string_view behind_colour = "#e08a00";
 constexpr std::string_view mark_colour = "#b26a00";
 
 std::string_view colour(const BudgetRow& row) {
   if (!row.fits()) return late_colour;
+  if (row.is_behind_sync()) return behind_colour;
   if (row.frame.kind == Traffic::sync) return sync_colour;
   return row.frame.kind == Traffic::tpdo ? tpdo_colour : rpdo_colour;
 }
@@ -123,6 +125,7 @@ class Svg {
     entry(fmt::format("fill=\"{}\"", sync_colour), "SYNC");
     entry(fmt::format("fill=\"{}\"", tpdo_colour), "TPDO (input)");
     entry(fmt::format("fill=\"{}\"", rpdo_colour), "RPDO (output)");
+    entry(fmt::format("fill=\"{}\"", behind_colour), "may delay SYNC");
     entry(fmt::format("fill=\"{}\"", late_colour), "can be too late");
   }
 
@@ -169,7 +172,7 @@ class Svg {
     rect(x(bar.ready), x(bar.begin), y, fill + " fill-opacity=\"0.25\"");
     rect(x(bar.begin), x(bar.end), y, fill);
     text(numbers(1), y + 10, "end", fmt::format("{:.0f}", us(bar.end)));
-    const auto left = bar.margin();
+    const auto left = row.margin();
     if (!left) return;
     text(numbers(2), y + 10, "end", fmt::format("{:.0f}", us(*left)),
          *left < Time{0} ? fmt::format("fill=\"{}\"", late_colour) : "");

@@ -60,10 +60,11 @@ class BudgetText {
   }
 
   void run() {
+    verdict();
+    out_ << '\n';
     head();
     if (plan_.cycle.sync) cycle_frames();
     other_frames();
-    verdict();
   }
 
  private:
@@ -158,29 +159,23 @@ class BudgetText {
   static std::string_view mark(const BudgetRow& row) {
     if (!row.fits()) return "  TOO LATE";
     if (row.is_late_by_changes_only()) return "  late if all change";
+    if (row.is_behind_sync()) return "  behind SYNC";
     return row.fits_in_burst() ? "" : "  late with EMCYs";
   }
 
   void verdict() {
-    out_ << '\n';
+    out_ << verdict_text() << '\n';
     if (!budget_.fits()) {
-      out_ << "It does not fit:\n";
       if (budget_.refused) refusal();
       list([](const BudgetRow& row) { return row.fits(); }, &BudgetRow::worst);
       return;
     }
-    out_ << "It fits.\n";
     if (budget_.fits_but_for_changes()) {
       out_ << fmt::format(
           "warning: if all event-driven outputs change in one cycle and all other frames come at "
           "once, SYNC is {:.0f} us\nlate behind the outputs; without such changes SYNC is in "
           "time{}\n",
           us(budget_.sync_delay()), steady_delay());
-    } else if (budget_.sync_delay() > Time{0}) {
-      out_ << fmt::format(
-          "warning: SYNC can be {:.0f} us late behind the outputs if all these frames come at "
-          "once\n",
-          us(budget_.sync_delay()));
     }
     warn_of_services();
     if (budget_.fits_in_burst()) return;
@@ -231,13 +226,47 @@ class BudgetText {
     if (left_out != 0) out_ << "  and " << left_out << " more\n";
   }
 
+  /// Returns the verdict and the smallest margin, for example "It fits, with a margin of 80 us:",
+  /// and on a second line the frame that has it.
+  std::string verdict_text() const {
+    const BudgetRow* const row = budget_.tightest();
+    const bool bounded = std::ranges::all_of(budget_.rows, [](const BudgetRow& each) {
+      return each.worst || (each.why == BudgetLimit::none && each.cycle == Time{0});
+    });
+    if (!budget_.fits()) {
+      if (!bounded || row == nullptr || *row->margin() >= Time{0}) return "It does not fit:";
+      return fmt::format("It does not fit; the worst margin is {:.0f} us:", us(*row->margin()));
+    }
+    if (row == nullptr) return "It fits. No frame has a limit.";
+    const Time margin = *row->margin();
+    std::string text = fmt::format("It fits, with a margin of {:.0f} us:", us(margin));
+    if (row->is_late_by_changes_only()) {
+      text = fmt::format(
+          "It fits, unless all event-driven outputs change at once. The worst margin is {:.0f} us:",
+          us(margin));
+    } else if (margin < Time{0}) {
+      text = fmt::format(
+          "It fits. SYNC can be {:.0f} us late if all these frames come at once, and {:.0f} us are "
+          "permitted:",
+          us(-margin), us(row->tolerance));
+    }
+    const bool sync = row->cycle != Time{0} && row->cycle - *row->worst == margin;
+    const std::string end =
+        sync ? fmt::format("the next SYNC comes at {:.0f} us", us(row->cycle)) : limit_end(*row);
+    return fmt::format("{}\n  {} ends at {:.0f} us, {}", text, row->frame.name, us(*row->worst),
+                       end);
+  }
+
+  static std::string limit_end(const BudgetRow& row) {
+    const std::string whose = row.frame.waits.empty() ? "" : " by " + row.frame.waits;
+    return fmt::format("{}{} ends at {:.0f} us", name_of(row.why), whose, us(row.limit));
+  }
+
   static std::string why_late(const BudgetRow& row, const std::optional<Time>& end) {
     const auto& name = row.frame.name;
     if (!end) return name + ": the frame and the frames before it need more than the whole bus";
     if (row.why != BudgetLimit::none && *end > row.limit) {
-      const std::string whose = row.frame.waits.empty() ? "" : " by " + row.frame.waits;
-      return fmt::format("{}: {:.0f} us, {}{} ends at {:.0f} us", name, us(*end), name_of(row.why),
-                         whose, us(row.limit));
+      return fmt::format("{}: {:.0f} us, {}", name, us(*end), limit_end(row));
     }
     return fmt::format("{}: {:.0f} us, the next SYNC comes at {:.0f} us", name, us(*end),
                        us(row.cycle));

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <iosfwd>
 #include <ostream>
 #include <span>
@@ -10,12 +11,14 @@
 
 namespace takt {
 
-/// Prints the budget for people: load, the frames of a cycle and the others with their margins, the
-/// verdict.
+/// Prints the budget for people: the verdict with the smallest margin and what is late, the load,
+/// the frames of a cycle and the others with their margins.
 void print_budget_text(std::ostream& out, const BusPlan& plan, const BusBudget& budget);
 
-/// Prints one cycle as a picture in text. Each frame is as late as it can be.
-void print_budget_timeline(std::ostream& out, const BusPlan& plan, const BusBudget& budget);
+/// Prints one cycle as a picture in text of at most `width` columns where that is possible. Each
+/// frame is as late as it can be.
+void print_budget_timeline(std::ostream& out, const BusPlan& plan, const BusBudget& budget,
+                           std::size_t width = 120);
 
 /// Prints the same picture as an SVG file.
 void print_budget_svg(std::ostream& out, const BusPlan& plan, const BusBudget& budget);

@@ -266,6 +266,61 @@ TEST(Pictures, WhatIsTooLateIsRedInTheSvgAndHasItsMargin) {
   EXPECT_THAT(out.str(), testing::HasSubstr(">receive window ends 400 us</text>"));
 }
 
+/// Returns a bus on which the last RPDO ends behind SYNC, but fits.
+BusPlan bus_with_late_sync() {
+  for (Time period = 2ms; period < 6ms; period += 50us) {
+    BusPlan plan = with_urgent_events(period, 1, 8);
+    const BusBudget budget = bus_budget(plan);
+    const BudgetRow* const row = budget.tightest();
+    if (budget.fits() && row != nullptr && row->is_behind_sync()) return plan;
+  }
+  return {};
+}
+
+TEST(Pictures, AgreeWithTheWordsOnAnOutputBehindSync) {
+  const BusPlan plan = bus_with_late_sync();
+  ASSERT_FALSE(plan.nodes.empty());
+  const BusBudget budget = bus_budget(plan);
+  std::ostringstream text;
+  std::ostringstream picture;
+  std::ostringstream svg;
+  print_budget_text(text, plan, budget);
+  print_budget_timeline(picture, plan, budget);
+  print_budget_svg(svg, plan, budget);
+
+  EXPECT_THAT(text.str(), testing::StartsWith("It fits. SYNC can be "));
+  EXPECT_THAT(text.str(), testing::HasSubstr("  behind SYNC\n"));
+  EXPECT_THAT(picture.str(), testing::ContainsRegex("\n  RPDO1 n4 .*#*[+]+ "));
+  EXPECT_THAT(svg.str(), testing::HasSubstr("fill=\"#e08a00\""));
+  EXPECT_THAT(svg.str(), testing::HasSubstr("It fits; outputs may delay SYNC."));
+}
+
+TEST(Pictures, FitTheTerminal) {
+  const auto plan = hand_made_bus(2, 2ms);
+  std::ostringstream out;
+  print_budget_timeline(out, plan, bus_budget(plan), 60);
+
+  std::istringstream lines{out.str()};
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("  ")) {
+      EXPECT_LE(line.size(), 60U) << line;
+    }
+  }
+}
+
+TEST(BudgetText, BeginsWithTheVerdictAndTheWorstMargin) {
+  const auto plan = hand_made_bus(1, 1440us);
+  std::ostringstream out;
+  print_budget_text(out, plan, bus_budget(plan));
+
+  EXPECT_THAT(
+      out.str(),
+      testing::ContainsRegex(
+          "^It fits(, with a margin of [0-9]+ us|[.] SYNC can be [0-9]+ us late if all these "
+          "frames come at once, "
+          "and [0-9]+ us are permitted):\n  [TR]PDO1 n1 ends at [0-9]+ us, "));
+}
+
 TEST(Pictures, SayThatThereIsNoCycleWithoutSync) {
   auto plan = hand_made_bus(1, 2ms);
   plan.cycle.sync = false;

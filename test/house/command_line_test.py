@@ -192,11 +192,20 @@ def imports(tools, folder):
 
 def plan(tools):
     tools.says("a node by its id in hex", ["takt", "plan", DEMO, "--node", "0x0A"], 0, "node 10 io")
+    brief = tools.run(["takt", "plan", DEMO, "--brief"]).stdout
+    check("a plan on one screen", len(brief.splitlines()) <= 24 and all(len(line) <= 80 for line in brief.splitlines())
+          and all(part in brief for part in ("3 nodes, 2 axes", "shoulder", "file: position", "findings: ")), brief)
+    tools.says("a screen is no document", ["takt", "plan", DEMO, "--brief", "--json"], 2, "--json")
     tools.says("a node that there is not", ["takt", "plan", DEMO, "--node", "9"], 2, "no node `9`; there is shoulder (1)")
 
 
 def budget(tools):
     tools.says("the demo fits its bus", ["takt", "budget", DEMO], 0, "TPDO2 elbow", "It fits")
+    first = ("It fits. SYNC can be 95 us late if all these frames come at once, and 200 us are permitted:\n"
+             "  RPDO2 io ends at 2095 us, the next SYNC comes at 2000 us\n")
+    told = tools.run(["takt", "budget", DEMO]).stdout
+    check("the verdict comes first", told.startswith(first), told)
+    tools.says("the picture shows what ends behind SYNC", ["takt", "budget", DEMO, "--timeline"], 0, "+", "  behind SYNC\n")
     tools.says("it does not fit a quarter of its bit rate", ["takt", "budget", DEMO, "--what-if", "bitrate=250"], 1,
                "It does not fit", "TOO LATE", "1000 kbit/s instead of 250", "--what-if period=")
     tools.says("a PDO of a node that there is not", ["takt", "budget", DEMO, "--what-if", "wrist.tpdo1=2"], 2, "wrist", "elbow")

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "eds_parser/print/plan/plan_names.hpp"
 #include "eds_parser/print/plan/plan_sections.hpp"
@@ -80,6 +82,38 @@ void add_limits(PlanLines& lines, const BusPlan& plan, const std::optional<NodeI
     lines.line("  {:<{}}  {:<12}  {:<{}}  {}", owner(plan, line), widest_owner, name(line.kind),
                value(line), widest_value, source(plan, line));
   }
+}
+
+std::vector<std::string> brief_limits(const BusPlan& plan) {
+  struct Owner {
+    std::string name;
+    std::string file{};
+    std::string device{};
+    std::string none{};
+  };
+  std::vector<Owner> owners;
+  for (const LimitLine& line : plan.limits.lines) {
+    const std::string of = owner(plan, line);
+    if (owners.empty() || owners.back().name != of) owners.push_back({.name = of});
+    Owner& last = owners.back();
+    const bool from_device = line.source == LimitSource::device;
+    const bool from_file = line.source == LimitSource::file;
+    std::string& text = from_file ? last.file : from_device ? last.device : last.none;
+    if (!text.empty()) text += ", ";
+    text += name(line.kind);
+    if (from_file) text += " " + value(line);
+    if (from_device) text += " " + to_string(line.object);
+  }
+  std::vector<std::string> texts;
+  for (const Owner& each : owners) {
+    std::string text = each.name + ":";
+    if (!each.file.empty()) text += " file: " + each.file + ";";
+    if (!each.device.empty()) text += " device: " + each.device + ";";
+    if (!each.none.empty()) text += " none: " + each.none + ";";
+    text.pop_back();
+    texts.push_back(std::move(text));
+  }
+  return texts;
 }
 
 }  // namespace takt

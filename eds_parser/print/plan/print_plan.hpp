@@ -1,8 +1,10 @@
 #pragma once
+#include <cstddef>
 #include <iosfwd>
 #include <optional>
 #include <ostream>
 
+#include "eds_parser/report/source.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/run_options.hpp"
 
@@ -18,6 +20,11 @@ struct PlanPrint {
 /// Prints the plan for people: bus, cycle with its time budget, nodes with their PDOs, image, LCM
 /// channels, and boot plans step by step with the bytes of every frame.
 void print_plan_text(std::ostream& out, const BusPlan& plan, const PlanPrint& what);
+
+/// Prints one screen of 24 lines: nodes, axes, cycle, load by PDOs, limits with their sources, and
+/// findings. No line is longer than `width` columns, which are at least 80, unless a word is.
+void print_plan_brief(std::ostream& out, const BusPlan& plan, const Findings& findings,
+                      std::size_t width = 80);
 
 /// Prints the plan as one JSON document. Times are in microseconds, bytes are hex pairs.
 void print_plan_json(std::ostream& out, const BusPlan& plan, const PlanPrint& what);

@@ -10,7 +10,6 @@ namespace takt {
 namespace {
 
 constexpr int most_decimals = 4;
-constexpr std::size_t longest_unit = 6;
 
 }  // namespace
 
@@ -29,11 +28,12 @@ std::string number_text(double value, std::size_t width, int decimals) {
   return fmt::format("{:.0e}", value);
 }
 
-std::string quantity_text(const ShownQuantity& quantity, std::size_t width) {
+std::string quantity_text(const ShownQuantity& quantity, std::size_t width,
+                          std::size_t unit_width) {
   if (!quantity.value) return "-";
   const bool counts = quantity.unit.empty();
   const std::string number = number_text(*quantity.value, width, counts ? 0 : most_decimals);
-  return number + ' ' + (counts ? "cnt" : shortened(printable_text(quantity.unit), longest_unit));
+  return number + ' ' + (counts ? "cnt" : shortened(printable_text(quantity.unit), unit_width));
 }
 
 }  // namespace takt

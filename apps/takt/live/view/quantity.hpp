@@ -17,7 +17,8 @@ struct ShownQuantity {
 std::string number_text(double value, std::size_t width, int decimals);
 
 /// Returns a number and its unit, for example "1.2500 rad" or "1250 cnt" for raw counts; "-" if it
-/// is not known. The number takes at most `width` columns, and the unit at most six.
-std::string quantity_text(const ShownQuantity& quantity, std::size_t width);
+/// is not known. The number takes at most `width` columns, and the unit at most `unit_width`.
+std::string quantity_text(const ShownQuantity& quantity, std::size_t width,
+                          std::size_t unit_width = 6);
 
 }  // namespace takt

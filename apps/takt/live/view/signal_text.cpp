@@ -10,6 +10,8 @@ namespace takt {
 namespace {
 
 constexpr unsigned most_shown_bits = 16;
+constexpr std::size_t whole_unit = 16;
+constexpr std::size_t short_unit = 6;
 
 DataType type_of(const signal_t& signal) { return static_cast<DataType>(signal.data_type); }
 
@@ -38,10 +40,10 @@ std::string hex(const signal_t& signal, std::int64_t raw) {
   return fmt::format("{:0{}X}", pattern(signal, raw), (bits_of(signal) + 3) / 4);
 }
 
-std::string number(const signal_t& signal, std::int64_t raw) {
+std::string number(const signal_t& signal, std::int64_t raw, std::size_t unit_width) {
   if (!signal.unit.empty()) {
     const double value = number_of(type_of(signal), raw) * signal.scale + signal.offset;
-    return quantity_text({.value = value, .unit = signal.unit}, 11);
+    return quantity_text({.value = value, .unit = signal.unit}, 11, unit_width);
   }
   if (is_real(type_of(signal))) return fmt::format("{:g}", number_of(type_of(signal), raw));
   if (type_of(signal) == DataType::unsigned64) return std::to_string(pattern(signal, raw));
@@ -52,7 +54,7 @@ std::string number(const signal_t& signal, std::int64_t raw) {
 
 std::string long_value(const signal_t& signal, std::int64_t raw) {
   const unsigned bits = bits_of(signal);
-  if (!is_digital(signal) || bits > most_shown_bits) return number(signal, raw);
+  if (!is_digital(signal) || bits > most_shown_bits) return number(signal, raw, whole_unit);
   std::string text;
   for (unsigned bit = bits; bit-- > 0;) {
     text += (pattern(signal, raw) >> bit & 1U) != 0 ? '1' : '0';
@@ -62,7 +64,7 @@ std::string long_value(const signal_t& signal, std::int64_t raw) {
 }
 
 std::string short_value(const signal_t& signal, std::int64_t raw) {
-  return is_digital(signal) ? hex(signal, raw) : number(signal, raw);
+  return is_digital(signal) ? hex(signal, raw) : number(signal, raw, short_unit);
 }
 
 std::string raw_text(const signal_t& signal, std::int64_t raw) {

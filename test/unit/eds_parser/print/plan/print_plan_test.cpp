@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/print/plan/plan_names.hpp"
@@ -37,6 +39,59 @@ TEST(PlanText, ShowsTheUnitsAndTheFallbackOfAValue) {
   EXPECT_THAT(text,
               HasSubstr("  x 0.000628319 rad  first position_actual_value; after 500 cycles "));
   EXPECT_THAT(text, HasSubstr("; after 500 cycles 0x"));
+}
+
+std::vector<std::string> brief_of(const BusPlan& plan, const Findings& findings) {
+  std::ostringstream out;
+  print_plan_brief(out, plan, findings);
+  std::vector<std::string> lines;
+  std::istringstream text{out.str()};
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(PlanBrief, IsOneScreenOfWhatMatters) {
+  const std::vector<std::string> lines = brief_of(demo(), {});
+
+  ASSERT_LE(lines.size(), 24U);
+  std::string text;
+  for (const std::string& line : lines) {
+    EXPECT_LE(line.size(), 80U) << line;
+    text += line + '\n';
+  }
+  EXPECT_THAT(text, HasSubstr("bus demo: 3 nodes, 2 axes at 1000 kbit/s, simulated\n"));
+  EXPECT_THAT(text, HasSubstr("SYNC every 2000 us: TPDOs until 1020, outputs at 1295 us; PDO load "
+                              "57 %\n"));
+  EXPECT_THAT(text,
+              HasSubstr("shoulder  axis, mandatory        2 TPDO  2 RPDO  lost after 300 ms"));
+  EXPECT_THAT(text, HasSubstr("shoulder: file: position -100 .. 100 rad, velocity 40 rad/s"));
+  EXPECT_THAT(text, HasSubstr("findings: 0 errors, 0 warnings, 0 notes"));
+}
+
+TEST(PlanBrief, OfALargeBusWithManyFindingsIsOneScreenToo) {
+  BusPlan plan = demo();
+  const NodePlan node = plan.nodes.front();
+  for (std::uint8_t id = 20; id < 120; ++id) {
+    plan.nodes.push_back(node);
+    plan.nodes.back().id = *NodeId::from(id);
+    plan.nodes.back().name = "a node with a very long name, number " + std::to_string(id);
+  }
+  Findings findings;
+  for (int i = 0; i < 50; ++i) {
+    findings.push_back({.file = "/a/folder/net.yaml",
+                        .pos = {},
+                        .severity = i == 49 ? Severity::warning : Severity::note,
+                        .rule = "rule",
+                        .message = std::string(200, 'x') + " and more"});
+  }
+  const std::vector<std::string> lines = brief_of(plan, findings);
+
+  EXPECT_LE(lines.size(), 24U);
+  for (const std::string& line : lines) EXPECT_LE(line.size(), 80U) << line;
+  std::string text;
+  for (const std::string& line : lines) text += line + '\n';
+  EXPECT_THAT(text, HasSubstr("findings: 0 errors, 1 warning, 49 notes\n  warning: net.yaml:"));
+  EXPECT_THAT(text, HasSubstr(" lines more\n"));
 }
 
 TEST(PlanText, IndentsTheStepsThatABootMaySkip) {

@@ -184,6 +184,13 @@ TEST(Pages, DigitalInputsHaveTheirBits) {
   EXPECT_LT(page.find("io.read_input"), page.find("shoulder.statusword"));
 }
 
+TEST(Pages, TheUnitOfAValueIsWholeOnItsPage) {
+  ShownBus bus = machine();
+  bus.signal(10, "torque", 0x6401, false, 16, 200, "of rated torque", 1e-3);
+
+  EXPECT_THAT(text_of(io_page(bus.view(), 80).all()), HasSubstr("0.2000 of rated torque"));
+}
+
 TEST(Pages, TextsFromTheBusHaveNoControlCharacters) {
   ShownBus bus = machine();
   bus.status.nodes[0].name = "a\033[2Jb\n";
