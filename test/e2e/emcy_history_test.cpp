@@ -1,4 +1,5 @@
 // `takt emcy` reads the EMCY history of a simulated device.
+#include <cstdlib>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -45,6 +46,19 @@ TEST(EmcyHistory, IsReadFromTheDaemon) {
   EXPECT_EQ(json["emcys"][0]["manufacturer"].size(), 5U);
 
   EXPECT_NE(takt({"nobody"}).exit_code, 0);
+
+  ::setenv("XDG_STATE_HOME", (folder / "state").c_str(), 1);
+  const Ended seen = takt({"--acknowledge"});
+  EXPECT_EQ(seen.exit_code, 0) << seen.output;
+  EXPECT_NE(seen.output.find("0x8240"), std::string::npos) << seen.output;
+  const Ended rest = takt({});
+  const Ended all = takt({"--all"});
+  const auto marked = nlohmann::json::parse(takt({"--json"}).output, nullptr, false);
+  ::unsetenv("XDG_STATE_HOME");
+  EXPECT_NE(rest.output.find("are left out"), std::string::npos) << rest.output;
+  EXPECT_NE(all.output.find("0x8240"), std::string::npos) << all.output;
+  ASSERT_TRUE(marked.is_object() && !marked["emcys"].empty());
+  EXPECT_EQ(marked["emcys"][0]["acknowledged"], true) << marked;
 }
 
 }  // namespace

@@ -3,15 +3,18 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/interrupt.hpp"
 #include "apps/command_line/json_text.hpp"
+#include "apps/takt/live/acknowledged.hpp"
 #include "apps/takt/live/daemon_client.hpp"
 #include "master/explain/emcy_text.hpp"
 #include "master/gateway/notice/emcy_log.hpp"
@@ -27,6 +30,8 @@ struct EmcyOptions {
   LiveOptions live;
   std::string node;
   bool follow = false;
+  bool all = false;
+  bool acknowledge = false;
 };
 
 struct Reported {
@@ -34,6 +39,7 @@ struct Reported {
   std::string name;
   EmcyRecord record;
   std::string words;
+  bool acknowledged = false;
 };
 
 /// Returns the local time, for example "14:03:07.123".
@@ -58,7 +64,8 @@ nlohmann::json to_json(const Reported& reported) {
           {"text", reported.words},
           {"error_register", record.error_register()},
           {"error_register_text", error_register_text(record.error_register())},
-          {"manufacturer", std::vector<int>{record.bytes.begin() + 3, record.bytes.end()}}};
+          {"manufacturer", std::vector<int>{record.bytes.begin() + 3, record.bytes.end()}},
+          {"acknowledged", reported.acknowledged}};
 }
 
 void print(const Reported& reported) {
@@ -118,20 +125,55 @@ int follow(const EmcyOptions& options, const std::string& bus, std::int16_t only
   return 0;
 }
 
+void print_json(const std::string& bus, const std::vector<Reported>& reported) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const Reported& one : reported) all.push_back(to_json(one));
+  const nlohmann::json document{{"bus", bus}, {"emcys", std::move(all)}};
+  std::puts(json_text(document, 1).c_str());
+}
+
+/// Prints the EMCYs that are not acknowledged, or all.
+void print(const std::vector<Reported>& reported, bool all) {
+  std::size_t left_out = 0;
+  for (const Reported& one : reported) {
+    if (one.acknowledged && !all) {
+      ++left_out;
+    } else {
+      print(one);
+    }
+  }
+  if (left_out == 0) return;
+  std::fflush(stdout);
+  std::fprintf(stderr, "takt: %zu acknowledged EMCYs are left out; --all shows them\n", left_out);
+}
+
 int run(const EmcyOptions& options) {
   DaemonClient daemon = DaemonClient::find(options.live);
+  const std::string& bus = daemon.status().bus;
   const std::int16_t only = options.node.empty() ? std::int16_t{0} : daemon.node(options.node);
-  const std::vector<Reported> reported = history(daemon, only);
+  const std::optional<std::filesystem::path> file = Acknowledged::file();
+  if (options.acknowledge && !file) {
+    throw Failure{
+        "neither XDG_STATE_HOME nor HOME is set, so there is no place for the list of acknowledged "
+        "EMCYs: set one of them",
+        exit_wrong_use};
+  }
+  Acknowledged acknowledged = file ? Acknowledged::load(*file) : Acknowledged{};
+  std::vector<Reported> reported = history(daemon, only);
+  for (Reported& one : reported) {
+    one.acknowledged = acknowledged.contains(bus, one.node, one.record.utime);
+  }
   if (options.live.json && !options.follow) {
-    nlohmann::json all = nlohmann::json::array();
-    for (const Reported& one : reported) all.push_back(to_json(one));
-    const nlohmann::json document{{"bus", daemon.status().bus}, {"emcys", std::move(all)}};
-    std::puts(json_text(document, 1).c_str());
+    print_json(bus, reported);
   } else if (!options.live.json) {
-    for (const Reported& one : reported) print(one);
+    print(reported, options.all);
   }
   std::fflush(stdout);
-  return options.follow ? follow(options, daemon.status().bus, only) : 0;
+  if (options.acknowledge) {
+    for (const Reported& one : reported) acknowledged.add(bus, one.node, one.record.utime);
+    acknowledged.save(*file);
+  }
+  return options.follow ? follow(options, bus, only) : 0;
 }
 
 }  // namespace
@@ -140,11 +182,17 @@ void add_emcy(CLI::App& app, int& exit_code) {
   auto [verb, options] = add_command<EmcyOptions>(
       app, exit_code, "emcy", "prints the EMCYs that nodes have sent, with their meaning", run);
   verb.footer(
+      "--acknowledge notes in ~/.local/state/takt/acknowledged (or in XDG_STATE_HOME) which EMCYs\n"
+      "were printed. takt emcy leaves them out from then on. The daemon does not know it, so it\n"
+      "changes nothing for other users and resets no error.\n"
       "Examples:\n  takt emcy                 the newest 32 EMCYs of each node\n"
+      "  takt emcy --acknowledge   the same, and not again\n"
       "  takt emcy shoulder --json\n  takt emcy --follow        also those that arrive later");
   verb.add_option("NODE", options.node, "node id or name; default: all nodes");
   verb.add_flag("-f,--follow", options.follow,
                 "continue with the EMCYs that arrive, until interrupted");
+  verb.add_flag("--acknowledge", options.acknowledge, "leave these EMCYs out from now on");
+  verb.add_flag("--all", options.all, "print acknowledged EMCYs, too");
   add_live_options(verb, options.live);
 }
 
