@@ -147,6 +147,7 @@ ROOMS = {
     "apps/master": ("the library for programs that contain a master; its bus and its thread are also those of taktd",
                     "eds_parser/report eds_parser/network_file master master/units master/wire master/core master/explain "
                     "master/rt master/rt/exchange master/rt/journal " + LINUX + " " + SIM),
+    "apps/mcap": ("writes MCAP files: records, chunks, indexes", ""),
     "apps/plot": ("pictures of curves over the time, as SVG files", ""),
     "apps/plot/motion": ("pictures of motions, from what taktd reports", "apps/plot apps/axis apps/axis/group master/lcm"),
     "apps/move": ("takt-move", "apps/axis apps/axis/group apps/command_line apps/plot/motion master/motion master/lcm"),
