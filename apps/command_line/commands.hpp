@@ -42,6 +42,7 @@ void add_param(CLI::App& app, int& exit_code);
 void add_plan(CLI::App& app, int& exit_code);
 void add_sim(CLI::App& app, int& exit_code);
 void add_simulate(CLI::App& app, int& exit_code);
+void add_log(CLI::App& app, int& exit_code);
 void add_lss(CLI::App& app, int& exit_code);
 void add_nmt(CLI::App& app, int& exit_code);
 void add_record(CLI::App& app, int& exit_code);

@@ -31,6 +31,8 @@ constexpr ValueKind value_kinds[] = {
     {"--candump", ":files"},
     {"-o", ":files"},
     {"NODE", ":ask nodes"},
+    {"SIGNAL", ":ask signals"},
+    {"--from", ":files"},
     {"--node", ":ask nodes"},
     {"OBJ", ":ask objects"},
     {"IFACE", ":ask interfaces"},

@@ -63,6 +63,10 @@ std::expected<void, std::string> write_recording(const std::filesystem::path& st
                                                  const BusPlan& plan, const RecordingHead& head,
                                                  const std::vector<std::uint64_t>& records);
 
+/// Returns the path of a recording without the ending of one of its three files. A path that has
+/// none of these endings is returned as it is.
+std::string recording_stem(const std::string& file);
+
 /// Reads the three files of a recording, and those of the recordings that it follows. `file` is any
 /// of the three files, or their path without ending. The files may have any content. On failure,
 /// returns a sentence.

@@ -19,14 +19,6 @@ constexpr std::size_t most_parts = 1000;
 template <class T>
 using Result = std::expected<T, std::string>;
 
-std::string stem_of(const std::string& path) {
-  using namespace recording_format;
-  for (const std::string_view ending : {events_ending, log_ending, journal_ending}) {
-    if (path.ends_with(ending)) return path.substr(0, path.size() - ending.size());
-  }
-  return path;
-}
-
 Result<std::ifstream> open(const std::string& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
@@ -159,8 +151,16 @@ void read_earlier(const std::filesystem::path& folder, LoadedRecording& loaded) 
 
 }  // namespace
 
+std::string recording_stem(const std::string& file) {
+  using namespace recording_format;
+  for (const std::string_view ending : {events_ending, log_ending, journal_ending}) {
+    if (file.ends_with(ending)) return file.substr(0, file.size() - ending.size());
+  }
+  return file;
+}
+
 std::expected<LoadedRecording, std::string> read_recording(const std::filesystem::path& file) {
-  const std::filesystem::path stem{stem_of(file.string())};
+  const std::filesystem::path stem{recording_stem(file.string())};
   auto loaded = read_part(stem.string());
   if (!loaded) return loaded;
   read_earlier(stem.parent_path(), *loaded);

@@ -162,6 +162,9 @@ ROOMS = {
     "apps/takt/live": ("commands for a running daemon: status, top, timing, EMCY, record",
                        "apps/command_line apps/takt/live/view master/explain master/gateway/message "
                        "master/gateway/notice master/rt/exchange master/linux " + LCM),
+    "apps/takt/log": ("records signals, events and frames as CSV and MCAP, from a running bus and from recordings",
+                      "apps/command_line apps/mcap apps/takt/live eds_parser/network_file eds_parser/report master/wire master/trace "
+                      "master/black_box master/explain/frame master/gateway/message master/units master/lcm master/linux"),
     "apps/takt/service": ("commands that talk to devices: SDO, LSS, NMT, parameters, scan",
                           "apps/command_line apps/takt/live apps/takt/learn/device_files.hpp master/wire master/core "
                           "master/core/sdo master/core/lss master/lcm master/gateway/message master/gateway/command " + LINUX),

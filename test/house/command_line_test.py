@@ -69,10 +69,14 @@ def wrong_use(tools):
     tools.says("behind -- are no options", ["takt", "plan", "--", "--jsn"], 2, "--jsn")
     tools.says("a recording without set-points has an advice", ["takt", "smooth", DEMO], 2, "holds no frame")
     tools.says("so has a PDO that takt can't read", ["takt", "smooth", DEMO, "--pdo", "205"], 2, "holds no frame")
+    tools.says("takt log names its formats", ["takt", "log", "-o", "run.txt"], 2, "run.txt: the name has to end in .csv or .mcap")
+    tools.says("takt log asks for the file", ["takt", "log"], 2, "--output is required")
+    tools.says("takt log names a missing recording", ["takt", "log", "--from", "none.log", "-o", "run.mcap"], 2, "none.log: can't be read")
+    tools.says("takt log --for is for a running bus", ["takt", "log", "--from", "none.log", "--for", "1s", "-o", "-"], 2, "--for is for a running bus")
     tools.says("a recording that is missing is named", ["takt", "smooth", "none.log"], 2, "none.log: can't be read")
     tools.says("takt without a command is wrong use", ["takt"], 2, "--help")
     for command in ([], ["dump"], ["eds"], ["import"], ["learn"], ["plan"], ["budget"], ["sim"], ["simulate"], ["demo"], ["status"],
-                    ["top"], ["sdo"], ["nmt"], ["trajectory"]):
+                    ["top"], ["log"], ["sdo"], ["nmt"], ["trajectory"]):
         tools.says(" ".join(["takt", *command, "--help"]) + " has an example", ["takt", *command, "--help"], 0, "Example")
 
 

@@ -17,7 +17,7 @@
 #include "apps/takt/smooth/make_record.hpp"
 #include "apps/takt/smooth/smooth_report.hpp"
 #include "eds_parser/network_file/load_network.hpp"
-#include "master/black_box/recording_file.hpp"
+#include "master/black_box/recorded_network.hpp"
 #include "master/lcm/channel_names.hpp"
 #include "master/lcm/printable_text.hpp"
 #include "master/linux/bus/frame_channel.hpp"
@@ -61,34 +61,9 @@ struct SmoothArguments {
 
 bool is_live(const SmoothArguments& options) { return options.file == "live"; }
 
-/// Returns the path of the file with the frames. A recording of the black box may be named by any
-/// of its files; every other file has its frames itself.
-std::string log_of(const std::string& file) {
-  for (const std::string_view ending : {".events.json", ".journal"}) {
-    if (file.ends_with(ending)) return file.substr(0, file.size() - ending.size()) + ".log";
-  }
-  return file;
-}
-
-/// Returns the network file that a recording of the black box names, if it is there. Empty if the
-/// file is no such recording.
-std::string network_of_recording(const std::string& log) {
-  const std::string stem = log.ends_with(".log") ? log.substr(0, log.size() - 4) : log;
-  std::error_code error;
-  if (!fs::exists(stem + ".events.json", error)) return {};
-  const auto recording = read_recording(stem);
-  if (!recording) return {};
-  const fs::path named = recording->head.network;
-  const fs::path beside = fs::path{log}.parent_path() / named.filename();
-  for (const fs::path& path : {named, beside}) {
-    if (fs::is_regular_file(path, error)) return path.string();
-  }
-  return {};
-}
-
 Trace read_file(const SmoothArguments& options) {
   if (options.file == "-") return read_trace(std::cin, "stdin", options.bus);
-  const std::string log = log_of(options.file);
+  const std::string log = log_of_recording(options.file);
   std::ifstream file{log, std::ios::binary};
   std::error_code ignored;
   if (!file || fs::is_directory(log, ignored))
@@ -159,7 +134,8 @@ class ImageListener {
 PdoMap find_map(const SmoothArguments& options, const Trace& trace) {
   PdoMap map;
   std::string network = options.network;
-  if (network.empty() && !is_live(options)) network = network_of_recording(log_of(options.file));
+  if (network.empty() && !is_live(options))
+    network = network_of_recording(log_of_recording(options.file));
   if (!network.empty()) {
     const LoadedNetwork loaded = load_network(network);
     if (print_findings(loaded.findings, Severity::error)) {

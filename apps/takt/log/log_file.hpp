@@ -1,0 +1,43 @@
+#pragma once
+#include <expected>
+#include <memory>
+#include <string>
+
+#include "apps/mcap/byte_sink.hpp"
+#include "master/linux/file_descriptor.hpp"
+
+namespace takt::logging {
+
+/// The file of a log. Until commit() its name is `.part-NAME`, so that a file with the wanted name
+/// is always complete. Stdout, pipes and devices are written directly.
+class LogFile final : public mcap::ByteSink {
+ public:
+  /// Opens a file; `-` means stdout. The error is a sentence with the name of the file.
+  static std::expected<std::unique_ptr<LogFile>, std::string> create(const std::string& path);
+  /// Removes the file if commit() was not called.
+  ~LogFile() override;
+
+  bool reserve(std::uint64_t bytes) override;
+  bool write(std::string_view bytes) override;
+  /// Gives the file its name. The error is a sentence with the name of the file.
+  std::expected<void, std::string> commit();
+
+  /// Returns why reserve() or write() has failed first: `No space left on device`. Empty if neither
+  /// has.
+  const std::string& trouble() const noexcept { return trouble_; }
+  const std::string& path() const noexcept { return path_; }
+  std::uint64_t size() const noexcept { return size_; }
+
+ private:
+  LogFile(std::string path, std::string part, FileDescriptor file)
+      : path_{std::move(path)}, part_{std::move(part)}, file_{std::move(file)} {}
+  bool fail(int error);
+
+  std::string path_;
+  std::string part_;  // empty for stdout, pipes and devices
+  FileDescriptor file_;
+  std::uint64_t size_ = 0;
+  std::string trouble_;
+};
+
+}  // namespace takt::logging
