@@ -52,6 +52,7 @@ void add_scan(CLI::App& app, int& exit_code);
 void add_sdo(CLI::App& app, int& exit_code);
 void add_smooth(CLI::App& app, int& exit_code);
 void add_soak(CLI::App& app, int& exit_code);
+void add_spy(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);
 void add_timing(CLI::App& app, int& exit_code);
 void add_top(CLI::App& app, int& exit_code);

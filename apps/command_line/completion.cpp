@@ -32,7 +32,6 @@ constexpr ValueKind value_kinds[] = {
     {"-o", ":files"},
     {"NODE", ":ask nodes"},
     {"SIGNAL", ":ask signals"},
-    {"--from", ":files"},
     {"--node", ":ask nodes"},
     {"OBJ", ":ask objects"},
     {"IFACE", ":ask interfaces"},

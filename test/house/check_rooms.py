@@ -186,6 +186,9 @@ ROOMS = {
     "apps/takt/smooth": ("gets these signals from recordings and from a running bus, and reports the result",
                          "apps/command_line apps/takt/live apps/takt/learn apps/takt/smooth/judge master/wire master/trace "
                          "master/black_box master/lcm master/linux master/linux/bus eds_parser/network_file " + EDS),
+    "apps/takt/spy": ("shows the messages on LCM: all channels, and the values of one",
+                      "apps/command_line apps/takt/live apps/takt/log/logged_signal.hpp eds_parser/network_file eds_parser/report "
+                      "master/gateway/message master/linux " + LCM),
     "apps/takt/simulate/program": ("runs the daemon and applications in virtual time",
                                    "apps/axis master master/gateway master/lcm master/rt " + SIM),
     "apps/takt/simulate/motion": ("programs in virtual time that command motions by a script",

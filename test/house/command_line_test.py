@@ -76,7 +76,7 @@ def wrong_use(tools):
     tools.says("a recording that is missing is named", ["takt", "smooth", "none.log"], 2, "none.log: can't be read")
     tools.says("takt without a command is wrong use", ["takt"], 2, "--help")
     for command in ([], ["dump"], ["eds"], ["import"], ["learn"], ["plan"], ["budget"], ["sim"], ["simulate"], ["demo"], ["status"],
-                    ["top"], ["log"], ["sdo"], ["nmt"], ["trajectory"]):
+                    ["top"], ["log"], ["spy"], ["sdo"], ["nmt"], ["trajectory"]):
         tools.says(" ".join(["takt", *command, "--help"]) + " has an example", ["takt", *command, "--help"], 0, "Example")
 
 

@@ -60,7 +60,7 @@ void add_log(CLI::App& app, int& exit_code) {
       app, exit_code, "log", "records signals and events of a running bus as CSV or MCAP",
       logging::run);
   verb.add_option("SIGNAL", options.live.patterns, "node.name or pattern; default: all signals")
-      ->type_name("SIGNAL");
+      ->type_name("NAME");
   verb.add_option("-o,--output", options.live.output, "file to write: .csv, .mcap, - for stdout")
       ->type_name("FILE")
       ->required();
@@ -70,7 +70,7 @@ void add_log(CLI::App& app, int& exit_code) {
       ->type_name("FILE");
   verb.add_option("--network", options.file.network, "with --from: network file of the recording")
       ->type_name("NET.yaml");
-  verb.add_option("--bus,--bus-name", options.bus,
+  verb.add_option("--bus-name,--bus", options.bus,
                   "name of the bus, if there are several; with --from: interface of the recording")
       ->type_name("NAME");
   verb.add_option("--lcm-url", options.live.live.lcm_url,

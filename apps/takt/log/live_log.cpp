@@ -12,6 +12,7 @@
 #include "apps/takt/log/log_output.hpp"
 #include "master/lcm/channel_names.hpp"
 #include "master/lcm/messages.hpp"
+#include "master/lcm/printable_text.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt::logging {
@@ -65,8 +66,9 @@ class LiveLog {
                                           exit_wrong_use)};
     output_.emplace(options_.output, head, false);
     rows_.emplace(head.signals);
-    std::fprintf(stderr, "takt: recording %zu signals of bus '%s'%s\n", head.signals.size(),
-                 status_.bus.c_str(), options_.length ? "" : "; Ctrl-C ends");
+    std::fprintf(stderr, "takt: recording %zu signal%s of bus '%s'%s\n", head.signals.size(),
+                 head.signals.size() == 1 ? "" : "s", printable_text(status_.bus).c_str(),
+                 options_.length ? "" : "; Ctrl-C ends");
   }
 
   void take(std::string_view channel, Bytes data) {

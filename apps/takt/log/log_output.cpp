@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::size_t most_named_gaps = 5;
 
+const char* plural(std::uint64_t count) { return count == 1 ? "" : "s"; }
+
 }  // namespace
 
 LogFormat format_of(const std::string& path) {
@@ -61,9 +63,8 @@ bool LogOutput::frame(const LogFrame& frame) {
 
 std::string LogOutput::gaps_text() const {
   if (gap_count_ == 0) return "no gap";
-  std::string text =
-      fmt::format("{} {} missing in {} gap{} (", lost_, lost_ == 1 ? "cycle" : "cycles", gap_count_,
-                  gap_count_ == 1 ? "" : "s");
+  std::string text = fmt::format("{} {} missing in {} gap{} (", lost_,
+                                 lost_ == 1 ? "cycle" : "cycles", gap_count_, plural(gap_count_));
   for (const Gap& gap : gaps_) {
     text +=
         fmt::format("{}{} before cycle {}", &gap == gaps_.data() ? "" : ", ", gap.lost, gap.cycle);
@@ -83,10 +84,10 @@ void LogOutput::finish(const std::string& reason) {
   value_or_fail(file_->commit(), 1);
   if (complete && trouble.empty()) {
     const std::string frames = frames_ == 0 ? "" : fmt::format(", {} frames", frames_);
-    fmt::print(stderr, "takt: {}: {} cycles in {:.3f} s, {} signals, {} events{}, {}; {}\n",
+    fmt::print(stderr, "takt: {}: {} cycles in {:.3f} s, {} signal{}, {} event{}{}, {}; {}\n",
                path_ == "-" ? "stdout" : printable_text(path_), rows_,
-               static_cast<double>(last_ns_ - first_ns_) * 1e-9, signals_, events_, frames,
-               gaps_text(), reason);
+               static_cast<double>(last_ns_ - first_ns_) * 1e-9, signals_, plural(signals_),
+               events_, plural(events_), frames, gaps_text(), reason);
     return;
   }
   throw Failure{path_ + ": the log ends here: " + (trouble.empty() ? "the file is full" : trouble) +
