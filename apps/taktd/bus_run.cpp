@@ -57,7 +57,8 @@ std::optional<Exit> BusRun::start() {
                                                    .interface = bus_name_,
                                                    .realtime = to_string(realtime_),
                                                    .motions = front_.options.motions,
-                                                   .typed = network_.lcm.typed},
+                                                   .typed = network_.lcm.typed,
+                                                   .device_files = network_.device_files},
                                      [this](const Notice& notice) { on_notice(notice); });
   recorder_.attach(*bridge_);
   if (gateway_) gateway_->attach(*master_, *bridge_);

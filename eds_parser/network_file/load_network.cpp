@@ -72,6 +72,7 @@ class Loader {
     }
     CompiledNetwork compiled = compile_network(spec, dictionaries, out_.findings, device_data);
     out_.plan = std::move(compiled.plan);
+    for (const NodePlan& node : out_.plan.nodes) out_.device_files.push_back(paths_[node.name]);
     if (!spec.master.service_frames.given) lower_service_frames();
     out_.devices = std::move(compiled.devices);
     out_.realtime = spec.realtime;
@@ -202,7 +203,13 @@ class Loader {
   const ObjectDictionary* dictionary_of(const NetworkSpec& spec, const NodeSpec& node) {
     if (!node.dcf.given) return nullptr;
     const std::vector<fs::path> paths = candidates(spec, node, *node.dcf);
-    if (const fs::path* found = existing(paths)) return read(tidy(*found), node);
+    if (const fs::path* found = existing(paths)) {
+      std::error_code error;
+      const fs::path path = tidy(*found);
+      const fs::path absolute = fs::canonical(path, error);
+      if (!error) paths_[node.name] = absolute.string();
+      return read(path, node);
+    }
     report_missing(node, paths);
     return nullptr;
   }
@@ -311,6 +318,7 @@ class Loader {
   LoadedNetwork out_;
   std::map<std::pair<fs::path, std::uint8_t>, EdsFile> files_;  // stable addresses
   std::set<fs::path> reported_;
+  std::map<std::string, std::string> paths_;  // absolute paths of the device files, by node
 };
 
 }  // namespace

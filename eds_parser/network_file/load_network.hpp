@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "eds_parser/report/source.hpp"
@@ -14,6 +15,8 @@ namespace takt {
 struct LoadedNetwork {
   BusPlan plan;
   std::vector<DeviceTable> devices;  ///< for the simulation; in the order of plan.nodes
+  /// Absolute paths of the EDS and DCF files, in the order of plan.nodes; empty if not found.
+  std::vector<std::string> device_files;
   RealtimeOptions realtime;
   LcmOptions lcm;
   RecordingOptions recording;

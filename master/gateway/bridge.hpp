@@ -46,6 +46,8 @@ struct BridgeOptions {
   std::string realtime;   ///< reported in status_t
   bool motions = true;    ///< runs the motions of motion_command_t
   bool typed = true;      ///< also publishes a typed message for each node, see TypedChannels
+  /// Paths of the EDS and DCF files on this machine, in the order of the nodes of the plan.
+  std::vector<std::string> device_files{};
 };
 
 /// The work of the front thread: turns images, states and events of a MasterRun into messages, and
@@ -142,6 +144,7 @@ class Bridge {
   void on_request(Bytes data);
   void send(Notice notice);
   void answer_history(const request_t& request);
+  void answer_device_file(const request_t& request);
   void on_transfer(Bytes data);
   void report_damaged(const std::string& channel, DecodeFault fault);
   /// A message that is published periodically.

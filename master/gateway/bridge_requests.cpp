@@ -54,6 +54,7 @@ void Bridge::on_request(Bytes data) {
   const bool old = fits && request->schema == message_schema && !failure.empty();
   if (old) return answer(requests_.refusal(*request, failure));
   if (fits && request->service == "emcy_history") return answer_history(*request);
+  if (fits && request->service == "device_file") return answer_device_file(*request);
   const bool records = fits && request->service == "record" && record_;
   auto reply = records ? requests_.take(*request, now, record_) : requests_.take(*request, now);
   if (reply) answer(std::move(*reply));
@@ -103,6 +104,18 @@ void Bridge::answer_history(const request_t& request) {
     reply.data = pack(records);
     reply.size = static_cast<std::int32_t>(reply.data.size());
   }
+  answer(std::move(reply));
+}
+
+/// Answers with the path, which is on this machine: the daemon keeps no names of objects.
+void Bridge::answer_device_file(const request_t& request) {
+  if (auto refused = requests_.refuse_foreign(request)) return answer(std::move(*refused));
+  reply_t reply = requests_.reply_to(request);
+  const std::size_t node = master_.plan().index_of(static_cast<unsigned>(request.node_id));
+  const bool known = node < options_.device_files.size() && !options_.device_files[node].empty();
+  reply.good = known ? 1 : 0;
+  reply.text = known ? options_.device_files[node]
+                     : fmt::format("no device file of node {} is known", request.node_id);
   answer(std::move(reply));
 }
 

@@ -56,6 +56,20 @@ TEST_F(ToolsAndDaemon, SdoReadsAndWritesANodeByItsName) {
   EXPECT_NE(refused.output.find("0x06010002"), std::string::npos) << refused.output;
 }
 
+TEST_F(ToolsAndDaemon, SdoKnowsTheObjectsOfTheDeviceFileAndOfTheImageByTheirNames) {
+  const Ended written = takt({"sdo", "write", "elbow", "profile_velocity", "123456"});
+  EXPECT_EQ(written.exit_code, 0) << written.output;
+  EXPECT_EQ(takt({"sdo", "read", "elbow", "profile_velocity"}).output, "123456\n");
+  EXPECT_EQ(takt({"sdo", "read", "2", "6081", "u32"}).output, "123456\n");
+  EXPECT_EQ(takt({"sdo", "read", "elbow", "identity_object.vendor_id"}).output, "43981\n");
+
+  const Ended unknown = takt({"sdo", "read", "elbow", "statuswrd"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.output.find("did you mean 'statusword'?"), std::string::npos) << unknown.output;
+  const Ended mapped = takt({"sdo", "read", "elbow", "statusword", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(mapped.output, nullptr, false)["index"], 0x6041) << mapped.output;
+}
+
 TEST_F(ToolsAndDaemon, SdoLeavesTheTimeOutToTheNodeUnlessOneIsGiven) {
   auto lcm = LcmClient::open(daemon_.lcm_url(), {".*_STATUS", ".*_REQUEST"}).value();
   std::vector<std::int32_t> timeouts;

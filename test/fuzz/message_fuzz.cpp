@@ -148,8 +148,9 @@ class Gateway {
     return message;
   }
   static takt::request_t request(Input& input) {
-    constexpr std::array services{"sdo_upload", "sdo_download", "nmt",    "pdo_poll",
-                                  "lss",        "emcy_history", "record", "pdo_exchange"};
+    constexpr std::array services{"sdo_upload", "sdo_download", "nmt",
+                                  "pdo_poll",   "lss",          "emcy_history",
+                                  "record",     "pdo_exchange", "device_file"};
     takt::request_t message{};
     begin(message, input);
     const std::uint8_t service = input.byte();

@@ -165,8 +165,11 @@ ROOMS = {
     "apps/takt/log": ("records signals, events and frames as CSV and MCAP, from a running bus and from recordings",
                       "apps/command_line apps/mcap apps/takt/live eds_parser/network_file eds_parser/report master/wire master/trace "
                       "master/black_box master/explain/frame master/gateway/message master/units master/lcm master/linux"),
+    "apps/takt/objects": ("objects of devices by their names, from device files and from the daemon",
+                          "apps/command_line apps/takt/live eds_parser/network_file master/gateway/message master/linux "
+                          + EDS),
     "apps/takt/service": ("commands that talk to devices: SDO, LSS, NMT, parameters, scan",
-                          "apps/command_line apps/takt/live apps/takt/learn/device_files.hpp master/wire master/core "
+                          "apps/command_line apps/takt/live apps/takt/objects apps/takt/learn/device_files.hpp master/wire master/core "
                           "master/core/sdo master/core/lss master/lcm master/gateway/message master/gateway/command " + LINUX),
     "apps/takt/audit": ("finds out what each device does when the master dies",
                         "apps/command_line apps/takt/live apps/takt/service eds_parser/network_file"),
@@ -175,7 +178,8 @@ ROOMS = {
     "apps/takt/demo": ("runs the demo machine of an installed takt",
                        "apps/command_line master/lcm/tcpq master/linux"),
     "apps/takt/complete": ("names of nodes, objects and signals for the completion of shells",
-                           "apps/command_line apps/takt/live eds_parser/network_file master/gateway/message master/linux"),
+                           "apps/command_line apps/takt/live apps/takt/objects eds_parser/dictionary eds_parser/network_file "
+                           "master/gateway/message master/linux"),
     "apps/takt/import": ("explains what takt makes of a bus.yml or a nodelist",
                          "apps/command_line master/lcm eds_parser/specification eds_parser/network_file eds_parser/network_file/keys "
                          "eds_parser/network_file/yaml " + EDS),

@@ -263,12 +263,29 @@ def sdo_without_daemon(tools, folder):
         tools.says("a present one does", ["takt", "sdo", "read", 1, "1018:1", "u32", *bus], 0, "43981\n")
         tools.says("a value of another size is not shown in a type that it has not",
                    ["takt", "sdo", "read", 1, "1018:1", "u8", *bus], 1, "4 bytes (CDAB0000), u8 takes 1")
-        tools.says("names need a daemon", ["takt", "sdo", "read", "io", "1000", *bus], 2, "only a daemon knows names")
+        tools.says("names of nodes need a file without a daemon", ["takt", "sdo", "read", "io", "1000", *bus], 2, "--network FILE")
+        objects_by_name(tools, bus)
     finally:
         stop.set()
         babbler.join()
         devices.terminate()
         devices.wait()
+
+
+def objects_by_name(tools, bus):
+    drive = [*bus, "--eds", ROOT / "share/eds/takt_drive402.eds"]
+    demo = [*bus, "--network", DEMO]
+    tools.says("an object is known by its name in the EDS", ["takt", "sdo", "read", 1, "vendor_id", *drive], 0, "43981\n")
+    tools.says("so is a node by that in the network file", ["takt", "sdo", "read", "elbow", "identity_object.vendor_id", *demo], 0, "43981\n")
+    tools.says("its type is known", ["takt", "sdo", "write", "elbow", "profile_velocity", "4711", *demo], 0)
+    tools.says("also for its index", ["takt", "sdo", "write", "elbow", "6083", "4712", *demo], 0)
+    tools.says("and the value arrives", ["takt", "sdo", "read", 2, "6081", "u32", *bus], 0, "4711\n")
+    tools.says("a type may be given", ["takt", "sdo", "read", 2, "6081", "hex", *drive], 0, "67120000\n")
+    tools.says("an unknown name has a guess", ["takt", "sdo", "read", 1, "statuswrd", *drive], 2, "did you mean 'statusword'?")
+    tools.says("an ambiguous one lists the objects", ["takt", "sdo", "read", 1, "transmission_type", *drive], 2, "several objects", "1400:02")
+    tools.says("a name without a file says what to give", ["takt", "sdo", "read", 1, "statusword", *bus], 2, "--eds FILE")
+    tools.says("so does a value without a type", ["takt", "sdo", "write", 1, "6081", "1", *bus], 2, "--eds FILE")
+    tools.says("an unknown node lists the nodes", ["takt", "sdo", "read", "elbw", "statusword", *demo], 2, "did you mean `elbow`?", "10 io")
 
 
 def main(binaries):

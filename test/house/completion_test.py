@@ -79,6 +79,7 @@ def names():
     check("signals of a file", "shoulder.statusword" in of("signals", "--network", NET), of("signals", "--network", NET))
     objects = of("objects", "--network", NET, "--node", "elbow")
     check("objects of a node", "6041\tstatusword" in objects and not any(name.startswith("6411") for name in objects), objects)
+    check("also by their names", {"statusword\t6041", "identity_object.vendor_id\t1018:01"} <= objects, objects)
     check("the simulated bus is an interface", "sim" in of("interfaces"), of("interfaces"))
     check("a file that is none gives no names", of("nodes", "--network", "none.yaml") == {""}, of("nodes", "--network", "none.yaml"))
 

@@ -9,6 +9,8 @@
 
 #include "apps/command_line/commands.hpp"
 #include "apps/takt/live/daemon_client.hpp"
+#include "apps/takt/objects/known_device.hpp"
+#include "eds_parser/dictionary/object_names.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "master/linux/clock.hpp"
 
@@ -88,14 +90,31 @@ std::set<std::string> can_interfaces() {
   return names;
 }
 
+/// Returns `6041`, or `1018:01`.
+std::string object_number(int index, int sub) {
+  return fmt::format("{:04X}{}", index, sub == 0 ? "" : fmt::format(":{:02X}", sub));
+}
+
 std::set<std::string> objects_of(const Known& known, const std::string& node) {
   std::set<std::string> objects;
   for (const Named& signal : known.signals) {
     if (!node.empty() && signal.node != node) continue;
-    const std::string sub = signal.sub == 0 ? "" : fmt::format(":{:02X}", signal.sub);
-    objects.insert(fmt::format("{:04X}{}\t{}", signal.index, sub, signal.name));
+    const std::string number = object_number(signal.index, signal.sub);
+    objects.insert(number + '\t' + signal.name);
+    objects.insert(signal.name + '\t' + number);
   }
   return objects;
+}
+
+/// Returns the names of all objects of a node of a network file.
+std::set<std::string> names_of(const std::string& network, const std::string& node) {
+  std::set<std::string> names;
+  const KnownDevice device = device_of_network(network, node);
+  const ObjectNames known{*device.dictionary};
+  for (const ObjectNames::Entry& entry : known.entries()) {
+    names.insert(entry.name + '\t' + object_number(entry.key.index, entry.key.sub));
+  }
+  return names;
 }
 
 int complete(const CompleteOptions& options) {
@@ -108,7 +127,13 @@ int complete(const CompleteOptions& options) {
       options.network.empty() ? known_of_bus(with_signals) : known_of_file(options.network);
   if (options.kind == "buses") print({known.buses.begin(), known.buses.end()});
   if (options.kind == "nodes") print({known.nodes.begin(), known.nodes.end()});
-  if (options.kind == "objects") print(objects_of(known, options.node));
+  if (options.kind == "objects") {
+    std::set<std::string> objects = objects_of(known, options.node);
+    if (!options.network.empty() && !options.node.empty()) {
+      objects.merge(names_of(options.network, options.node));
+    }
+    print(objects);
+  }
   if (options.kind == "signals") {
     std::set<std::string> names;
     for (const Named& signal : known.signals) names.insert(signal.node + '.' + signal.name);

@@ -1,18 +1,17 @@
 #include "eds_parser/plan/image/layout_compiler.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <set>
 #include <tuple>
 
+#include "eds_parser/dictionary/object_names.hpp"
 #include "eds_parser/plan/image/signal_rules.hpp"
 #include "eds_parser/plan/pdo/mapping_compiler.hpp"
 
 namespace takt {
 namespace {
 
-constexpr std::size_t longest_name = 60;
 constexpr std::size_t max_signals = 0xFFFF;
 
 /// A mapped object that is to become a signal.
@@ -259,24 +258,6 @@ class LayoutCompiler {
 
 void compile_layout(std::span<const NodePdos> nodes, BusPlan& plan, NetworkReport& report) {
   LayoutCompiler{nodes, plan, report}.run();
-}
-
-std::string snake_case(std::string_view text) {
-  std::string out;
-  bool was_lower = false;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool word = byte < 0x80 && std::isalnum(byte) != 0;
-    const bool word_begins = was_lower && std::isupper(byte) != 0;
-    if ((!word || word_begins) && !out.empty() && out.back() != '_') out += '_';
-    if (word) out += static_cast<char>(std::tolower(byte));
-    was_lower = std::islower(byte) != 0;
-    if (out.size() >= longest_name) break;
-  }
-  while (!out.empty() && out.back() == '_') out.pop_back();
-  if (out.empty()) return "object";
-  if (std::isdigit(static_cast<unsigned char>(out[0])) != 0) out.insert(0, "n");
-  return out;
 }
 
 }  // namespace takt

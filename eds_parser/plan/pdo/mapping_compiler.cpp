@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cstdlib>
 
+#include "eds_parser/dictionary/object_names.hpp"
+
 namespace takt {
 namespace {
 
@@ -179,14 +181,6 @@ std::vector<EffectiveEntry> mapping_of(const NodeSource& node, const PdoDescript
          .pos = pos});
   }
   return entries;
-}
-
-std::string object_name(const ObjectDictionary& dictionary, ObjectKey key) {
-  const Object* object = dictionary.find(key.index);
-  const SubObject* sub = dictionary.find(key);
-  if (object == nullptr) return {};
-  if (sub == nullptr || sub->name.empty() || object->type == ObjectType::var) return object->name;
-  return sub->name;
 }
 
 std::string label(const ObjectDictionary& dictionary, ObjectKey key) {

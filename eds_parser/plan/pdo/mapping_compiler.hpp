@@ -17,9 +17,6 @@ std::vector<EffectiveEntry> compile_mapping(const NodeSource& node, const Effect
 std::vector<EffectiveEntry> mapping_of(const NodeSource& node, const PdoDescription& pdo,
                                        SourcePos pos);
 
-/// Returns the name of an object for messages and signals: the name of the object itself for a VAR,
-/// else the name of its sub-index.
-std::string object_name(const ObjectDictionary& dictionary, ObjectKey key);
 /// Returns the key and the name of an object: `6064:00 Position actual value`.
 std::string label(const ObjectDictionary& dictionary, ObjectKey key);
 /// Returns a hint for a message about a missing object: the number that its index would be in

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/dictionary/object_names.hpp"
 #include "eds_parser/plan/pdo/mapping_compiler.hpp"
 
 namespace takt {

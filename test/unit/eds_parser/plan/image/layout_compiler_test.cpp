@@ -116,16 +116,6 @@ TEST(LayoutCompiler, TheHashFollowsNamesAndUnits) {
   EXPECT_NE(plain, two_axes("  units: {position: {scale: 0.001, unit: rad}}\n").plan.layout.hash);
 }
 
-TEST(SnakeCase, IsMadeOfAnyEdsName) {
-  EXPECT_EQ(snake_case("Position actual value"), "position_actual_value");
-  EXPECT_EQ(snake_case("TargetVelocity (rpm)"), "target_velocity_rpm");
-  EXPECT_EQ(snake_case("  --Input 1..8 "), "input_1_8");
-  EXPECT_EQ(snake_case("8-bit"), "n8_bit");
-  EXPECT_EQ(snake_case("\xC3\x84\xC3\x96"), "object");
-  EXPECT_EQ(snake_case(""), "object");
-  EXPECT_LE(snake_case(std::string(500, 'x')).size(), 61U);
-}
-
 TEST(Units, SignTurnsDirectionsOffsetShiftsPositionsOnly) {
   const auto net = two_axes(
       "  units:\n"
