@@ -45,6 +45,7 @@ void add_simulate(CLI::App& app, int& exit_code);
 void add_log(CLI::App& app, int& exit_code);
 void add_lss(CLI::App& app, int& exit_code);
 void add_nmt(CLI::App& app, int& exit_code);
+void add_od(CLI::App& app, int& exit_code);
 void add_record(CLI::App& app, int& exit_code);
 void add_reference(CLI::App& app, int& exit_code);
 void add_replay(CLI::App& app, int& exit_code);

@@ -70,6 +70,20 @@ TEST_F(ToolsAndDaemon, SdoKnowsTheObjectsOfTheDeviceFileAndOfTheImageByTheirName
   EXPECT_EQ(nlohmann::json::parse(mapped.output, nullptr, false)["index"], 0x6041) << mapped.output;
 }
 
+TEST_F(ToolsAndDaemon, OdShowsLiveValuesWithUnitsAndMeanings) {
+  const Ended state = takt({"od", "elbow", "--search", "statusword"});
+  EXPECT_EQ(state.exit_code, 0) << state.output;
+  EXPECT_NE(state.output.find("0x0250  switch on"), std::string::npos) << state.output;
+
+  const Ended limits = takt({"od", "elbow", "6081", "--json"});
+  const auto json = nlohmann::json::parse(limits.output, nullptr, false);
+  ASSERT_TRUE(json.is_object()) << limits.output;
+  EXPECT_EQ(json["node"], "elbow");
+  EXPECT_EQ(json["objects"][0]["value"], 100000);
+  EXPECT_EQ(json["objects"][0]["unit"], "rad/s");
+  EXPECT_EQ(takt({"od", "nobody"}).exit_code, 2);
+}
+
 TEST_F(ToolsAndDaemon, SdoLeavesTheTimeOutToTheNodeUnlessOneIsGiven) {
   auto lcm = LcmClient::open(daemon_.lcm_url(), {".*_STATUS", ".*_REQUEST"}).value();
   std::vector<std::int32_t> timeouts;

@@ -101,6 +101,23 @@ TEST_F(ToolsAlone, ScanReportsWhoIsThereAndWhichFileFits) {
   EXPECT_EQ(ended.output.find("\"node_id\": 3"), std::string::npos);
 }
 
+TEST_F(ToolsAlone, OdReadsTheValuesOfADevice) {
+  const std::string eds = std::string{TAKT_SOURCE_DIR} + "/share/eds/takt_drive402.eds";
+  ASSERT_EQ(takt({"sdo", "write", "1", "6081", "u32", "123456"}).exit_code, 0);
+
+  const Ended live = takt({"od", "--node", "1", "--eds", eds, "6040..6081"});
+  const Ended file = run({TAKT, "od", "--eds", eds, "6081"}, folder_.path());
+
+  EXPECT_EQ(live.exit_code, 0) << live.output;
+  for (const char* text : {"6041:00  statusword", "0x0250  switch on", "123456"}) {
+    EXPECT_NE(live.output.find(text), std::string::npos) << text << "\n" << live.output;
+  }
+  EXPECT_EQ(file.exit_code, 0) << file.output;
+  EXPECT_EQ(file.output.find("123456"), std::string::npos) << file.output;
+  EXPECT_NE(file.output.find("no device was asked"), std::string::npos) << file.output;
+  EXPECT_EQ(takt({"od", "1", "--eds", eds, "--search", "zzzz"}).exit_code, 1);
+}
+
 TEST(Scan, ExitsWith1WhereNobodyAnswers) {
   const Folder folder;
 

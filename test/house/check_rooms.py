@@ -171,6 +171,9 @@ ROOMS = {
     "apps/takt/service": ("commands that talk to devices: SDO, LSS, NMT, parameters, scan",
                           "apps/command_line apps/takt/live apps/takt/objects apps/takt/learn/device_files.hpp master/wire master/core "
                           "master/core/sdo master/core/lss master/lcm master/gateway/message master/gateway/command " + LINUX),
+    "apps/takt/od": ("lists the objects of a device with their values and meanings",
+                     "apps/command_line apps/takt/live apps/takt/objects apps/takt/service eds_parser/dictionary "
+                     "eds_parser/specification master/explain master/gateway/message master/lcm master/wire"),
     "apps/takt/audit": ("finds out what each device does when the master dies",
                         "apps/command_line apps/takt/live apps/takt/service eds_parser/network_file"),
     "apps/takt/doctor": ("checks whether this machine is ready for a bus",

@@ -29,6 +29,7 @@ def main():
     commands += [["plan", network, "--diff-devices"] for network in networks]
     commands += [["plan", networks[0], "--diff", networks[1]]]
     commands += [["budget", networks[-1], "--what-if", "bitrate=250"]]
+    commands += [["od", "elbow", "--defaults", "--network", ROOT / "share/demo/two_axes.yaml"]]
     log = pathlib.Path(tempfile.mkdtemp()) / "trace.log"
     subprocess.run([takt, "simulate", networks[-1], "--for", "4s", "--move", "--candump", log], capture_output=True, timeout=60)
     commands += [["smooth", log]]

@@ -38,8 +38,7 @@ Failure unknown(const KnownDevice& device, const std::string& word,
   }
   return Failure{
       fmt::format("{} has no object '{}'{}{}{}", device_text(device), word, sources_text(device),
-                  guess,
-                  similar.empty() && device.dictionary ? "; `takt eds show` lists them" : ""),
+                  guess, similar.empty() && device.dictionary ? "; `takt od` lists them" : ""),
       exit_wrong_use};
 }
 

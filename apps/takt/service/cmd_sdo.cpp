@@ -175,7 +175,7 @@ void add_sdo(CLI::App& app, int& exit_code) {
       "  takt sdo read 5 vendor_id --bus can0 --eds drive.eds\n  takt sdo upload 5 1021 drive.eds "
       "--bus can0\n"
       "  takt sdo download 5 1F50:1 firmware.bin --timeout 10000\n"
-      "Names are those of the EDS in small letters, as in the layout: statusword,\n"
+      "Names are those of the EDS in small letters, as `takt od` lists them: statusword,\n"
       "identity_object.vendor_id; those of the second axis of a drive end in _2. The type of a\n"
       "named object is known. With a daemon its network file tells the EDS.\n"
       "Files have at most 16 MiB; Ctrl-C aborts a transfer on the bus.\n"
