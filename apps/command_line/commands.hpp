@@ -36,6 +36,7 @@ void add_emcy(CLI::App& app, int& exit_code);
 void add_eds(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
 void add_import(CLI::App& app, int& exit_code);
+void add_init(CLI::App& app, int& exit_code);
 void add_keys(CLI::App& app, int& exit_code);
 void add_learn(CLI::App& app, int& exit_code);
 void add_param(CLI::App& app, int& exit_code);

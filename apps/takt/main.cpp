@@ -30,17 +30,17 @@ constexpr const char* recordings = "Frames and recordings";
 
 /// The commands in the order of the help text.
 constexpr Command commands[]{
-    {devices, add_plan},        {devices, add_reference}, {devices, add_eds},
-    {devices, add_import},      {devices, add_learn},     {devices, add_export},
-    {devices, add_keys},        {analysis, add_budget},   {analysis, add_simulate},
-    {analysis, add_sim},        {analysis, add_demo},     {analysis, add_soak},
-    {analysis, add_trajectory}, {analysis, add_doctor},   {running, add_status},
-    {running, add_top},         {running, add_timing},    {running, add_emcy},
-    {running, add_spy},         {running, add_record},    {on_the_bus, add_scan},
-    {on_the_bus, add_sdo},      {on_the_bus, add_od},     {on_the_bus, add_nmt},
-    {on_the_bus, add_lss},      {on_the_bus, add_param},  {on_the_bus, add_audit},
-    {recordings, add_log},      {recordings, add_dump},   {recordings, add_smooth},
-    {recordings, add_replay},   {"", add_complete},
+    {devices, add_plan},      {devices, add_reference},   {devices, add_eds},
+    {devices, add_init},      {devices, add_import},      {devices, add_learn},
+    {devices, add_export},    {devices, add_keys},        {analysis, add_budget},
+    {analysis, add_simulate}, {analysis, add_sim},        {analysis, add_demo},
+    {analysis, add_soak},     {analysis, add_trajectory}, {analysis, add_doctor},
+    {running, add_status},    {running, add_top},         {running, add_timing},
+    {running, add_emcy},      {running, add_spy},         {running, add_record},
+    {on_the_bus, add_scan},   {on_the_bus, add_sdo},      {on_the_bus, add_od},
+    {on_the_bus, add_nmt},    {on_the_bus, add_lss},      {on_the_bus, add_param},
+    {on_the_bus, add_audit},  {recordings, add_log},      {recordings, add_dump},
+    {recordings, add_smooth}, {recordings, add_replay},   {"", add_complete},
 };
 
 /// Returns the reason why stdout could not be written completely, or an empty string. If a write

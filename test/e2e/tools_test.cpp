@@ -118,6 +118,24 @@ TEST_F(ToolsAlone, OdReadsTheValuesOfADevice) {
   EXPECT_EQ(takt({"od", "1", "--eds", eds, "--search", "zzzz"}).exit_code, 1);
 }
 
+TEST_F(ToolsAlone, InitWritesANetworkFileThatPlansAndOverwritesNothing) {
+  const std::string files = std::string{TAKT_SOURCE_DIR} + "/share/eds";
+  const std::string file = (folder_ / "machine.yaml").string();
+
+  const Ended made = takt({"init", "--eds-dir", files, "-o", file});
+  const Ended again = takt({"init", "--eds-dir", files, "-o", file});
+
+  EXPECT_EQ(made.exit_code, 0) << made.output;
+  const Ended plan = run({TAKT, "plan", file}, folder_.path());
+  EXPECT_EQ(plan.exit_code, 0) << plan.output;
+  for (const char* text : {"node 1 axis_1", "node 2 axis_2", "node 10 io_10"}) {
+    EXPECT_NE(plan.output.find(text), std::string::npos) << text << "\n" << plan.output;
+  }
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_NE(again.output.find("exists already"), std::string::npos) << again.output;
+  EXPECT_EQ(takt({"init", "--eds-dir", files, "-o", file, "--force"}).exit_code, 0);
+}
+
 TEST(Scan, ExitsWith1WhereNobodyAnswers) {
   const Folder folder;
 

@@ -174,6 +174,10 @@ ROOMS = {
     "apps/takt/od": ("lists the objects of a device with their values and meanings",
                      "apps/command_line apps/takt/live apps/takt/objects apps/takt/service eds_parser/dictionary "
                      "eds_parser/specification master/explain master/gateway/message master/lcm master/wire"),
+    "apps/takt/init": ("makes network files from the devices on a bus",
+                       "apps/command_line apps/takt/learn/device_files.hpp apps/takt/learn/yaml_text.hpp apps/takt/service "
+                       "eds_parser/report eds_parser/dictionary eds_parser/specification eds_parser/budget "
+                       "eds_parser/network_file eds_parser/network_file/keys master/linux/can master/wire"),
     "apps/takt/audit": ("finds out what each device does when the master dies",
                         "apps/command_line apps/takt/live apps/takt/service eds_parser/network_file"),
     "apps/takt/doctor": ("checks whether this machine is ready for a bus",

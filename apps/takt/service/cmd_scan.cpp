@@ -6,18 +6,12 @@
 
 #include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
-#include "apps/command_line/failure.hpp"
-#include "apps/command_line/interrupt.hpp"
 #include "apps/command_line/json_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/whole_number.hpp"
-#include "apps/takt/learn/device_files.hpp"
 #include "apps/takt/live/screen.hpp"
 #include "apps/takt/live/top_frame.hpp"
-#include "apps/takt/service/bus_scan.hpp"
-#include "apps/takt/service/send_all.hpp"
-#include "master/linux/bus/frame_channel.hpp"
-#include "master/linux/clock.hpp"
+#include "apps/takt/service/scanned_devices.hpp"
 
 namespace takt {
 namespace {
@@ -29,32 +23,6 @@ struct ScanOptions {
   int listen_ms = 1200;
   bool json = false;
 };
-
-/// A node and the device file that fits it.
-struct Found {
-  std::uint8_t id = 0;
-  ScannedNode node;
-  learn::DeviceFiles::Match file;
-};
-
-BusScan scan_bus(const ScanOptions& options) {
-  FrameChannel channel = value_or_fail(FrameChannel::open(options.bus, BusMember::guest), 3);
-  BusScan scan{std::chrono::milliseconds{options.timeout_ms}};
-  const Time listens_until = monotonic_now() + std::chrono::milliseconds{options.listen_ms};
-  const auto hear = [&](const Frame& frame) { scan.on_frame(frame, monotonic_now()); };
-  const Interrupt interrupt;
-  while ((!scan.done() || monotonic_now() < listens_until) && !Interrupt::asked()) {
-    Outbox out;
-    scan.on_time(monotonic_now(), out);
-    if (!send_all(channel, out.frames(), hear)) {
-      throw Failure{"a frame could not be sent on " + options.bus +
-                    ": the interface is down, or no node acknowledges frames"};
-    }
-    StampedFrame frame;
-    if (channel.receive(frame, std::chrono::milliseconds{1})) hear(frame.frame);
-  }
-  return scan;
-}
 
 std::string hex(std::optional<std::uint32_t> value) {
   return value ? fmt::format("0x{:08X}", *value) : "-";
@@ -70,7 +38,7 @@ std::string profile(const ScannedNode& node) {
   return number == 0 ? "no profile" : fmt::format("CiA {}", number);
 }
 
-std::string file_text(const Found& found, bool wanted) {
+std::string file_text(const ScannedDevice& found, bool wanted) {
   if (!wanted) return {};
   if (found.file.path.empty()) return "no file fits";
   std::string text = found.file.path.string();
@@ -79,11 +47,11 @@ std::string file_text(const Found& found, bool wanted) {
   return text;
 }
 
-void print(const std::vector<Found>& nodes, bool with_files) {
+void print(const std::vector<ScannedDevice>& nodes, bool with_files) {
   std::vector<Line> lines{Line{}.add(
       " NODE  STATE            PROFILE     VENDOR      PRODUCT     REVISION    SERIAL      NAME",
       Paint::dim)};
-  for (const Found& found : nodes) {
+  for (const ScannedDevice& found : nodes) {
     Line& line = lines.emplace_back();
     line.add(right(std::to_string(found.id), 5))
         .add("  " + left(state(found.node), 17))
@@ -95,7 +63,7 @@ void print(const std::vector<Found>& nodes, bool with_files) {
   print_lines(lines, 250);
 }
 
-nlohmann::json to_json(const Found& found) {
+nlohmann::json to_json(const ScannedDevice& found) {
   static constexpr std::array names{"vendor_id", "product_code", "revision_number",
                                     "serial_number"};
   const auto number = [](std::optional<std::uint32_t> value) {
@@ -115,34 +83,22 @@ nlohmann::json to_json(const Found& found) {
   return json;
 }
 
-std::vector<Found> with_files(const BusScan& scan, const learn::DeviceFiles& files) {
-  std::vector<Found> all;
-  for (const auto& [id, node] : scan.nodes()) {
-    const learn::SeenIdentity identity{.device_type = node.device_type.value_or(0),
-                                       .vendor_id = node.identity[0].value_or(0),
-                                       .product_code = node.identity[1].value_or(0),
-                                       .revision_number = node.identity[2].value_or(0),
-                                       .serial_number = node.identity[3].value_or(0)};
-    all.push_back({id, node, files.find(id, identity)});
-  }
-  return all;
-}
-
 int run(const ScanOptions& options) {
   learn::DeviceFiles files;
   Findings findings;
   for (const std::string& folder : options.folders) files.add_folder(folder, findings);
   if (!findings.empty()) return complain(to_string(findings.front()), 2);
-  const BusScan scan = scan_bus(options);
+  const BusScan scan = scan_bus(options.bus, std::chrono::milliseconds{options.timeout_ms},
+                                std::chrono::milliseconds{options.listen_ms});
   if (scan.met_another_client()) {
     complain("another program sends SDO requests on " + options.bus +
                  " (a running taktd?), so answers may be mixed up; `takt status` asks the daemon",
              0);
   }
-  const std::vector<Found> nodes = with_files(scan, files);
+  const std::vector<ScannedDevice> nodes = with_files(scan, files);
   if (options.json) {
     nlohmann::json all = nlohmann::json::array();
-    for (const Found& found : nodes) all.push_back(to_json(found));
+    for (const ScannedDevice& found : nodes) all.push_back(to_json(found));
     const nlohmann::json document{{"bus", options.bus}, {"nodes", std::move(all)}};
     std::puts(json_text(document, 1).c_str());
   } else if (!nodes.empty()) {

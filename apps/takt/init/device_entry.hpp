@@ -1,0 +1,46 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/takt/service/scanned_devices.hpp"
+#include "eds_parser/specification/device_data.hpp"
+
+namespace takt::init {
+
+/// A device on the bus, and what is known for its entry in the network file.
+struct DeviceToWrite {
+  ScannedDevice found;
+  std::string file{};                ///< path of its device file in the network file
+  const DeviceData* data = nullptr;  ///< of its family; nullptr if there are none
+  /// Counts of a turn of the shaft behind the gear, as the device itself says (0x608F, 0x6091).
+  std::optional<double> counts_a_turn{};
+  /// Another node-ID under which the device answers, by its second SDO channel; 0 if there is none.
+  std::uint8_t second_id = 0;
+};
+
+/// How much of a proposal an entry contains. If the whole proposal does not fit the device, less is
+/// proposed.
+enum class Detail { whole, own_pdos, file_only };
+
+/// A limit that the plan proposes, with its reason.
+struct ProposedLimit {
+  std::string entry;      ///< `velocity: 12.5`, or `objects: [{...}]`; "..." stands for a number
+  std::string because{};  ///< its source, or what to enter
+
+  bool has_numbers() const { return entry.find("...") == entry.npos; }
+};
+
+/// Returns true if `other` is no device: `device` answers under its node-ID by an SDO channel that
+/// the device data describe, such as channel 2 of the Lenze 8400 at 0x640 + node-ID.
+bool is_second_channel(const DeviceToWrite& device, const DeviceToWrite& other);
+/// Returns the name of a node by its profile: `axis_5`, `io_10`, `inverter_3`.
+std::string node_name(const DeviceToWrite& device);
+/// Returns the entry of a device in `nodes:`, with comments.
+std::string device_entry(const DeviceToWrite& device, Detail detail,
+                         const std::vector<ProposedLimit>& limits);
+/// Returns the comment for a device that can't have an entry, with the reason.
+std::string missing_entry(const DeviceToWrite& device, const std::string& reason);
+
+}  // namespace takt::init
