@@ -169,7 +169,8 @@ ROOMS = {
                           "apps/command_line apps/takt/live eds_parser/network_file master/gateway/message master/linux "
                           + EDS),
     "apps/takt/service": ("commands that talk to devices: SDO, LSS, NMT, parameters, scan",
-                          "apps/command_line apps/takt/live apps/takt/objects apps/takt/learn/device_files.hpp master/wire master/core "
+                          "apps/command_line apps/takt/live apps/takt/live/view apps/takt/objects "
+                          "apps/takt/learn/device_files.hpp master/wire master/core "
                           "master/core/sdo master/core/lss master/lcm master/gateway/message master/gateway/command " + LINUX),
     "apps/takt/od": ("lists the objects of a device with their values and meanings",
                      "apps/command_line apps/takt/live apps/takt/objects apps/takt/service eds_parser/dictionary "

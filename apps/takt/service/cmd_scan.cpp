@@ -10,7 +10,7 @@
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/whole_number.hpp"
 #include "apps/takt/live/screen.hpp"
-#include "apps/takt/live/top_frame.hpp"
+#include "apps/takt/live/view/node_words.hpp"
 #include "apps/takt/service/scanned_devices.hpp"
 
 namespace takt {

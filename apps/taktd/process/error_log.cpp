@@ -1,7 +1,6 @@
 #include "apps/taktd/process/error_log.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <spdlog/details/null_mutex.h>
 #include <spdlog/logger.h>
 #include <spdlog/sinks/base_sink.h>
@@ -10,6 +9,7 @@
 #include <unistd.h>
 #include <utility>
 
+#include "apps/taktd/process/environment.hpp"
 #include "apps/taktd/process/open_again.hpp"
 #include "eds_parser/table/number_in.hpp"
 
@@ -24,11 +24,6 @@ spdlog::level::level_enum level_of(Weight weight) noexcept {
 const char* colour_of(spdlog::level::level_enum level) noexcept {
   if (level >= spdlog::level::err) return "\033[31m\033[1m";
   return level == spdlog::level::warn ? "\033[33m\033[1m" : "\033[32m";
-}
-
-std::string_view environment(const char* name) {
-  const char* const value = std::getenv(name);
-  return value == nullptr ? std::string_view{} : std::string_view{value};
 }
 
 /// Returns true if the file is the one that JOURNAL_STREAM names as device:inode. A program that

@@ -3,22 +3,17 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <string_view>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "apps/taktd/process/environment.hpp"
 #include "master/linux/file_descriptor.hpp"
 
 namespace takt {
 namespace {
-
-std::string_view environment(const char* name) {
-  const char* const value = std::getenv(name);
-  return value == nullptr ? std::string_view{} : value;
-}
 
 std::int64_t environment_number(const char* name) {
   const std::string_view text = environment(name);

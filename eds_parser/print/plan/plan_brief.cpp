@@ -16,7 +16,8 @@ namespace takt {
 namespace {
 
 constexpr std::size_t most_lines = 24;
-constexpr std::size_t most_name = 17;
+constexpr std::size_t most_columns = 80;
+constexpr std::size_t most_name = 14;
 constexpr std::size_t most_kind = 21;
 
 using Rows = std::vector<std::string>;
@@ -86,13 +87,14 @@ Rows node_rows(const BusPlan& plan) {
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     const NodePlan& node = plan.nodes[i];
     const auto count = [i](const auto& pdos) {
-      return std::ranges::count_if(pdos, [i](const PdoRow& row) { return row.node_index == i; });
+      return std::ranges::count_if(pdos, [i](const PdoRow& pdo) { return pdo.node_index == i; });
     };
-    rows.push_back(
+    const std::string row =
         fmt::format("  {:>3} {:<{}}  {:<21} {:>2} TPDO {:>2} RPDO  {}", node.id.value(),
                     cut_to(node.name, widest), widest, cut_to(kind_of(plan, i), most_kind),
                     count(plan.pdos.tpdos), count(plan.pdos.rpdos),
-                    watched(node) == "no" ? "loss not noticed" : "lost after " + watched(node)));
+                    watched(node) == "no" ? "loss not noticed" : "lost after " + watched(node));
+    rows.push_back(cut_to(row, most_columns));
   }
   return rows;
 }

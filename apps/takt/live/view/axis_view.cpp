@@ -23,6 +23,7 @@ constexpr std::int32_t object_following_error = 0x60F4;
 constexpr int mode_interpolated_position = 7;
 constexpr int mode_cyclic_position = 8;
 constexpr std::int8_t sequence_of_cia402 = 1;
+constexpr int mode_velocity = 2;
 /// Motions of a cycle that is further away say nothing about the present image.
 constexpr std::uint64_t most_cycles_apart = 1000;
 
@@ -182,12 +183,13 @@ AxisView view_of(const BusView& bus, const speed_axis_t& axis) {
   const Position status = place(axis.status, bus);
   const Position control = place(axis.control, bus);
   const Position actual = place(axis.actual_speed, bus);
+  const bool cia402 = axis.sequence == sequence_of_cia402;
   const bool knows = look.fresh(status);
   const std::uint16_t word = knows ? look.word(*status) : std::uint16_t{0};
   AxisView view{.name = axis.node,
                 .node = axis.node_id,
                 .state = {"no status word", Paint::bad},
-                .mode = axis.sequence == sequence_of_cia402 ? "vl" : "speed",
+                .mode = cia402 ? "vl" : "speed",
                 .position = {},
                 .velocity = {.value = {}, .unit = axis.unit},
                 .following_error = {},
@@ -200,11 +202,18 @@ AxisView view_of(const BusView& bus, const speed_axis_t& axis) {
   }
   if (knows) {
     view.state = speed_state(axis, word, view.velocity.value.value_or(0.0));
-    view.statusword = {.value = word, .text = speed_words(axis, word)};
+    view.statusword = {
+        .value = word,
+        .text = cia402 ? statusword_text(word, mode_velocity) : speed_words(axis, word)};
   }
   view.state = look.state(view.state, knows);
   view.error = look.error(std::nullopt, knows && shows(axis.fault, word));
-  if (look.fresh(control)) view.controlword = {.value = look.word(*control), .text = {}};
+  if (look.fresh(control)) {
+    const std::uint16_t command = look.word(*control);
+    view.controlword = {
+        .value = command,
+        .text = cia402 ? controlword_text(command, mode_velocity) : speed_command(axis, command)};
+  }
   return view;
 }
 

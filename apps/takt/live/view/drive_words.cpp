@@ -114,4 +114,13 @@ std::string speed_words(const speed_axis_t& axis, std::uint16_t word) {
   return text.empty() ? "no known state" : text;
 }
 
+std::string speed_command(const speed_axis_t& axis, std::uint16_t word) {
+  if (word == axis.run) return "run";
+  if (word == axis.run_reverse) return "run backward";
+  if (word == axis.stop) return "stop";
+  if (word == axis.quick_stop) return "quick stop";
+  if (word == axis.reset) return "fault reset";
+  return word == axis.off ? "off" : "no known command";
+}
+
 }  // namespace takt

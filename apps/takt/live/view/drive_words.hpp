@@ -20,4 +20,7 @@ std::string mode_text(int mode);
 /// Returns the states that the status word of a speed axis shows, for example "ready, running".
 std::string speed_words(const speed_axis_t& axis, std::uint16_t word);
 
+/// Returns what the control word of a speed axis commands, for example "run backward".
+std::string speed_command(const speed_axis_t& axis, std::uint16_t word);
+
 }  // namespace takt

@@ -155,6 +155,8 @@ inline ShownBus machine() {
   pump.reverse = bits(0xFF, {2});
   pump.standstill = bits(0xFF, {3});
   pump.fault = bits(0xFF, {4});
+  pump.run = 1;
+  pump.run_reverse = 2;
   pump.unit = "Hz";
   pump.set_scale = pump.actual_scale = 0.01;
   bus.speed_axes.push_back(pump);

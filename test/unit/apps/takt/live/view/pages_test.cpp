@@ -174,6 +174,7 @@ TEST(Pages, StatuswordsAreInHexAndInWords) {
   EXPECT_THAT(page, HasSubstr("000F"));
   EXPECT_THAT(page, HasSubstr("enable operation"));
   EXPECT_THAT(page, HasSubstr("ready, running, backward"));
+  EXPECT_THAT(page, HasSubstr("ctrl 0001  run\n"));
 }
 
 TEST(Pages, DigitalInputsHaveTheirBits) {
