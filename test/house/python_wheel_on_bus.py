@@ -38,6 +38,7 @@ with takt.Bus(name, **options) as bus:
     image = bus.next_image(10)
     check("the image has the position", image["shoulder.position_actual_value"] == fresh(bus, "shoulder.0x6064:0"))
     check("its time is that of the clock", abs(image.time - time.time()) < 60, image.time)
+    bus.wait_until(lambda: "io" in bus.nodes and bus.nodes["io"].boot == "ready", 30)
     bus.set("io.outputs_1_to_8", 5.0)
     bus.set("io.outputs_9_to_16", 0.0)
     bus.run(0.2)
