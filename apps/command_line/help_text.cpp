@@ -150,6 +150,19 @@ std::size_t text_width() {
   return std::clamp<std::size_t>(width, 40, 100);
 }
 
+std::vector<std::string> broken(std::string_view text, std::size_t width) {
+  std::vector<std::string> lines;
+  while (text.size() > width) {
+    const std::size_t blank = text.substr(0, width + 1).rfind(' ');
+    const std::size_t end = blank == text.npos || blank == 0 ? width : blank;
+    lines.emplace_back(text.substr(0, end));
+    text.remove_prefix(end);
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+  }
+  lines.emplace_back(text);
+  return lines;
+}
+
 std::string wrapped_help(std::string_view options, std::size_t column, std::string_view notes,
                          std::size_t width) {
   Wrapper out{width};

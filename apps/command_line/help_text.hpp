@@ -2,12 +2,17 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace takt {
 
 /// The width of the terminal at stdout, in columns from 40 to 100. Without a terminal COLUMNS
 /// counts, otherwise 80.
 std::size_t text_width();
+
+/// Breaks a text at its spaces into lines of at most `width` columns. A longer word is broken
+/// anywhere.
+std::vector<std::string> broken(std::string_view text, std::size_t width);
 
 /// Returns a help text, broken into lines of at most `width` columns where words allow it. Options
 /// have their names in the first `column` columns of `options`; `notes` are paragraphs, and

@@ -3,12 +3,14 @@
 #include <cstdio>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <thread>
-#include <unistd.h>
 #include <utility>
+#include <vector>
 
 #include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/help_text.hpp"
 #include "apps/command_line/json_text.hpp"
 #include "apps/command_line/whole_number.hpp"
 #include "apps/takt/doctor/checkup.hpp"
@@ -62,17 +64,30 @@ const char* word(Verdict verdict) {
   return verdict == Verdict::hint ? "hint" : "BAD";
 }
 
+/// Prints each remark with its text beside its subject, or below it on a narrow terminal. A command
+/// is not broken, because users copy it.
 void print(const std::vector<Remark>& remarks) {
   static constexpr Paint paints[] = {Paint::good, Paint::warning, Paint::bad};
-  const bool colour = ::isatty(STDOUT_FILENO) != 0;
-  constexpr std::size_t width = 400;  // wide enough not to cut a command, which users copy
+  constexpr std::size_t beside = 22;
+  constexpr std::size_t below = 6;
+  constexpr std::size_t narrow = 70;
+  const std::size_t width = text_width();
+  const std::size_t indent = width < narrow ? below : beside;
   for (const Remark& remark : remarks) {
-    Line line;
-    line.add(left(word(remark.verdict), 6), paints[static_cast<std::size_t>(remark.verdict)])
-        .add(left(remark.subject, 16), Paint::title)
-        .add(remark.text);
-    std::puts(line.render(width, colour).c_str());
-    if (!remark.command.empty()) std::printf("%22s%s\n", "", remark.command.c_str());
+    std::vector<std::string> texts = broken(remark.text, width - indent);
+    Line head;
+    head.add(left(word(remark.verdict), below), paints[static_cast<std::size_t>(remark.verdict)])
+        .add(indent == beside ? left(remark.subject, beside - below) : remark.subject,
+             Paint::title);
+    if (indent == beside) {
+      head.add(texts.front());
+      texts.erase(texts.begin());
+    }
+    const std::string space(indent, ' ');
+    std::vector<Line> lines{std::move(head)};
+    for (const std::string& text : texts) lines.push_back(std::move(Line{}.add(space + text)));
+    print_lines(lines, width);
+    if (!remark.command.empty()) std::puts((space + remark.command).c_str());
   }
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
+#include "apps/command_line/help_text.hpp"
 #include "apps/takt/live/screen.hpp"
 #include "apps/takt/od/value_meaning.hpp"
 #include "eds_parser/table/device_table.hpp"
@@ -34,20 +35,6 @@ std::string pdo_text(const OdEntry& entry) {
 std::string without_trailing_blanks(std::string line) {
   line.erase(line.find_last_not_of(' ') + 1);
   return line + '\n';
-}
-
-/// Breaks a text at blanks into lines of at most `width` columns. A longer word is broken anywhere.
-std::vector<std::string> broken(std::string_view text, std::size_t width) {
-  std::vector<std::string> lines;
-  while (text.size() > width) {
-    const std::size_t blank = text.substr(0, width + 1).rfind(' ');
-    const std::size_t end = blank == text.npos || blank == 0 ? width : blank;
-    lines.emplace_back(text.substr(0, end));
-    text.remove_prefix(end);
-    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-  }
-  lines.emplace_back(text);
-  return lines;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "apps/command_line/whole_number.hpp"
 #include "apps/takt/live/screen.hpp"
 #include "apps/takt/live/view/node_words.hpp"
+#include "apps/takt/live/view/table.hpp"
 #include "apps/takt/service/scanned_devices.hpp"
 
 namespace takt {
@@ -38,8 +39,7 @@ std::string profile(const ScannedNode& node) {
   return number == 0 ? "no profile" : fmt::format("CiA {}", number);
 }
 
-std::string file_text(const ScannedDevice& found, bool wanted) {
-  if (!wanted) return {};
+std::string file_text(const ScannedDevice& found) {
   if (found.file.path.empty()) return "no file fits";
   std::string text = found.file.path.string();
   if (found.file.other_revision) text += " (of another revision)";
@@ -48,19 +48,26 @@ std::string file_text(const ScannedDevice& found, bool wanted) {
 }
 
 void print(const std::vector<ScannedDevice>& nodes, bool with_files) {
-  std::vector<Line> lines{Line{}.add(
-      " NODE  STATE            PROFILE     VENDOR      PRODUCT     REVISION    SERIAL      NAME",
-      Paint::dim)};
+  std::vector<Column> columns{{.title = "NODE", .kind = Cell::number},
+                              {.title = "STATE"},
+                              {.title = "PROFILE"},
+                              {.title = "VENDOR"},
+                              {.title = "PRODUCT"},
+                              {.title = "REVISION"},
+                              {.title = "SERIAL"},
+                              {.title = "NAME", .kind = Cell::name, .least = 16}};
+  if (with_files) columns.push_back({.title = "FILE", .kind = Cell::name, .least = 32});
+  Table table{std::move(columns)};
   for (const ScannedDevice& found : nodes) {
-    Line& line = lines.emplace_back();
-    line.add(right(std::to_string(found.id), 5))
-        .add("  " + left(state(found.node), 17))
-        .add(left(profile(found.node), 12));
-    for (const auto& number : found.node.identity) line.add(left(hex(number), 12));
-    line.add(with_files ? left(found.node.name, 24) : found.node.name, Paint::title)
-        .add(file_text(found, with_files), Paint::dim);
+    std::vector<PaintedText> row{
+        {std::to_string(found.id)}, {state(found.node)}, {profile(found.node)}};
+    for (const auto& number : found.node.identity) row.push_back({hex(number)});
+    row.push_back({found.node.name, Paint::title});
+    if (with_files) row.push_back({file_text(found), Paint::dim});
+    table.add(std::move(row));
   }
-  print_lines(lines, 250);
+  const std::size_t width = output_width();
+  print_lines(table.text(width).all(), width);
 }
 
 nlohmann::json to_json(const ScannedDevice& found) {
