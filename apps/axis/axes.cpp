@@ -28,7 +28,7 @@ Axes& Axes::operator=(Axes&& other) noexcept {
 
 Axes::~Axes() {
   if (!state_) return;
-  // Nobody is left to tell about an obstacle.
+  // Nobody is left who could be told about an obstacle, so the result is not used.
   [[maybe_unused]] const Done done = disable();
 }
 

@@ -21,8 +21,8 @@ bool Axes::State::is_in_mode_of_motions(Index axis) const {
                                                                : DriveMode::cyclic_position);
 }
 
-/// taktd also looks at the mode of operation before it reports a drive as enabled. It reports none
-/// in other modes than that of its motions.
+/// taktd also looks at the mode of operation before it reports a drive as enabled. In a mode other
+/// than that of its motions, it reports no drive as enabled.
 bool Axes::State::is_ready(Index axis) const {
   if (!group.axes().drive(axis).enabled()) return false;
   if (!is_in_mode_of_motions(axis)) return group.axes().in_mode(axis);
@@ -96,7 +96,7 @@ Done Axes::State::enable() {
     return {};
   }
   const std::string why = no_motions().empty() ? why_not_ready_text() : no_motions();
-  [[maybe_unused]] const Done done = disable();  // the first obstacle is the one to tell
+  [[maybe_unused]] const Done done = disable();  // only the first obstacle is reported
   return obstacle(Obstacle::Kind::blocked, why);
 }
 

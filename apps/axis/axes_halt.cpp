@@ -10,9 +10,10 @@
 namespace takt {
 namespace {
 
-constexpr std::int64_t halt_bit = 0x0100;  // of the controlword
+constexpr std::int64_t halt_bit = 0x0100;  // bit 8 of the controlword
 
-/// Returns true if bit 10 of the statusword does not say that an axis stands in this mode.
+/// Returns true if bit 10 of the statusword does not say that an axis is at standstill in this
+/// mode.
 bool has_own_set_points(DriveMode mode) noexcept {
   using enum DriveMode;
   return mode == profile_velocity || mode == cyclic_velocity || mode == profile_torque ||
@@ -109,8 +110,8 @@ Done Axes::State::quick_stop() {
   return *rested;
 }
 
-/// An axis stands when its drive says so, or when its position has stayed within a few counts: an
-/// encoder may flicker at standstill.
+/// An axis is at standstill when its drive says so, or when its position has stayed within a few
+/// counts: an encoder may flicker at standstill.
 std::optional<Done> Axes::State::wait_for_rest(std::span<const Index> chosen,
                                                Interruption interruption) {
   struct Window {
@@ -119,7 +120,7 @@ std::optional<Done> Axes::State::wait_for_rest(std::span<const Index> chosen,
     std::int64_t since = 0;  ///< the newest cycle in which an axis has left it
     Eigen::VectorXd middle{};
   };
-  // Both windows stand for the same speed; the second one is for fine encoders.
+  // Both windows correspond to the same speed; the second one is for fine encoders.
   std::array windows{Window{.counts = 2.5, .cycles = settled_cycles},
                      Window{.counts = 25, .cycles = 10 * settled_cycles}};
   const AxisControl& known = group.axes();

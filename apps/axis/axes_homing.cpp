@@ -11,8 +11,8 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-constexpr std::uint16_t start_bit = 0x0010;      // of the controlword, CiA 402-2, homing mode
-constexpr std::uint16_t homing_result = 0x3000;  // of the statusword
+constexpr std::uint16_t start_bit = 0x0010;      // bit of the controlword, CiA 402-2, homing mode
+constexpr std::uint16_t homing_result = 0x3000;  // bits of the statusword
 /// If the statusword shows no homing for this time, the drive has not begun the run, or has
 /// interrupted it.
 constexpr std::chrono::seconds start_patience{1};

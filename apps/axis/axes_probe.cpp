@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint16_t function_object = 0x60B8;
 constexpr std::uint16_t status_object = 0x60B9;
-constexpr std::uint16_t first_position = 0x60BA;  // of input 1, rising edge
+constexpr std::uint16_t first_position = 0x60BA;  // position of input 1 at its rising edge
 // Bits of the function and of the status for input 1; those of input 2 are 8 bits above.
 constexpr unsigned armed = 0x01;
 constexpr unsigned by_index_pulse = 0x04;
@@ -87,7 +87,7 @@ std::expected<double, Obstacle> Axes::State::touch_probe(Index number, const Pro
   const auto place = static_cast<std::uint16_t>(first_position + 2 * (wanted.input - 1) + !rises);
   std::expected<std::int64_t, Obstacle> counts{0};
   if (done) counts = read_of_axis(axis, place);
-  // The first obstacle is the one to tell.
+  // Only the first obstacle is reported.
   [[maybe_unused]] const Done disarmed = is_current() ? write(others) : Done{};
   if (!done) return std::unexpected{done.error()};
   if (!counts) return std::unexpected{counts.error()};

@@ -13,11 +13,11 @@ namespace takt {
 
 /// What the programs that command axes have in common.
 struct AxesProgram {
-  std::string name;                    ///< for events and messages: "takt-jog"
+  std::string name;                    ///< name in events and messages: "takt-jog"
   std::string bus = {};                ///< empty: the first bus whose layout arrives
-  std::vector<std::string> axes = {};  ///< in this order; empty: all axes of the bus
+  std::vector<std::string> axes = {};  ///< names in this order; empty: all axes of the bus
   LcmAccess lcm = {};
-  std::chrono::nanoseconds wait = std::chrono::seconds{10};  ///< for the daemon and the drives
+  std::chrono::nanoseconds wait = std::chrono::seconds{10};  ///< wait for the daemon and the drives
   std::chrono::nanoseconds timeout = std::chrono::milliseconds{500};  ///< as in AxesOptions
   std::string plot = {};  ///< file for a picture of the motions; empty: none
   /// Returns what the axes use in the place of their connection to LCM. Empty: the connection.

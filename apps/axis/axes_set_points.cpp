@@ -16,7 +16,7 @@ namespace {
 
 /// Longest wait until an image shows that set-points were sent.
 constexpr std::chrono::seconds sent_time{1};
-/// An axis that stands for this time before its target has not reached it.
+/// An axis that is at standstill for this time before its target has not reached it.
 constexpr std::chrono::seconds standing_time{1};
 
 std::string list_of(std::span<const DriveMode> modes) {

@@ -115,7 +115,7 @@ Done Axes::State::enable_speed() {
   if (waited && !*waited) return *waited;
   if (ready()) return {};
   const std::string why = speed->why_not_ready(group);
-  [[maybe_unused]] const Done done = disable_speed();  // the first obstacle is the one to tell
+  [[maybe_unused]] const Done done = disable_speed();  // only the first obstacle is reported
   return obstacle(Obstacle::Kind::blocked, why);
 }
 
@@ -183,7 +183,7 @@ Done Axes::State::check_speeds(const Values& velocities, const MotionBounds& bou
 /// An older run does not go on if the new one fails.
 Done Axes::State::run_speed(const Values& velocities, const MotionBounds& bounds) {
   Done done = begin_run(velocities, bounds);
-  // The first obstacle is the one to tell.
+  // Only the first obstacle is reported.
   if (!done && is_current()) [[maybe_unused]]
     const Done stood = stop_speed();
   return done;
@@ -197,7 +197,8 @@ Done Axes::State::begin_run(const Values& velocities, const MotionBounds& bounds
   }
   events_.clear();
   stopped_text_.clear();
-  // The messages that wait come first: after a long silence they tell that the drives were stopped.
+  // The messages that wait are read first: after a long silence, they report that the drives were
+  // stopped.
   if (const Done heard = step(Interruption::obeyed); !heard) return heard;
   if (const std::string why = why_speed_ended(); !why.empty()) {
     return obstacle(Obstacle::Kind::blocked, why);

@@ -113,7 +113,7 @@ class Axes::State {
 
   AxisGroup group;
   AxesOptions options;
-  std::vector<Index> axes;           // of the group; empty if these are speed axes
+  std::vector<Index> axes;           // axes of the group; empty if these are speed axes
   std::optional<SpeedDrives> speed;  // the axes, if they are speed axes
   std::vector<std::string> names;    // parallel to `axes`
   std::vector<std::string> units;
@@ -128,18 +128,18 @@ class Axes::State {
   /// What this program has made of the drives, and so whether it may move them.
   enum class Readiness : std::uint8_t {
     not_enabled,
-    enabled,  ///< by enable()
+    enabled,  ///< enabled by enable()
     halted,   ///< bit 8 of their controlwords is set
   };
-  /// Whether AxesOptions::interrupted can end a wait.
+  /// States whether AxesOptions::interrupted can end a wait.
   enum class Interruption : std::uint8_t { obeyed, ignored };
-  /// How the newest motion stands.
+  /// The state of the newest motion.
   enum class Course : std::uint8_t { none, unanswered, runs, done, refused, stopped, replaced };
   /// A stream from begin_stream() on.
   struct Stream {
     StreamBuffer buffer;
     std::vector<motion_goal_t> goals;
-    bool begun = false;  ///< its first points were sent
+    bool begun = false;  ///< the first points of the stream were sent
   };
   using Condition = std::function<bool()>;
   using AxisCondition = std::function<bool(Index)>;
@@ -263,23 +263,24 @@ class Axes::State {
   Done stop_now();
 
   Sending sending_ = Sending::nothing;
-  std::vector<Index> commanded_;  // of the axes: those whose controlwords are sent
+  std::vector<Index> commanded_;  // axes whose controlwords are sent
   Readiness readiness_ = Readiness::not_enabled;
   std::map<std::size_t, std::int64_t> held_;  // raw values of outputs, by their place in the image
   bool has_set_points_ = false;               // velocities or torques were commanded, and not ended
-  Eigen::VectorXd decelerations_{};           // of target velocities that drives follow at once
+  // Decelerations of target velocities that drives follow at once.
+  Eigen::VectorXd decelerations_{};
   std::optional<Eigen::VectorXd> profile_targets_;  // the newest since the axes were stopped
   Clock::time_point last_values_{};                 // the newest image from which outputs were sent
-  std::string lost_text_;         // why set-points were discarded, until a call tells it
-  std::int64_t request_id_ = 0;   // of the newest request
-  std::int32_t id_ = 0;           // of the newest motion
+  std::string lost_text_;         // reason why set-points were discarded, until a call returns it
+  std::int64_t request_id_ = 0;   // id of the newest request
+  std::int32_t id_ = 0;           // id of the newest motion
   bool has_motion_ = false;       // false before the first motion, and after a stop
   bool has_begun_ = false;        // a motion has begun since the drives were enabled
   bool jog_goes_on_ = false;      // the newest motion is a jog, and no call has ended it
   std::optional<Stream> stream_;  // until it has ended
-  std::int64_t session_ = 0;      // of the layout in which the axes were found
+  std::int64_t session_ = 0;      // session of the layout in which the axes were found
   Clock::time_point motion_begin_{};
-  std::int64_t stop_cycle_ = -1;   // of the image from which the newest stop was sent
+  std::int64_t stop_cycle_ = -1;   // cycle of the image from which the newest stop was sent
   Clock::time_point last_sent_{};  // the newest sign of life
   Clock::time_point last_image_ = Clock::now();
   std::string stopped_text_;     // why this object has stopped speed axes by itself

@@ -38,7 +38,7 @@ Done Axes::State::begin_stream(const MotionBounds& bounds) {
 
 Done Axes::State::stream(std::span<const PathPoint> points) {
   const Done given = give_points(points);
-  // The first obstacle is the one to tell.
+  // Only the first obstacle is reported.
   if (!given) [[maybe_unused]]
     const Done stood = stop();
   return given;

@@ -7,7 +7,7 @@
 
 namespace takt {
 
-/// How a program reaches a bus that may have keys.
+/// The settings with which a program accesses a bus that may have keys.
 struct LcmAccess {
   std::string url;            ///< as for open_lcm()
   std::string keys;           ///< path of the key file; empty means no envelopes

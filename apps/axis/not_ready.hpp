@@ -17,7 +17,7 @@ std::string blocking_bits(std::uint16_t statusword);
 /// Returns the newest EMCY of a node in words, or an empty text if none has come.
 std::string newest_error(const node_status_t& node);
 
-/// Returns lines that tell why this axis is not ready to move in this mode of operation: its
+/// Returns lines that explain why this axis is not ready to move in this mode of operation: its
 /// device, the bits of its statusword, its error, its mode, and the program that holds it. Empty if
 /// it is ready.
 std::vector<std::string> why_not_ready(const AxisGroup& group, AxisControl::Index axis,

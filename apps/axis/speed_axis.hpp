@@ -12,7 +12,7 @@ namespace takt {
 /// What a program wants of a speed axis.
 enum class SpeedGoal : std::uint8_t {
   off,       ///< The drive is commanded not to move.
-  standing,  ///< It is ready to run, and stands.
+  standing,  ///< The drive is ready to run, and at standstill.
   running,   ///< It runs at the target speed.
 };
 
@@ -51,7 +51,7 @@ class SpeedAxis {
   const speed_axis_t& words() const noexcept { return words_; }
   SpeedGoal goal() const noexcept { return goal_; }
   SpeedState state() const noexcept { return state_; }
-  /// Returns true if the set speed has come to 0 and the drive shows that it stands.
+  /// Returns true if the set speed has come to 0 and the drive shows that it is at standstill.
   bool stands() const noexcept;
   /// Returns true if the drive obeys the command to run, or has no state that shows it.
   bool runs() const noexcept;
@@ -69,7 +69,7 @@ class SpeedAxis {
   std::int64_t reset_word() noexcept;
 
   speed_axis_t words_;
-  DriveSequence drive_;  // of the sequence of CiA 402
+  DriveSequence drive_;  // state machine of CiA 402
   SpeedGoal goal_ = SpeedGoal::off;
   SpeedState state_ = SpeedState::unknown;
   double target_ = 0.0;
@@ -80,8 +80,8 @@ class SpeedAxis {
   std::int64_t control_ = 0;
   std::int64_t cycle_ = -1;
   std::uint16_t status_ = 0;
-  int silent_images_ = 0;           // in a row, without the status word
-  bool was_enabled_ = false;        // in the newest image; of the sequence of CiA 402
+  int silent_images_ = 0;           // number of images in sequence without the status word
+  bool was_enabled_ = false;        // state in the newest image; for the sequence of CiA 402
   std::optional<int> reset_steps_;  // images since the reset began; empty if none runs
 };
 

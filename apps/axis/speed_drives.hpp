@@ -55,7 +55,7 @@ class SpeedDrives {
 
  private:
   std::vector<SpeedAxis> axes_;
-  std::vector<double> accelerations_;  // of the newest run
+  std::vector<double> accelerations_;  // accelerations of the newest run
 };
 
 }  // namespace takt

@@ -28,7 +28,8 @@ class SetPointHandshake {
   Phase phase_ = Phase::idle;
   bool again_ = false;
   SetPointTiming timing_ = SetPointTiming::immediately;
-  SetPointTiming next_timing_ = SetPointTiming::immediately;  // of the handshake that follows
+  // Timing of the handshake that follows.
+  SetPointTiming next_timing_ = SetPointTiming::immediately;
 };
 
 }  // namespace takt

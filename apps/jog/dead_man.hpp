@@ -14,7 +14,7 @@ namespace takt {
 ///        +-------------------+ `first`  -------+ `next`, or another key
 class DeadMan {
  public:
-  /// How long a key counts as held without a further character.
+  /// The times for which a key counts as held without a further character.
   struct Times {
     /// The longest wait for the second character. It is longer than the delay of the terminal.
     Time first;
@@ -24,9 +24,9 @@ class DeadMan {
 
   explicit DeadMan(Times times) : times_{times} {}
 
-  /// To be called when a character of this direction, 1 or -1, has come.
+  /// Call this when a character of this direction, 1 or -1, has come.
   void press(int direction, Time now) noexcept;
-  /// To be called when another key was pressed or the program was stalled.
+  /// Call this when another key was pressed or the program was stalled.
   void release() noexcept { state_ = State::released; }
   /// Returns 1 or -1 while the key of this direction is held, else 0.
   int direction(Time now) noexcept;

@@ -30,7 +30,7 @@ class JogRun {
   const JogOptions& options_;
   MotionBounds bounds_;
   DeadMan dead_man_;
-  int direction_ = 0;  // in which the axis has to move now
+  int direction_ = 0;  // direction in which the axis has to move now: -1, 0 or 1
   bool ends_ = false;
   Time last_look_{};
 };

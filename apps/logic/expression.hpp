@@ -27,7 +27,7 @@ enum class Operation : std::uint8_t {
 /// drive "shoulder.fault", or the marker "armed".
 struct NameUse {
   std::string name;
-  std::size_t column = 0;  ///< of its first character in the text, from 0
+  std::size_t column = 0;  ///< column of the first character in the text, counted from 0
 };
 
 /// One step: a number, a name or an operation.
@@ -42,10 +42,10 @@ struct Expression {
   std::vector<Step> steps;
 };
 
-/// Why a text is no expression, and where.
+/// The reason why a text is no expression, and the place of the fault.
 struct ExpressionFault {
   std::string text;
-  std::size_t column = 0;  ///< from 0
+  std::size_t column = 0;  ///< counts from 0
 };
 
 /// Reads an expression. From the weakest to the strongest: `or`, `and`, `not`, comparisons

@@ -9,7 +9,7 @@ namespace takt {
 /// Options of takt-logic.
 struct LogicOptions {
   AxesProgram program{.name = "takt-logic"};
-  std::string file;    ///< with the rules
+  std::string file;    ///< path of the file with the rules
   bool check = false;  ///< print the rules, without a bus
   bool quiet = false;  ///< do not print each change
   std::optional<std::chrono::nanoseconds> seconds;

@@ -47,12 +47,12 @@ class LogicProgram {
 
  private:
   enum class Kind : std::uint8_t { signal, bit, drive_state, target };
-  /// Where the value of a name comes from.
+  /// The source of the value of a name.
   struct Source {
     Kind kind = Kind::target;
-    std::size_t place = 0;  // of the signal, or of the rule
+    std::size_t place = 0;  // position of the signal, or of the rule
     unsigned bit = 0;
-    std::int64_t mask = 0;  // of a drive state in the statusword
+    std::int64_t mask = 0;  // mask of a drive state in the statusword
     std::int64_t pattern = 0;
     double scale = 1.0;
     double offset = 0.0;
@@ -60,11 +60,11 @@ class LogicProgram {
   using Code = std::variant<double, std::size_t, Operation>;  // a place in sources_
   struct Bound {
     std::vector<Code> steps;
-    std::vector<std::size_t> signals;  // that it reads
+    std::vector<std::size_t> signals;  // signals that the program reads
     std::vector<char> before;          // operands of its edges, at the image before
   };
   struct Target {
-    std::size_t output = 0;  // in outputs_
+    std::size_t output = 0;  // position in outputs_
     int bit = -1;            // -1: the whole output
     std::int64_t on = 1;     // raw
     std::int64_t off = 0;
@@ -76,7 +76,7 @@ class LogicProgram {
     Target target;
     double value = 0.0;
     bool was = false;  // `first`, at the image before
-    Time since{0};     // for how long `first` differs from the target
+    Time since{0};     // time for which `first` differs from the target
   };
 
   class Binder;

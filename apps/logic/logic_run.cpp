@@ -15,8 +15,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds tick{20};
-/// How long the program waits for the message that names the inverters of the bus. taktd sends this
-/// message once a second.
+/// The time for which the program waits for the message that names the inverters of the bus. taktd
+/// sends this message once a second.
 constexpr std::chrono::milliseconds layout_time{1500};
 constexpr std::int32_t controlword = 0x6040;
 /// Distance of the objects of the next axis of a device. CiA 402-2.

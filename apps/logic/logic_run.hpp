@@ -39,8 +39,8 @@ class LogicRun {
   std::optional<LogicProgram> program_;  // empty until the layout has come
   LogicTrace trace_;
   std::vector<double> reported_;  // values of the targets
-  std::int64_t cycle_ = 0;        // of the newest image
-  Time time_{0};                  // of the bus, since the first image
+  std::int64_t cycle_ = 0;        // cycle of the newest image
+  Time time_{0};                  // time of the bus since the first image
 };
 
 }  // namespace takt

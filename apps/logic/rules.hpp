@@ -34,13 +34,13 @@ enum class RuleKind : std::uint8_t {
 struct Rule {
   RuleKind kind = RuleKind::set;
   std::string target;
-  SourcePos pos;  ///< of the target
+  SourcePos pos;  ///< place of the target
   WrittenExpression first;
   std::optional<WrittenExpression> second;
   Time on_delay{0};
   Time off_delay{0};
-  double on_value = 1.0;   ///< of the target while it is on, in the unit of the output
-  double off_value = 0.0;  ///< of the target while it is off
+  double on_value = 1.0;  ///< value of the target while the target is on, in the unit of the output
+  double off_value = 0.0;  ///< value of the target while the target is off
 };
 
 /// Largest number of rules in a file.

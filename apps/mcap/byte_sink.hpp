@@ -4,14 +4,14 @@
 
 namespace takt::mcap {
 
-/// Takes the bytes of a file, one after the other.
+/// The destination of the bytes of a file, in their order.
 class ByteSink {
  public:
   virtual ~ByteSink() = default;
 
   /// Makes sure that the next `bytes` bytes can be written. Returns false if there is no room.
   virtual bool reserve(std::uint64_t bytes) = 0;
-  /// Appends all bytes. Returns false if that fails; the sink then has none of them.
+  /// Appends all bytes. Returns false if that fails; in this case none of the bytes is in the sink.
   virtual bool write(std::string_view bytes) = 0;
 };
 

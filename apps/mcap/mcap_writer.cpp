@@ -7,10 +7,10 @@
 namespace takt::mcap {
 namespace {
 
-/// More than the records take that end a file, without schemas, channels, indexes of chunks and the
-/// counts of channels.
+/// An upper bound for the records that end a file, without schemas, channels, indexes of chunks and
+/// the counts of channels.
 constexpr std::uint64_t ending_bytes = 512;
-/// The count of one channel in the statistics.
+/// Size of the count of one channel in the statistics.
 constexpr std::uint64_t count_bytes = 10;
 
 void put_range(std::string& out, Opcode group, std::uint64_t begin, std::uint64_t end) {
@@ -87,7 +87,7 @@ bool McapWriter::write(ChannelId channel, std::uint64_t time, std::string_view d
   put(chunk_, channel);
   put(chunk_, stream.sequence++);
   put(chunk_, time);
-  put(chunk_, time);  // of publishing
+  put(chunk_, time);  // time of publishing
   chunk_ += data;
   return true;
 }
@@ -137,7 +137,7 @@ std::string McapWriter::chunk_record(std::string& index) {
   return bytes;
 }
 
-/// Writes the chunk. If there is no room for it, it is dropped.
+/// Writes the chunk, or drops it if there is no room.
 bool McapWriter::flush() {
   if (chunk_.empty()) return true;
   if (chunks_ == most_chunks) full_ = true;
@@ -168,10 +168,10 @@ std::string McapWriter::statistics() const {
   {
     const Record record{out, Opcode::statistics};
     put(out, messages_);
-    put(out, static_cast<std::uint16_t>(streams_.size()));  // schemas
+    put(out, static_cast<std::uint16_t>(streams_.size()));  // number of schemas
     put(out, static_cast<std::uint32_t>(streams_.size()));
-    put(out, std::uint32_t{0});  // attachments
-    put(out, std::uint32_t{0});  // metadata
+    put(out, std::uint32_t{0});  // number of attachments
+    put(out, std::uint32_t{0});  // number of metadata records
     put(out, chunks_);
     put(out, times_.first);
     put(out, times_.last);
@@ -184,8 +184,8 @@ std::string McapWriter::statistics() const {
   return out;
 }
 
-/// Returns everything from the summary section to the end of the file. The data section, with its
-/// end, has `offset_` bytes.
+/// Returns everything from the summary section to the end of the file. The file has `offset_` bytes
+/// up to the end of the data section.
 std::string McapWriter::summary() const {
   std::string out;
   std::string offsets;
@@ -203,7 +203,7 @@ std::string McapWriter::summary() const {
     const Record footer{out, Opcode::footer};
     put(out, offset_);
     put(out, offsets_begin);
-    // The CRC covers the opcode and the length of the footer, which are not yet there.
+    // The CRC covers the opcode and the length of the footer, which are not yet in the file.
     std::string covered = out;
     covered.replace(covered.size() - 24, 8, std::string{"\x14\0\0\0\0\0\0\0", 8});
     put(out, crc32(covered));

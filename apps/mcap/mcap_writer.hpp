@@ -15,9 +15,9 @@ namespace takt::mcap {
 /// A stream of messages, and the schema that all of them follow.
 struct Channel {
   std::string topic;
-  std::string message_encoding;              ///< "json"
-  std::string schema_name;                   ///< "foxglove.Log"
-  std::string schema_encoding;               ///< "jsonschema"
+  std::string message_encoding;              ///< for example "json"
+  std::string schema_name;                   ///< for example "foxglove.Log"
+  std::string schema_encoding;               ///< for example "jsonschema"
   std::string schema;                        ///< text of the schema
   std::map<std::string, std::string> notes;  ///< metadata of the channel
 };
@@ -29,8 +29,8 @@ using ChannelId = std::uint16_t;
 ///
 /// The memory is bounded: one chunk with its index, and about 100 bytes for each chunk of the file,
 /// of which there are at most `most_chunks`. Before each chunk the writer reserves room for it and
-/// for the summary. If there is none, the chunk is left out and finish() still makes a complete
-/// file.
+/// for the summary. If there is no room, the writer leaves the chunk out, and finish() still makes
+/// a complete file.
 class McapWriter {
  public:
   static constexpr std::size_t usual_chunk_bytes = std::size_t{4} << 20U;
@@ -50,16 +50,17 @@ class McapWriter {
   /// Writes the last chunk and the summary. Returns false if the file is not complete.
   bool finish();
 
-  /// Returns true if messages were left out because there is no room.
+  /// Returns true if messages were left out because there was no room.
   bool full() const noexcept { return full_; }
   /// Returns the number of messages in the chunks that are written.
   std::uint64_t messages() const noexcept { return messages_; }
 
  private:
   struct Stream {
-    std::uint32_t sequence = 0;                                  // of the next message
-    std::uint64_t messages = 0;                                  // in written chunks
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  // of the chunk: time, offset
+    std::uint32_t sequence = 0;  // number of the next message
+    std::uint64_t messages = 0;  // number of messages in written chunks
+    // Time and offset of each message of the chunk.
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;
   };
   struct Span {
     std::uint64_t first = 0;
@@ -75,14 +76,14 @@ class McapWriter {
   ByteSink& sink_;
   std::size_t chunk_bytes_;
   std::uint64_t offset_ = 0;  // bytes written
-  Crc32 crc_;                 // of the bytes written
+  Crc32 crc_;                 // CRC of the bytes written
   std::vector<Stream> streams_;
   std::string schemas_;  // records for the summary
   std::string channels_;
   std::string chunk_indexes_;
   std::string chunk_;  // records of the chunk that is being filled
   Span chunk_times_;
-  Span times_;  // of the written chunks
+  Span times_;  // times of the written chunks
   std::uint32_t chunks_ = 0;
   std::uint64_t messages_ = 0;
   bool full_ = false;

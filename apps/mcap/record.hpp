@@ -33,14 +33,14 @@ void put(std::string& out, Number value) {
   }
 }
 
-/// Appends a text with its length in front, 32 bits.
+/// Appends the length of a text as 32 bits, and then the text.
 inline void put_text(std::string& out, std::string_view text) {
   put(out, static_cast<std::uint32_t>(text.size()));
   out += text;
 }
 
-/// Appends what is put into `out` during its life with its length in front. `Length` is the type of
-/// that number.
+/// Appends a length, and then what is put into `out` during the life of this object. `Length` is
+/// the type of the length.
 template <std::unsigned_integral Length>
 class Counted {
  public:
@@ -62,7 +62,7 @@ class Counted {
   std::size_t begin_;
 };
 
-/// Appends a record: its content is what is put into `out` during the life of this object.
+/// Appends a record, whose content is what is put into `out` during the life of this object.
 class Record {
  public:
   Record(std::string& out, Opcode opcode) : content_{(put_opcode(out, opcode), out)} {}

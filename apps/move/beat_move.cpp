@@ -17,7 +17,7 @@ constexpr std::chrono::milliseconds stop_pause{10};
 /// After this number of images, taktd has taken a command. The set-points of taktd are at most
 /// three cycles ahead of the images.
 constexpr int images_to_stop = 20;
-/// The move stops if this program is silent for so long, as its set-points would end.
+/// The move stops if this program is silent for this time, as a move by set-points would stop.
 constexpr std::int32_t timeout_ms = 1000;
 /// Values of axis_motion_t::state and axis_motion_t::outcome.
 constexpr std::int8_t not_enabled = 0;

@@ -17,7 +17,7 @@ namespace takt {
 /// While the axes move, only this class sends: taktd refuses set-points of a moving axis.
 class BeatMove {
  public:
-  /// How a move stands.
+  /// The states of a move.
   enum class Course : std::uint8_t {
     unanswered,  ///< taktd has not taken the command.
     runs,        ///< At least one axis moves or stops.

@@ -29,12 +29,13 @@ class MoveRun {
 
  private:
   using Trajectory = std::function<Eigen::VectorXd(double seconds)>;
-  /// How often a move has begun again after pauses, and what that has brought.
+  /// The number of times that a move has begun again after pauses, and the success of the new
+  /// begins.
   struct NewBegins {
     double whole;                  ///< first distance from the target
     double distance_then = whole;  ///< distance at the newest begin
-    int count = 0;                 ///< of all new begins
-    int vain = 0;                  ///< of those in sequence that came no nearer to the target
+    int count = 0;                 ///< number of all new begins
+    int vain = 0;  ///< number of new begins in sequence that came no nearer to the target
 
     void next(double distance);
   };

@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// Why taktd has stopped motions: the newest of its events `motion_stopped`.
+/// The reasons why taktd has stopped motions, from its newest events `motion_stopped`.
 class StopReasons {
  public:
   /// Keeps the event if it has the reason of a stop.

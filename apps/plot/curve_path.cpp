@@ -35,7 +35,7 @@ std::vector<PlotPoint> outermost(const std::vector<PlotPoint>& points) {
   return kept;
 }
 
-/// How far a point is above or below the line between two others.
+/// Returns how far a point is above or below the line between two others.
 double apart(const PlotPoint& point, const PlotPoint& from, const PlotPoint& to) {
   if (to.x <= from.x) return 1e9;
   const double part = (point.x - from.x) / (to.x - from.x);

@@ -5,7 +5,7 @@
 
 namespace takt {
 
-/// How a curve is drawn. A thin curve on a broad one of the same colour leaves both visible.
+/// The width of the line of a curve.
 enum class Stroke : std::uint8_t { thin, broad };
 
 /// One curve of a panel: a value for each time of the plot. NaN leaves a gap.

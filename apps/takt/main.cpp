@@ -18,7 +18,7 @@ namespace {
 using namespace takt;
 
 struct Command {
-  const char* group;  ///< its heading in the help text; empty: not listed
+  const char* group;  ///< heading of the group in the help text; empty: not listed
   AddCommand add;
 };
 

@@ -16,9 +16,9 @@ namespace takt {
 /// class does no input or output: it takes frames and messages and returns sentences.
 class OtherMaster {
  public:
-  /// How a BUS_STATUS of another session counts. The message does not prove who sent it. On a bus
-  /// with keys it therefore only causes a warning: a refusal would let everybody on LCM keep this
-  /// master from starting.
+  /// The effect of a BUS_STATUS of another session. The message does not prove who sent it. On a
+  /// bus with keys it therefore only causes a warning: a refusal would let everybody on LCM keep
+  /// this master from starting.
   enum class StatusCounts : std::uint8_t { as_refusal, as_warning };
 
   /// `bus` is the name of the bus in sentences; `session` is the session of this daemon.

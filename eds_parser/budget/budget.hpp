@@ -44,10 +44,10 @@ struct BudgetRow {
   }
 };
 
-/// Whether the frames of a network fit its bus.
+/// The result of the check whether the frames of a network fit its bus.
 struct BusBudget {
   BusLoad load{};
-  std::vector<BudgetRow> rows;     ///< in order of priority
+  std::vector<BudgetRow> rows;     ///< rows in order of priority
   unsigned service_dialogues = 0;  ///< SDO requests with answers in one `service_round`
   Time service_round{};
   std::vector<std::string> assumptions{};  ///< one sentence each

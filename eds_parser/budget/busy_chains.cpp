@@ -3,7 +3,7 @@
 namespace takt {
 namespace {
 
-constexpr int longest_chain = 32;  // in cycles
+constexpr int longest_chain = 32;  // length in cycles
 
 }  // namespace
 

@@ -23,12 +23,12 @@ class BusyChains : protected CycleFrames {
     Time since{};        ///< begin of the period
     Time work{};         ///< bus time of the frames that certainly go before the frame
     Time own{};          ///< bus time of the frame itself
-    std::optional<std::size_t> input{};  ///< for a TPDO: number of the SYNC that it follows
+    std::optional<std::size_t> input{};  ///< for a TPDO: number of the SYNC that the TPDO follows
     bool output = false;
     int rounds = 0;  ///< rounds of SDO requests whose answers may come; 0 = no limit
   };
 
-  /// How the analysis treats outputs that may end after the next SYNC is due. SYNC leaves the same
+  /// The treatment of outputs that may end after the next SYNC is due. SYNC leaves the same
   /// transmit queue.
   enum class LateSync : std::uint8_t {
     in_time,      ///< no output ends that late
@@ -73,8 +73,8 @@ class BusyChains : protected CycleFrames {
   /// lowest frame of the master's queue although they do not go before `at`.
   Time follow_up(const Busy& busy, int cycles) const;
 
-  /// How late SYNC may be because it waits behind the outputs of the previous cycle in the same
-  /// transmit queue.
+  /// Returns the largest delay of SYNC while it waits behind the outputs of the previous cycle in
+  /// the same transmit queue.
   Time sync_late() const noexcept {
     if (!plan_.cycle.makes_sync()) return Time{0};
     return std::max(std::max(outputs_end_, services_end_) - plan_.cycle.period, Time{0});

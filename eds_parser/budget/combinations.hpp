@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// Whether a network with these changes fits.
+/// Returns true if a network with these changes fits.
 using ChangeFits = std::function<bool(const WhatIf&)>;
 
 /// Returns at most three combinations of changes, the cheapest first. Each combines two or more

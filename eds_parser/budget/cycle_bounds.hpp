@@ -7,13 +7,13 @@
 
 namespace takt {
 
-/// Which EMCYs the analysis counts.
+/// The EMCYs that the analysis counts.
 enum class Emcys : std::uint8_t {
   none,
   one_of_each,  ///< every node sends one at the same moment
 };
 
-/// Whether the service frames of the master delay the frames that it sends after them.
+/// States whether the service frames of the master delay the frames that it sends after them.
 enum class Services : std::uint8_t {
   apart,     ///< no: they wait in a separate queue unless they have already begun
   in_queue,  ///< yes: one queue holds all frames of the master, as in SocketCAN
@@ -26,7 +26,7 @@ struct OtherTraffic {
 };
 
 struct CycleBounds {
-  std::vector<std::optional<Time>> ends;  ///< in the order of `traffic.frames`
+  std::vector<std::optional<Time>> ends;  ///< ends in the order of `traffic.frames`
   Time outputs_wait{};  ///< in_queue: how long the outputs wait behind service frames
 };
 

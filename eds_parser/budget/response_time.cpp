@@ -6,7 +6,7 @@ namespace takt {
 namespace {
 
 constexpr Time longest_busy_period = std::chrono::seconds{10};  // no bound beyond this
-constexpr Time::rep recovery_bits = 31;  // from an error until the bus is free
+constexpr Time::rep recovery_bits = 31;  // bits from an error until the bus is free
 
 Time::rep ceil_div(Time time, Time by) noexcept {
   return time <= Time{0} ? 0 : (time.count() + by.count() - 1) / by.count();
@@ -80,7 +80,7 @@ class Analysis {
     }
   }
 
-  /// How long the last frame of instance q waits for the bus.
+  /// Returns how long the last frame of instance q waits for the bus.
   std::optional<Time> queueing(Time::rep q) const noexcept {
     const Time before = ((q + 1) * own_.burst - 1) * own_.frame;
     Time wait = blocking_ + before;

@@ -12,9 +12,9 @@ namespace takt {
 struct FrameStream {
   std::uint64_t priority =
       0;  ///< a smaller value goes first, equal values in any order; on CAN this is the identifier
-  Time frame{};        ///< with worst stuffing and interframe space
-  Time period{};       ///< shortest distance between two frames; > 0
-  Time jitter{};       ///< how much later than its period a frame may be queued
+  Time frame{};   ///< longest time of the frame, with the worst stuffing and the interframe space
+  Time period{};  ///< shortest distance between two frames; > 0
+  Time jitter{};  ///< how much later than its period a frame may be queued
   unsigned burst = 1;  ///< number of frames at once in each period
   bool counts = true;  ///< false: this stream delays no other stream
 };

@@ -35,11 +35,12 @@ enum class Traffic : std::uint8_t {
 /// The reason for which a frame must have ended at some time.
 enum class BudgetLimit : std::uint8_t {
   none,
-  receive_window,   ///< of the master; a PDO that ends later counts as missing
-  output_deadline,  ///< of the master, if it is earlier than the end of the receive window
-  sync_window,      ///< 0x1007 of the devices
-  own_period,       ///< the next frame of the same kind comes
-  timeout,          ///< the receiver's time-out expires: SDO time-out, heartbeat consumer
+  receive_window,  ///< receive window of the master; a PDO that ends later counts as missing
+  /// Output deadline of the master, if it is earlier than the end of the receive window.
+  output_deadline,
+  sync_window,  ///< 0x1007 of the devices
+  own_period,   ///< the next frame of the same kind comes
+  timeout,      ///< the receiver's time-out expires: SDO time-out, heartbeat consumer
 };
 
 /// All frames of one identifier and sender.

@@ -73,7 +73,7 @@ class EntryCheck {
   const ObjectDictionary& dictionary_;
   const MappedObject& mapped_;
   bool is_tpdo_;
-  ObjectKey record_;  ///< for example 1A00 sub 2
+  ObjectKey record_;  ///< object of the mapping entry, for example 1A00 sub 2
   Report& report_;
 };
 

@@ -50,7 +50,7 @@ struct SubObject {
   std::optional<Value> high_limit;
   std::optional<Value> default_value;    ///< $NODEID is resolved; empty if the node-ID is unknown
   std::optional<Value> parameter_value;  ///< ParameterValue of a DCF
-  std::string default_text;              ///< as written
+  std::string default_text;              ///< the value as written
   std::string parameter_text;
   std::string denotation;
 
@@ -73,7 +73,8 @@ struct SubObject {
 struct Object {
   std::uint16_t index = 0;
   std::string name;
-  std::string denotation;  ///< for an ARRAY or RECORD as a whole; a VAR has its denotation in sub 0
+  /// Denotation of an ARRAY or RECORD as a whole; a VAR has its denotation in sub 0.
+  std::string denotation;
   ObjectType type = ObjectType::var;
   ObjectList list = ObjectList::unlisted;
   std::vector<SubObject> subs;  ///< in ascending order; a VAR has exactly sub 0
@@ -136,7 +137,7 @@ struct FileInfo {
   std::string modification_date;
   std::string modification_time;
   std::string modified_by;
-  std::string last_eds;  ///< for a DCF: the EDS that it was made from
+  std::string last_eds;  ///< for a DCF: the EDS from which the DCF was made
 };
 
 /// [ToolN]: a program of the vendor for this device.
@@ -172,8 +173,8 @@ struct ParameterReference {
 struct ModuleInfo {
   std::uint16_t number = 0;  ///< x of [MxModuleInfo]
   std::string product_name;
-  std::string product_version;   ///< as written
-  std::string product_revision;  ///< as written
+  std::string product_version;   ///< the text as written
+  std::string product_revision;  ///< the text as written
   std::string order_code;
 };
 
@@ -187,7 +188,7 @@ struct ObjectLinks {
 struct DynamicChannel {
   std::uint16_t type_code = 0;
   DataType type = DataType::unknown;
-  Access direction = Access::ro;  ///< as other devices see these objects
+  Access direction = Access::ro;  ///< access from the view of other devices
   std::uint16_t first = 0;        ///< first index
   std::uint16_t last = 0;
   std::uint32_t offset = 0;  ///< PPOffset: offset in the process picture of the program

@@ -47,7 +47,7 @@ std::optional<std::uint64_t> default_value(const IniEntries& entries) noexcept {
 /// The sections of the sub-objects of one index, in the order of the file.
 struct Subs {
   std::vector<IniSection*> sections;
-  std::set<std::uint32_t> numbers;  ///< in decimal, without sub 0
+  std::set<std::uint32_t> numbers;  ///< sub-indices in decimal, without sub 0
   std::optional<std::uint64_t> declared_highest;
   bool all_decimal = true;
   bool beyond_ff = false;

@@ -14,14 +14,14 @@ namespace takt {
 /// A compiled network file with its EDS files. It is usable only if `findings` holds no error.
 struct LoadedNetwork {
   BusPlan plan;
-  std::vector<DeviceTable> devices;  ///< for the simulation; in the order of plan.nodes
+  std::vector<DeviceTable> devices;  ///< devices for the simulation; in the order of plan.nodes
   /// Absolute paths of the EDS and DCF files, in the order of plan.nodes; empty if not found.
   std::vector<std::string> device_files;
   RealtimeOptions realtime;
   LcmOptions lcm;
   RecordingOptions recording;
   bool bus_named = false;  ///< the file names the bus or its interface; else plan.name is "sim"
-  Findings findings;       ///< of the network file and of the device files it names
+  Findings findings;       ///< findings of the network file and of the device files it names
 };
 
 /// States whether the device data apply to the nodes. `ignored` is only meant for a comparison that

@@ -241,7 +241,7 @@ class ModuleSections::Expansion {
   Report& report_;
   ObjectDictionary& dictionary_;
   ObjectReader& reader_;
-  std::map<std::uint32_t, SubExtension> extensions_;  ///< by section number
+  std::map<std::uint32_t, SubExtension> extensions_;  ///< keys are section numbers
   std::vector<Fill> fills_;                           ///< in ascending order of first_index
   std::map<std::uint16_t, Object> made_;  ///< objects that the dictionary does not have yet
   ExpansionBudget budget_;

@@ -50,7 +50,7 @@ struct DeviceFact {
   std::string reason;
 };
 
-/// How the event timer of a TPDO and its events affect each other.
+/// The effects of the event timer of a TPDO and its events on each other.
 enum class TimerMeaning : std::uint8_t {
   restarts,    ///< Every transmission restarts the timer, as CiA 301 demands.
   additional,  ///< The timer sends in addition to events, and events do not shift it.
@@ -79,7 +79,8 @@ struct PdoRule {
 struct InhibitRule {
   DeviceFact fact;
   std::uint32_t unit_us = 100;
-  std::uint32_t least = 0;    ///< in units of unit_us; the device uses this value for shorter times
+  /// Shortest time, in units of unit_us; the device uses this value for shorter times.
+  std::uint32_t least = 0;
   std::uint32_t factory = 0;  ///< default in units of unit_us; 0 means unknown
 
   constexpr std::uint64_t us(std::uint32_t units) const noexcept {

@@ -166,7 +166,7 @@ struct AxisFeedForwardOverrideSpec {
 struct FeedForwardSpec {
   bool given = false;
   SourcePos pos;
-  AxisFeedForwardSpec all;  ///< of every axis of the device
+  AxisFeedForwardSpec all;  ///< values for every axis of the device
   /// `axes: {2: {...}}`; each given value overrides the same value of `all`.
   std::vector<AxisFeedForwardOverrideSpec> axes;
 
@@ -205,7 +205,7 @@ struct AxisHomingOverrideSpec {
 struct HomingSpec {
   bool given = false;
   SourcePos pos;
-  AxisHomingSpec all;  ///< of every axis of the device
+  AxisHomingSpec all;  ///< values for every axis of the device
   /// `axes: {2: {...}}`; each given value overrides the same value of `all`.
   std::vector<AxisHomingOverrideSpec> axes;
 

@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// How the raw counts of a CiA 402 object relate to its quantity.
+/// The relation between the raw counts of a CiA 402 object and its quantity.
 struct ObjectQuantity {
   Quantity quantity = Quantity::position;
   /// `sign` applies. If false, the value is a magnitude, such as a limit or a window.

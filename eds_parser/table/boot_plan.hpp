@@ -61,7 +61,7 @@ struct BootStep {
   char letter = 'J';  ///< error status of CiA 302-2 (A..O) when the step fails
   ObjectKey object{};
   std::vector<std::byte> value{};    ///< little endian, as sent on the wire
-  std::uint32_t mask = 0xFFFF'FFFF;  ///< for values up to 4 bytes
+  std::uint32_t mask = 0xFFFF'FFFF;  ///< mask for values up to 4 bytes
   NmtCommand command = NmtCommand::start;
   std::uint16_t target = 0;
   char unread_letter = 0;    ///< compare, expect: status if `object` can't be read; 0 = `letter`

@@ -103,40 +103,42 @@ struct FeedForwardPlan {
 /// One CiA 402 axis of a device, as the ordered stop sees it. Values are raw units of the device.
 struct AxisPlan {
   std::uint8_t number = 0;  ///< counts from 0; the axis's objects are 0x800 x number higher
-  std::int64_t velocity_window = 10;  ///< of 0x606C; below this the axis counts as standing still
+  /// Window of 0x606C; at lower speeds the axis counts as standing still.
+  std::int64_t velocity_window = 10;
   /// Change of 0x6064 in 50 ms below which the axis counts as standing still.
   std::int64_t position_window = 10;
-  Time stopping_time{};                ///< of a quick stop from its velocity limit; 0 = not known
+  /// Time of a quick stop from the velocity limit of the axis; 0 = not known.
+  Time stopping_time{};
   std::int16_t quick_stop_option = 2;  ///< 0x605A; the boot reads what the device has
   std::uint16_t ramp_object = 0;       ///< 0x6085 or 0x6084; 0 = not known
-  RawUnit velocity_unit{};             ///< of 0x606C
-  RawUnit position_unit{};             ///< of differences of 0x6064
+  RawUnit velocity_unit{};             ///< unit of 0x606C
+  RawUnit position_unit{};             ///< unit of differences of 0x6064
   std::optional<HomingPlan> homing{};  ///< empty: the network file says nothing about homing
   std::optional<FeedForwardPlan> feed_forward{};  ///< empty: motions do not command 0x60B2
 };
 
 /// One device as the master sees it.
 struct NodePlan {
-  std::string name;  ///< from the network file: "shoulder"
+  std::string name;  ///< name in the network file: "shoulder"
   NodeId id;
   std::string description_file{};  ///< EDS or DCF, as written in the network file
   std::string product_name{};
   bool boot = true;        ///< false: the master only watches it, without NMT and SDO
-  bool mandatory = false;  ///< its failure ends taktd with exit code 4
+  bool mandatory = false;  ///< the failure of the node ends taktd with exit code 4
   bool cia402 = false;     ///< axis features: ordered stop, quick stop fallback
   BootPlan boot_plan{};
   std::optional<LssPlan> lss{};              ///< how it gets its node-ID by LSS if it has none
   Time heartbeat_timeout{};                  ///< longest silence; 0 = not watched
   GuardPlan guard{};                         ///< only for a node without heartbeat
   Time heartbeat_period{};                   ///< producer time of the device; 0 = not known
-  std::vector<HeartbeatConsumer> watches{};  ///< its heartbeat consumers after the boot
+  std::vector<HeartbeatConsumer> watches{};  ///< heartbeat consumers of the device after the boot
   bool consumes_master = true;               ///< `heartbeat_consumer`: it may watch the master
   Time life_guarding{};                      ///< longest pause of guarding it accepts; 0 = no limit
   std::optional<CobId> emcy_cob_id{};        ///< empty = 0x080 + node-ID
   bool start_later = false;  ///< StartUpPlan::start_all starts it, not its boot plan
   LossReaction on_loss = LossReaction::report;
   std::uint8_t group = 0;  ///< index into BusPlan::groups + 1; 0 = no group
-  Time sdo_timeout{};      ///< of SDO requests; boot steps have their own limits
+  Time sdo_timeout{};      ///< timeout of SDO requests; boot steps have their own limits
   SdoAccess sdo{};
   Time reboot_delay{};             ///< pause before a failed boot is tried again; doubles each time
   Time longest_reboot_delay{};     ///< upper limit of this pause
@@ -161,7 +163,8 @@ enum class SyncLoss : std::uint8_t {
   stop,      ///< NMT stop to all nodes except the producer; NMT start when SYNC is back
 };
 
-/// How the master disarms the supervision in the devices at the end of a confirmed ordered stop.
+/// The way in which the master disarms the supervision in the devices at the end of a confirmed
+/// ordered stop.
 enum class StopDisarm : std::uint8_t {
   sdo,                  ///< 0 is written to 0x1016, 0x1006, 0x100C and 0x100D
   reset_communication,  ///< NMT reset communication is the last command
@@ -169,11 +172,12 @@ enum class StopDisarm : std::uint8_t {
 
 /// SYNC and the times of a cycle. All times count from SYNC.
 struct CyclePlan {
-  Time period{};                          ///< of SYNC, or of the image if there is no SYNC
-  bool sync = true;                       ///< false: there is no SYNC
-  bool sync_followed = false;             ///< another device sends SYNC
-  std::optional<NodeId> sync_producer{};  ///< that device, if the network file names it
-  Time sync_timeout{};                    ///< silence after which a followed SYNC counts as lost
+  Time period{};               ///< period of SYNC, or of the image if there is no SYNC
+  bool sync = true;            ///< false: there is no SYNC
+  bool sync_followed = false;  ///< another device sends SYNC
+  /// Device that produces SYNC, if the network file names it.
+  std::optional<NodeId> sync_producer{};
+  Time sync_timeout{};  ///< silence after which a followed SYNC counts as lost
   SyncLoss on_sync_loss = SyncLoss::fallback;
   CobId sync_cob_id = CobId::base(0x080);
   std::uint8_t sync_overflow = 0;  ///< 0x1019; 0 = SYNC without counter

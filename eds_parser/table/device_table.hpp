@@ -35,11 +35,11 @@ struct DeviceTable {
   NodeId node;
   std::string name;
   std::vector<DeviceObject> objects{};  ///< in ascending order of their keys
-  std::uint8_t granularity = 8;         ///< of PDO mapping, in bits; 0 = the mapping is fixed
-  std::uint8_t dummy_usage = 0;         ///< bit n set: data type n may be mapped as a dummy
-  std::string model;                    ///< "drive402", "io401", "lenze8400", "plain" ...
-  std::vector<std::string> quirks;      ///< "late_bootup", ...
-  std::string firmware{};               ///< "15.02.00"; empty = the newest that the model knows
+  std::uint8_t granularity = 8;  ///< granularity of PDO mapping, in bits; 0 = the mapping is fixed
+  std::uint8_t dummy_usage = 0;  ///< bit n set: data type n may be mapped as a dummy
+  std::string model;             ///< "drive402", "io401", "lenze8400", "plain" ...
+  std::vector<std::string> quirks;  ///< "late_bootup", ...
+  std::string firmware{};           ///< "15.02.00"; empty = the newest that the model knows
   /// The mechanics behind the axes of a `drive402`. Empty: each motor is a simple lag.
   std::optional<MechanicsTable> mechanics{};
 };

@@ -8,7 +8,7 @@ namespace takt {
 /// number (0x1018:01..04). CiA 305, 3.1.
 using LssAddress = std::array<std::uint32_t, 4>;
 
-/// How a node that has no node-ID gets one by LSS.
+/// The way in which a node that has no node-ID gets one by LSS.
 struct LssPlan {
   LssAddress address{};
   LssAddress known{};  ///< mask of the known bits of `address`; fastscan finds the others

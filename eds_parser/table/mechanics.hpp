@@ -40,7 +40,7 @@ struct ControllerParameters {
 };
 
 struct EncoderParameters {
-  double increments = 131072;  ///< in a turn of the motor
+  double increments = 131072;  ///< increments in a turn of the motor
   double dead_time = 0;        ///< s, age of the actual values that the drive reports
 };
 
@@ -80,7 +80,7 @@ struct MechanicsTable {
 
 /// The controllers and the integration of a simulated axis have this period, in seconds.
 inline constexpr double mechanics_tick = 2.5e-4;
-inline constexpr double mechanics_ticks = 4000;  ///< in a second
+inline constexpr double mechanics_ticks = 4000;  ///< number of steps in a second
 /// Largest number of steps of the integration within this period.
 inline constexpr int most_mechanics_steps = 8;
 

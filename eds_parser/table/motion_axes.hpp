@@ -53,7 +53,7 @@ struct MotionAxis {
   /// 60B2, if the network file has a feed-forward of torque.
   std::optional<SignalIndex> torque_offset{};
   FeedForwardPlan feed_forward{};
-  Turn turn{};                ///< of the target and of the position
+  Turn turn{};                ///< turn of the target and of the position
   bool needs_homing = false;  ///< `homing:` of the network file requires it
   Time homing_timeout{};      ///< longest time of a homing run
 };

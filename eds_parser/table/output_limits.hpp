@@ -28,7 +28,7 @@ enum class LimitKind : std::uint8_t {
 /// The kind of a set-point of an axis. It decides in which modes the axis follows the set-point.
 enum class AxisQuantity : std::uint8_t { none, position, velocity, torque };
 
-/// Where a limit comes from.
+/// The source of a limit.
 enum class LimitSource : std::uint8_t {
   none,    ///< no limit is known
   file,    ///< `limits:` of the network file
@@ -46,7 +46,7 @@ struct LimitLine {
   std::optional<double> high{};  ///< upper limit or greatest magnitude
   std::string unit{};
   double scale = 1.0;   ///< `source` device: limit = value of the object x scale + offset,
-  double offset = 0.0;  ///< in `unit`
+  double offset = 0.0;  ///< offset in `unit`
   std::vector<SignalIndex> signals{};  ///< outputs that are checked; empty = no check
   std::string proposal{};              ///< `velocity: 2.5`; only if there is no limit
   std::string because{};               ///< reason for the proposal
@@ -64,23 +64,25 @@ struct OutputLimit {
   double high = none;
   LimitKind range = LimitKind::range;  ///< quantity that `low` and `high` bound
   double step = none;                  ///< greatest difference in one cycle
-  double rate = none;                  ///< as `step`, derived from a velocity or an acceleration
+  double rate = none;  ///< limit of the kind of `step`, derived from a velocity or an acceleration
   LimitKind rate_of = LimitKind::velocity;
   double bend = none;    ///< greatest change of the difference (acceleration), per cycle squared
   double modulus = 0.0;  ///< differences count modulo this; 0 = no modulo
   double lowest = 0.0;   ///< the position at which a range of `modulus` counts begins
   bool wraps = false;    ///< differences count modulo the width of the object
   AxisQuantity quantity = AxisQuantity::none;
-  std::optional<SignalIndex> offset{};       ///< of a target: the output that the drive adds to it
-  std::optional<SignalIndex> target{};       ///< of an offset: the output that it is added to
+  /// For a target: the output that the drive adds to the target.
+  std::optional<SignalIndex> offset{};
+  std::optional<SignalIndex> target{};  ///< for an offset: the output to which the offset is added
   std::optional<SignalIndex> controlword{};  ///< 6040 of the axis, for a position
   /// 6064 of a position, 606C of a target velocity: value from which the first set-point may start.
   std::optional<SignalIndex> feedback{};
   std::optional<SignalIndex> statusword{};    ///< shows whether the drive follows set-points
   std::optional<SignalIndex> mode{};          ///< 6060, if it is an output
   std::optional<SignalIndex> mode_display{};  ///< 6061
-  std::optional<SpeedOrders> orders{};        ///< of a set speed: effect of `controlword` on it
-  std::optional<std::int64_t> fixed_mode{};   ///< mode that the file sets, if 6060 is no output
+  /// For a set speed: effect of `controlword` on the set speed.
+  std::optional<SpeedOrders> orders{};
+  std::optional<std::int64_t> fixed_mode{};  ///< mode that the file sets, if 6060 is no output
 };
 
 /// The field of OutputLimit that a value read from a device sets.
@@ -110,7 +112,7 @@ constexpr ObjectKey upper_object(const DeviceLimit& limit) noexcept {
 /// The value of a limit, or of a quick stop option code, that a boot has read.
 struct LimitReading {
   ObjectKey object{};
-  std::uint32_t value = 0;  ///< of an object of 16 bits in the lower half
+  std::uint32_t value = 0;  ///< the value; that of an object of 16 bits is in the lower half
 };
 
 /// All limits of a bus.

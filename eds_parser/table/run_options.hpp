@@ -26,7 +26,7 @@ struct RealtimeOptions {
 
 /// `black_box:` of the network file.
 struct RecordingOptions {
-  std::string folder;            ///< of the recordings; empty = no recordings
+  std::string folder;            ///< folder of the recordings; empty = no recordings
   std::size_t bytes = 16 << 20;  ///< size of each of the two tapes in memory
   std::size_t keep = 20;         ///< number of recordings of this bus; older ones are removed
 };

@@ -35,7 +35,7 @@ struct SdoObjectTimeout {
   Time timeout{};
 };
 
-/// How the master accesses the SDO server of one node.
+/// The settings with which the master accesses the SDO server of one node.
 struct SdoAccess {
   std::optional<SdoChannel> channel{};  ///< empty = the default channel
   SdoBlockUse block = SdoBlockUse::automatic;

@@ -22,13 +22,13 @@ struct WordPattern {
   }
 };
 
-/// How the control word of a speed axis leads the drive from one state to the next.
+/// The way in which the control word of a speed axis leads the drive from one state to the next.
 enum class SpeedSequence : std::uint8_t {
   words,   ///< each command is one value of the control word
   cia402,  ///< the state machine of CiA 402; bits 4 to 6 of the controlword run the ramp (mode vl)
 };
 
-/// When a drive obeys the command "fault reset".
+/// The moment at which a drive obeys the command "fault reset".
 enum class FaultReset : std::uint8_t {
   edge,   ///< at the change from another command to this one
   level,  ///< while the command is there
@@ -67,7 +67,7 @@ struct SpeedAxisPlan {
   std::optional<SignalIndex> actual_speed{};
   SpeedCommands commands{};
   SpeedStates states{};
-  std::string unit{};           ///< of speeds: "rpm", "Hz"
+  std::string unit{};           ///< unit of speeds: "rpm", "Hz"
   double set_scale = 1.0;       ///< speed = raw set speed x set_scale
   double actual_scale = 1.0;    ///< speed = raw actual speed x actual_scale
   double max_speed = 0;         ///< `limits: {velocity}` in `unit`; 0 = none

@@ -12,7 +12,8 @@ namespace takt::waits {
 using namespace std::chrono_literals;
 
 // SDO
-inline constexpr std::uint8_t upload_attempts = 3;  ///< of a boot step; a download is sent once
+/// Attempts of a boot step; a download is sent once.
+inline constexpr std::uint8_t upload_attempts = 3;
 inline constexpr Time probe_try = 500ms;
 inline constexpr Time probe_pause = 50ms;
 inline constexpr Time poll_pause = 100ms;  ///< CiA 302-3, flash status
@@ -37,14 +38,15 @@ constexpr Time pdo_turn(Time timeout) noexcept {
 
 // LSS
 inline constexpr Time lss_answer = 1s;
-inline constexpr Time lss_store = 5s;   ///< flash
-inline constexpr Time lss_all = 100ms;  ///< for the answers of all devices; always waited in full
-inline constexpr Time lss_shortest = 10ms;  ///< for the same answers within a scan
+inline constexpr Time lss_store = 5s;  ///< flash
+/// Wait for the answers of all devices; always waited in full.
+inline constexpr Time lss_all = 100ms;
+inline constexpr Time lss_shortest = 10ms;  ///< wait for these answers within a scan
 inline constexpr Time lss_look_again = 1s;
 inline constexpr Time lss_let_boot = 5s;
 
 // SYNC
-inline constexpr Time first_sync = 1s;  ///< for the SYNC of another device
+inline constexpr Time first_sync = 1s;  ///< wait for the SYNC of another device
 inline constexpr Time held_sync_first = 100ms;
 inline constexpr Time held_sync_longest = 30s;
 

@@ -33,8 +33,8 @@ constexpr std::array<std::string_view, 11> object_keys{
 /// would take effect.
 constexpr auto corrected_keys = std::span{object_keys}.first<2>();
 
-/// Which errors of an object are not mended, because mending them would change the meaning of the
-/// file.
+/// The errors of an object that stay in the file, because a correction would change the meaning of
+/// the file.
 enum class Left : std::uint8_t { slips, all };
 
 using LeftObjects = std::map<std::uint16_t, Left>;
@@ -280,7 +280,7 @@ class FixPass {
   SectionIndex sections_;
   TextEdits edits_;
   std::set<std::uint32_t> touched_;  ///< lines that already have an edit
-  std::set<std::uint32_t> done_;     ///< those whose edit mends all their findings
+  std::set<std::uint32_t> done_;     ///< objects whose edit mends all their findings
   ListFix lists_;
   std::map<std::uint32_t, const IniSection*> section_at_;
   std::map<std::uint32_t, Place> entry_at_;

@@ -10,7 +10,7 @@
 
 namespace takt {
 
-/// Why an SDO transfer ended without its data. CiA 301, 7.2.4.
+/// The reason why an SDO transfer ended without its data. CiA 301, 7.2.4.
 enum class SdoFault : std::uint8_t {
   none,
   aborted_by_device,  ///< The device has aborted the transfer; abort_code says why.

@@ -113,7 +113,7 @@ bool Bridge::serve() {
   serve_requests();
   take_events();
   publish_states(some);
-  notice_gap();  // this thread may not have run for a while since it looked for messages
+  notice_gap();  // the thread may not have run for a while since it looked for messages
   gap_.sleeps_until(first_state().next);
   return some;
 }
@@ -247,7 +247,7 @@ bool Bridge::command(const std::string& sender, std::span<const SignalIndex> sig
   command.session = options_.session;
   command.instance = instance_;
   command.sender = sender;
-  notice_gap();  // this thread may not have run for a while since it looked for this line
+  notice_gap();  // the thread may not have run for a while since it looked for this line
   const Time now = clocks_.now();
   command.num_values = static_cast<std::int32_t>(signals.size());
   for (const SignalIndex signal : signals) {

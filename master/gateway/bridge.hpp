@@ -189,7 +189,8 @@ class Bridge {
   std::vector<speed_axes_t> speed_messages_;
   StatusMessages status_messages_;
   TimingMessages timing_messages_;
-  Histogram sync_to_lcm_;  // from SYNC until the image, with its typed messages, is handed over
+  // Time from SYNC until the image, with its typed messages, is handed over.
+  Histogram sync_to_lcm_;
   Commands commands_;
   MotionCommands motions_;
   MotionSnapshot motion_reports_;
@@ -203,7 +204,7 @@ class Bridge {
   RateLimit damaged_{std::chrono::seconds{10}};
   std::vector<std::byte> buffer_;
   StatusSnapshot snapshot_;
-  std::uint64_t status_version_ = 0;  ///< of `snapshot_`
+  std::uint64_t status_version_ = 0;  ///< version of the status in `snapshot_`
   std::vector<PdoMark> marks_;        // marks of the newest image
   EmcyLog emcy_log_;
   Time wall_minus_monotonic_{};

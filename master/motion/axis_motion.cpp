@@ -100,7 +100,7 @@ std::optional<double> time_to_reach(const FarthestMotion& motion, double distanc
   const double high = std::max(low, bent);
   const auto end = motion.reach(high);
   if (end.distance >= distance) return crossing(motion, distance, low, high, high);
-  if (high < last) {  // it cruises
+  if (high < last) {  // the axis cruises
     const double time = high + (distance - end.distance) / end.slope;
     if (time <= last) return time;
   }

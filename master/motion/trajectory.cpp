@@ -11,7 +11,8 @@
 namespace takt::motion {
 namespace {
 
-constexpr int most_tries = 50;   ///< of durations, to stay inside a range of positions
+/// Largest number of durations that are tried to stay inside a range of positions.
+constexpr int most_tries = 50;
 constexpr int most_passes = 50;  ///< over all axes, to find a duration that is possible for all
 
 bool all_finite(const AxisTask& task) noexcept {

@@ -7,7 +7,7 @@
 
 namespace takt::motion {
 
-/// How the motions of several axes are synchronised.
+/// The synchronisation of the motions of several axes.
 enum class Synchronisation : std::uint8_t {
   none,   ///< each axis takes its shortest time
   time,   ///< all axes arrive at the same time

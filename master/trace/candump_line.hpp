@@ -10,7 +10,7 @@ namespace takt {
 /// One line of candump, in its log format (`-L`) or in its terminal format, with or without a time
 /// stamp.
 struct CandumpLine {
-  std::string stamp{};  ///< as written, without brackets; may be empty
+  std::string stamp{};  ///< text of the time stamp as written, without brackets; may be empty
   std::string interface{};
   Frame frame{};
   bool error_frame = false;  ///< true: error frame; `frame.id` is its class, `frame` its bytes

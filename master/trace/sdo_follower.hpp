@@ -23,7 +23,7 @@ struct SeenTransfer {
   std::optional<std::uint32_t> announced{};  ///< announced size of a segmented transfer, in bytes
   std::size_t length = 0;                    ///< bytes in the frames that were seen
   std::vector<std::uint8_t> value{};
-  Extent extent = Extent::whole;  ///< which part of the value is known
+  Extent extent = Extent::whole;  ///< the part of the value that is known
   std::optional<std::uint32_t> abort_code{};
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 using Words = std::span<const std::string_view>;
 
-constexpr const char* unnamed_interface = "can0";  // for a trace without names
+constexpr const char* unnamed_interface = "can0";  // name for a trace without names
 
 bool is_direction(std::string_view word) { return word == "Rx" || word == "Tx"; }
 

@@ -9,7 +9,7 @@
 
 namespace takt {
 
-/// How to interpret one value of the image.
+/// The data for the interpretation of one value of the image.
 struct ValueFormat {
   DataType type = DataType::integer32;
   std::uint8_t bits = 32;

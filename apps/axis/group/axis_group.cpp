@@ -8,7 +8,7 @@
 namespace takt {
 namespace {
 
-/// How often wait() checks whether the newest image is stale.
+/// Longest time between two checks whether the newest image is stale.
 constexpr std::chrono::milliseconds longest_pause{1};
 
 }  // namespace

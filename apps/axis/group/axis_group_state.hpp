@@ -82,10 +82,10 @@ class AxisGroup::State {
   ImageInput input;
   AxisControl axes;
   NodeHolders holders;
-  std::map<std::int16_t, node_status_t> nodes;                     // by node-ID
-  std::map<std::pair<std::int16_t, std::int8_t>, Motion> motions;  // by node-ID and axis
-  std::vector<speed_axis_t> speed_axes;                            // of the layout
-  std::vector<std::optional<speed_axes_t>> speed_parts;  // of the newest messages about them
+  std::map<std::int16_t, node_status_t> nodes;                     // keys are node-IDs
+  std::map<std::pair<std::int16_t, std::int8_t>, Motion> motions;  // keys are node-IDs and axes
+  std::vector<speed_axis_t> speed_axes;                            // speed axes of the layout
+  std::vector<std::optional<speed_axes_t>> speed_parts;            // the newest messages about them
   bool fresh = false;
   bool new_layout = false;
   bool reported_stale = false;

@@ -18,8 +18,8 @@ constexpr int most_lagging = 4;
 constexpr std::uint16_t homing_start = 0x10;
 constexpr std::uint16_t enable_interpolation = 0x10;
 
-constexpr std::uint16_t enable_operation = 0x000F;  // of the controlword
-constexpr std::uint16_t stays_halted = 0x100;       // of the controlword in all modes
+constexpr std::uint16_t enable_operation = 0x000F;  // command in the controlword
+constexpr std::uint16_t stays_halted = 0x100;       // bit of the controlword, in all modes
 
 /// Returns true if drives obey the target position in this mode.
 bool is_position_mode(std::int8_t mode) noexcept {

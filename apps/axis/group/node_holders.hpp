@@ -23,7 +23,7 @@ class NodeHolders {
  private:
   static constexpr std::int16_t highest_node = 127;
   std::string sender_;
-  std::array<NodeHolder, highest_node + 1> nodes_;  // by node-ID; 0 is unused
+  std::array<NodeHolder, highest_node + 1> nodes_;  // indexed by node-ID; 0 is unused
 };
 
 }  // namespace takt

@@ -56,10 +56,10 @@ class StreamBuffer {
 
   double period_;
   bool starts_ = false;
-  std::deque<motion_point_t> points_;  // from the newest one that is reached on
+  std::deque<motion_point_t> points_;  // points from the newest one that is reached on
   std::int64_t first_ = 0;             // number of the first one of them
   std::int64_t next_ = 0;              // number of the first point that was never sent
-  std::int64_t sent_cycle_ = 0;        // of the newest message
+  std::int64_t sent_cycle_ = 0;        // cycle of the newest message
   double passed_ = 0.0;                // time of the stream in the cycle of the newest report
   std::int64_t passed_cycle_ = 0;
 };

@@ -18,12 +18,12 @@ namespace {
 constexpr std::size_t longest_line = 8192;
 constexpr int cannot_start = 127;
 
-/// Becomes the program. Runs between fork() and exec() of a process that has one thread.
+/// Replaces the process by the program. Runs after fork() in a process that has one thread.
 [[noreturn]] void become(const std::vector<std::string>& command,
                          const std::vector<std::string>& without, int output, pid_t parent) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (::getppid() != parent) std::_Exit(cannot_start);  // it died before prctl()
+  if (::getppid() != parent) std::_Exit(cannot_start);  // the parent died before prctl()
   const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
   ::dup2(nothing, STDIN_FILENO);
   ::dup2(output, STDOUT_FILENO);

@@ -10,8 +10,8 @@
 
 namespace takt {
 
-/// A program that this one has started. Its stdout and stderr arrive here as lines. It has no
-/// input, it is not in the process group of the terminal, so that Ctrl-C does not reach it, and it
+/// A program that this one has started. Its stdout and stderr arrive here as lines, and its stdin
+/// is empty. It is not in the process group of the terminal, so that Ctrl-C does not reach it. It
 /// gets SIGTERM when this program dies.
 class ChildProgram {
  public:
@@ -21,15 +21,16 @@ class ChildProgram {
                                                         const std::vector<std::string>& without);
   ChildProgram(ChildProgram&& other) noexcept;
   ChildProgram& operator=(ChildProgram&&) = delete;
-  /// Sends SIGTERM to a program that still runs, and waits for its end.
+  /// Sends SIGTERM to the program if it still runs, and waits for its end.
   ~ChildProgram();
 
-  /// Becomes readable when there is output, and at its end. -1 after the end.
+  /// Returns a descriptor that becomes readable when there is output, and at the end of the output.
+  /// Returns -1 after the end.
   int output() const noexcept { return output_.get(); }
-  /// Reads what is there, without waiting, and calls `line` for each line that is complete. A line
-  /// of more than 8192 bytes is passed on in parts.
+  /// Reads the output that has come, without waiting, and calls `line` for each line that is
+  /// complete. A line of more than 8192 bytes is passed on in parts.
   void read(const std::function<void(std::string_view)>& line);
-  void ask_to_end() const noexcept;  ///< SIGTERM
+  void ask_to_end() const noexcept;  ///< sends SIGTERM
   /// Waits for the end. Returns the exit code, or 128 and the number of the signal that ended it.
   int wait() noexcept;
 
@@ -38,7 +39,7 @@ class ChildProgram {
 
   pid_t process_;
   FileDescriptor output_;
-  std::string begun_;  // of a line that is not complete
+  std::string begun_;  // begin of a line that is not complete
   int exit_code_ = 0;
 };
 

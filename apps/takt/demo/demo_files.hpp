@@ -5,7 +5,7 @@
 
 namespace takt {
 
-/// What `takt demo` starts and reads.
+/// The programs and files that `takt demo` starts and reads.
 struct DemoFiles {
   std::filesystem::path taktd;
   std::filesystem::path takt_move;

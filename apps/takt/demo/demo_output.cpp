@@ -8,7 +8,7 @@
 namespace takt {
 namespace {
 
-// A line that is longer than the terminal is wide is cut, so that it can be replaced.
+// With this sequence the terminal cuts a line that is too long, so that the line can be replaced.
 constexpr const char* no_wrap = "\x1b[?7l";
 constexpr const char* wrap = "\x1b[?7h";
 

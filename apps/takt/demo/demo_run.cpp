@@ -19,16 +19,17 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds tick{100};
-/// takt-move wants a limit; nobody watches the demo for so long.
+/// takt-move requires a limit of its time. This one is longer than any demo.
 constexpr const char* very_long = "10080min";
-constexpr const char* most_wait = "60";  ///< seconds for taktd and the boot of its devices
+/// Longest wait for taktd and the boot of its devices, in seconds.
+constexpr const char* most_wait = "60";
 
-/// What would change the behaviour of the programs: keys of a real machine, and the service manager
-/// that may have started this program.
+/// Variables of the environment that would change the behaviour of the programs: keys of a real
+/// machine, and the service manager that may have started this program.
 const std::vector<std::string> not_passed_on{"TAKT_KEYS", "TAKT_CHECK_IMAGES", "NOTIFY_SOCKET",
                                              "WATCHDOG_USEC", "WATCHDOG_PID"};
 
-/// Returns the usual port of LCM messages, or any other if it is in use.
+/// Returns the usual port of LCM messages, or any other port if the usual one is in use.
 std::uint16_t free_port() {
   auto listener = listen_on_loopback(tcpq::default_port);
   if (!listener) listener = listen_on_loopback(0);
@@ -82,7 +83,7 @@ bool DemoRun::goes_on() const {
   return !Interrupt::asked() && daemon_->output() >= 0 && (!motion_ || motion_->output() >= 0);
 }
 
-/// Passes on what the programs say, and waits for it for at most `limit`.
+/// Waits for output of the programs for at most `limit`, and prints it.
 void DemoRun::serve(Time limit) {
   std::vector<pollfd> descriptors{{.fd = daemon_->output(), .events = POLLIN, .revents = 0}};
   if (motion_) {
@@ -129,7 +130,7 @@ void DemoRun::show_where_to_look() {
       files_.network.string()));
 }
 
-/// Ends both programs in order: first the axes come to rest, then the bus stops.
+/// Ends takt-move, so that the axes come to rest, and then taktd, which stops the bus.
 int DemoRun::end() {
   if (Interrupt::asked())
     output_.say("\nThe demo ends: the axes come to rest, then taktd stops.\n");
@@ -143,7 +144,8 @@ int DemoRun::end() {
 }
 
 int DemoRun::sum_up(int taktd, int takt_move) {
-  // Asked to end, takt-move says whether it has reached the end of its motion, which was not asked.
+  // When it is interrupted, takt-move reports by its exit code whether its motion has reached its
+  // end. This is no result of the demo.
   if (Interrupt::asked()) takt_move = 0;
   if (taktd == 0 && takt_move == 0) {
     output_.say(options_.still ? "\nGood: taktd stopped in order."

@@ -12,15 +12,15 @@
 namespace takt {
 
 struct DemoOptions {
-  std::optional<Time> run_for;  ///< how long the axes move; without it until Ctrl-C
-  bool still = false;           ///< the axes are left to other programs
+  std::optional<Time> run_for;  ///< time for which the axes move; empty: until Ctrl-C
+  bool still = false;           ///< true: the demo does not move the axes, and other programs may
 };
 
 /// Shortest time that takt-move accepts for the motion of the demo.
 inline constexpr Time shortest_demo = std::chrono::seconds{4};
 
 /// The demo machine: a taktd on the simulated bus, and takt-move that moves its axes. They exchange
-/// their messages on a port of loopback that nobody else uses, whatever LCM_DEFAULT_URL says.
+/// their messages on a port of loopback that no other program uses. LCM_DEFAULT_URL has no effect.
 class DemoRun {
  public:
   /// Throws a Failure if there is no free port.
@@ -47,7 +47,7 @@ class DemoRun {
   std::string url_;
   std::optional<ChildProgram> daemon_;
   std::optional<ChildProgram> motion_;
-  bool shown_ = false;  ///< where to look has been printed
+  bool shown_ = false;  ///< the hint to other commands has been printed
 };
 
 }  // namespace takt

@@ -67,7 +67,8 @@ std::optional<double> counts_a_turn(const std::string& bus, const ScannedDevice&
   return counts >= 1.0 ? std::optional{counts} : std::nullopt;
 }
 
-/// Returns the path of a device file as the network file names it.
+/// Returns the path of a device file for the network file: relative to the folder of the network
+/// file if possible.
 std::string path_from(const fs::path& network, const fs::path& file) {
   const fs::path folder = network.has_parent_path() ? network.parent_path() : fs::path{"."};
   std::error_code error;
@@ -75,7 +76,7 @@ std::string path_from(const fs::path& network, const fs::path& file) {
   return learn::yaml_word((error ? file : near).generic_string());
 }
 
-/// Returns the entry of the device data for a device, or nullptr.
+/// Returns the device data of the family of a device, or nullptr.
 const DeviceData* family_of(const std::vector<DeviceData>& families, const ScannedDevice& found) {
   if (!found.file.dictionary) return nullptr;
   Findings ignored;
@@ -83,7 +84,8 @@ const DeviceData* family_of(const std::vector<DeviceData>& families, const Scann
   return find_device_data(families, NodeSpec{}, *found.file.dictionary, report);
 }
 
-/// Fills in the bit rate: the given one, else that of the interface, else 1000 kbit/s.
+/// Chooses the bit rate: the one that the user has given, else that of the interface, else 1000
+/// kbit/s.
 void choose_bitrate(const InitArguments& options, InitFacts& facts) {
   if (options.bitrate_kbit != 0) {
     facts.bitrate_kbit = static_cast<std::uint32_t>(options.bitrate_kbit);
@@ -126,7 +128,7 @@ void report(const ProposedNetwork& network, std::size_t devices, const std::stri
   }
 }
 
-/// Removes node ids that are only the second SDO channel of another device.
+/// Removes devices that are only the second SDO channel of another device.
 void drop_second_channels(std::vector<DeviceToWrite>& devices) {
   std::set<std::uint8_t> second;
   for (DeviceToWrite& device : devices) {

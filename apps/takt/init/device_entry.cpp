@@ -16,13 +16,13 @@ std::string hex32(std::optional<std::uint32_t> value) {
   return value ? fmt::format("0x{:08X}", *value) : "unknown";
 }
 
-/// Returns a line with a comment behind it, in one column with the others.
+/// Returns a line with a comment, which begins in the same column in all lines.
 std::string commented(std::string line, const std::string& comment) {
   if (line.size() < comment_column) line.append(comment_column - line.size(), ' ');
   return line + "  # " + comment + '\n';
 }
 
-/// Returns a text from a device for a comment: on one line.
+/// Returns a text of a device without control characters, so that it fits in one line of a comment.
 std::string plain(std::string text) {
   std::ranges::replace_if(
       text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == '\x7F'; }, ' ');
@@ -40,7 +40,8 @@ bool is_inverter(const DeviceToWrite& device) {
   return device.data != nullptr && device.data->speed_axis.is_stated();
 }
 
-/// Returns the units of an axis. Positions in rad need the number of counts of a turn.
+/// Returns the units of an axis. They are in rad if the number of counts per turn is known, else in
+/// counts.
 std::string units_text(const DeviceToWrite& device) {
   const bool turns = device.counts_a_turn.has_value();
   const double scale = turns ? 2.0 * std::numbers::pi / *device.counts_a_turn : 1.0;
@@ -66,7 +67,7 @@ std::string source_of(const ProposedLimit& limit) {
   return limit.because + (object ? " of the device file" : "");
 }
 
-/// Splits `objects: [{index: 0x6411}]` into its entry; empty for other limits.
+/// Returns the entry in `objects: [{index: 0x6411}]`, or an empty text for other limits.
 std::string object_of(const ProposedLimit& limit) {
   constexpr std::string_view before = "objects: [";
   if (!limit.entry.starts_with(before)) return {};
@@ -99,7 +100,7 @@ std::string limits_text(const std::vector<ProposedLimit>& limits) {
   return text;
 }
 
-/// Returns what the user has to know about the device file.
+/// Returns the notes about the device file, as comments for the user.
 std::string file_notes(const DeviceToWrite& device) {
   std::string text;
   if (device.found.file.other_revision) {

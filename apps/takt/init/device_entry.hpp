@@ -9,31 +9,34 @@
 
 namespace takt::init {
 
-/// A device on the bus, and what is known for its entry in the network file.
+/// A device on the bus, with the data for its entry in the network file.
 struct DeviceToWrite {
   ScannedDevice found;
-  std::string file{};                ///< path of its device file in the network file
-  const DeviceData* data = nullptr;  ///< of its family; nullptr if there are none
-  /// Counts of a turn of the shaft behind the gear, as the device itself says (0x608F, 0x6091).
+  std::string file{};  ///< path of its device file in the network file
+  /// Device data of the family of the device; nullptr if there are none.
+  const DeviceData* data = nullptr;
+  /// Counts of a turn of the shaft behind the gear, read from the device (0x608F, 0x6091).
   std::optional<double> counts_a_turn{};
-  /// Another node-ID under which the device answers, by its second SDO channel; 0 if there is none.
+  /// Another node-ID under which the device answers, through its second SDO channel; 0 if there is
+  /// none.
   std::uint8_t second_id = 0;
 };
 
-/// How much of a proposal an entry contains. If the whole proposal does not fit the device, less is
-/// proposed.
+/// The extent of a proposal for an entry. If taktd does not accept the whole proposal, the entry
+/// contains less.
 enum class Detail { whole, own_pdos, file_only };
 
 /// A limit that the plan proposes, with its reason.
 struct ProposedLimit {
   std::string entry;      ///< `velocity: 12.5`, or `objects: [{...}]`; "..." stands for a number
-  std::string because{};  ///< its source, or what to enter
+  std::string because{};  ///< source of the limit, or what to enter
 
   bool has_numbers() const { return entry.find("...") == entry.npos; }
 };
 
-/// Returns true if `other` is no device: `device` answers under its node-ID by an SDO channel that
-/// the device data describe, such as channel 2 of the Lenze 8400 at 0x640 + node-ID.
+/// Returns true if `other` is not a separate device, because `device` answers under this node-ID
+/// through an SDO channel that the device data describe, such as channel 2 of the Lenze 8400 at
+/// 0x640 + node-ID.
 bool is_second_channel(const DeviceToWrite& device, const DeviceToWrite& other);
 /// Returns the name of a node by its profile: `axis_5`, `io_10`, `inverter_3`.
 std::string node_name(const DeviceToWrite& device);

@@ -20,12 +20,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t periods_us[] = {1000, 2000, 4000, 5000, 10'000, 20'000, 50'000, 100'000};
-/// A period with which each single device is tried: the bus has time for its frames.
+/// The period of SYNC for the trial of a single device. It is so long that the bus has time for the
+/// frames.
 constexpr std::uint32_t patient_period_us = 100'000;
 constexpr double most_load = 0.6;
 constexpr std::uint8_t usual_master = 127;
 
-/// Reads texts as taktd would read them from a file in the folder of the network file.
+/// Reads the text of a network file as taktd would read it from a file in the same folder.
 class Trial {
  public:
   explicit Trial(const fs::path& file)
@@ -51,7 +52,7 @@ const Finding* first_error(const Findings& findings) {
   return found == findings.end() ? nullptr : &*found;
 }
 
-/// Returns a name for the bus from that of the file: letters, digits and underscores.
+/// Returns a name for the bus, made from the name of the file: letters, digits and underscores.
 std::string bus_name(const fs::path& file) {
   std::string name = file.stem().string();
   std::ranges::replace_if(
@@ -74,7 +75,7 @@ class Proposer {
   }
 
  private:
-  /// Finds the most detailed entry of a device that taktd accepts beside those before it.
+  /// Finds the most detailed entry of a device that taktd accepts together with the entries before.
   void choose_detail(const DeviceToWrite& device) {
     if (!device.found.file.dictionary) {
       reasons_[device.found.id] =
@@ -188,9 +189,9 @@ class Proposer {
   ProposedNetwork out_;
   double load_ = 0.0;
   std::uint32_t too_short_ = 0;  // longest period that leaves too little room, us; 0 = none
-  std::string accepted_;         // entries of the devices before
+  std::string accepted_;         // accepted entries of the devices before
   std::map<std::uint8_t, Detail> details_;
-  std::map<std::uint8_t, std::string> reasons_;  // why a device has no entry
+  std::map<std::uint8_t, std::string> reasons_;  // reasons why devices have no entry
   std::map<std::uint8_t, std::vector<ProposedLimit>> limits_;
 };
 

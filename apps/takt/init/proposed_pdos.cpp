@@ -16,7 +16,8 @@ namespace {
 constexpr unsigned pdo_bits = 64;
 constexpr std::uint8_t every_sync = 1;
 
-/// What the master commands and watches in one kind of operation: objects of the first axis.
+/// The objects that the master commands and watches in one kind of operation, with the indices of
+/// the first axis.
 struct AxisObjects {
   std::array<std::uint16_t, 3> commands;
   std::array<std::uint16_t, 3> answers;
@@ -42,7 +43,7 @@ class Direction {
     }
   }
 
-  /// Maps the objects of an axis. Returns false if the PDOs of the device do not suffice.
+  /// Maps the objects of an axis. Returns false if the device has too few PDOs.
   bool add_axis(const std::array<std::uint16_t, 3>& objects, unsigned axis) {
     std::string mapping;
     unsigned bits = 0;
@@ -88,7 +89,7 @@ class Direction {
   std::string lines_;
 };
 
-/// Returns the objects with which an axis is moved: by positions if the drive can do that.
+/// Returns the objects that move an axis: those for positions if the drive supports them.
 const AxisObjects* objects_of(const ObjectDictionary& dictionary, unsigned axis) {
   for (const AxisObjects* objects : {&position_axis, &velocity_axis, &speed_axis}) {
     if (can_be_mapped(dictionary, axis_object(axis, objects->commands[1]), false)) return objects;
@@ -133,7 +134,7 @@ ProposedPdos proposed_pdos(const ObjectDictionary& dictionary, const DeviceData*
 }
 
 ProposedPdos pdos_of_file(const ObjectDictionary& dictionary, const DeviceData* data) {
-  std::string lines[2];  // RPDOs, TPDOs
+  std::string lines[2];  // lines for RPDOs, and for TPDOs
   std::string notes;
   ProposedPdos proposed;
   for (const PdoDescription& pdo : describe_pdos(dictionary)) {

@@ -14,11 +14,11 @@ struct ProposedPdos {
 
 /// Proposes the PDOs by the profile of the device: for each axis of a CiA 402 drive, the
 /// controlword, the target and the mode, and the statusword, the actual value and the displayed
-/// mode; for other devices the PDOs of their file. `data` is nullptr without device data.
+/// mode; for other devices, the PDOs of the device file. `data` is nullptr without device data.
 ProposedPdos proposed_pdos(const ObjectDictionary& dictionary, const DeviceData* data);
 
-/// Proposes to exchange the PDOs that the device file has switched on, with their own mapping, with
-/// each SYNC where the device can do that. A parameter channel is left out.
+/// Proposes the PDOs that are switched on in the device file, with the mapping in this file. They
+/// are exchanged with each SYNC if the device supports that. A parameter channel is left out.
 ProposedPdos pdos_of_file(const ObjectDictionary& dictionary, const DeviceData* data);
 
 }  // namespace takt::init

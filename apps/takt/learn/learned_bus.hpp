@@ -106,7 +106,8 @@ struct LearnedBus {
   std::uint64_t lss = 0;                    ///< frames with the identifiers 0x7E4 and 0x7E5
   bool started_all = false;                 ///< true after an NMT start by broadcast
   std::map<std::uint8_t, LearnedNode> nodes;
-  std::map<std::uint32_t, LearnedSync> sync;  ///< by identifier; only frames that may be SYNC
+  /// Keys are identifiers; only frames that may be SYNC.
+  std::map<std::uint32_t, LearnedSync> sync;
   Findings findings;
 
   /// Returns the node-ID of the master in the recording, or std::nullopt if nothing shows it.

@@ -9,8 +9,8 @@
 
 namespace takt {
 
-/// Which EMCYs the user has acknowledged, of each node of each bus. The daemon does not know it: it
-/// is kept in a file of the user, and changes what is shown and nothing else.
+/// The EMCYs that the user has acknowledged, for each node of each bus. They are kept in a file of
+/// the user. The daemon does not know them; they affect only what the programs show.
 class Acknowledged {
  public:
   /// Returns the file: `takt/acknowledged` in XDG_STATE_HOME, or in ~/.local/state. Empty if

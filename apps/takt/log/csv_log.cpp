@@ -11,8 +11,9 @@ namespace takt::logging {
 namespace {
 
 constexpr std::size_t block_bytes = 65'536;
-constexpr std::int64_t longest_wait_ns = 200'000'000;  // of a line for the file
-constexpr std::size_t most_events = 100;               // that wait for a line
+// Longest time for which a line waits before it is written to the file.
+constexpr std::int64_t longest_wait_ns = 200'000'000;
+constexpr std::size_t most_events = 100;  // largest number of events that wait for a line
 
 void append_cell(std::string& out, std::string_view text) {
   if (text.find_first_of(",\"\n\r") == text.npos) {
@@ -93,7 +94,7 @@ bool CsvLog::flush() {
 
 bool CsvLog::finish() {
   if (!events_.empty()) {
-    // These events came after the last cycle: they get a line without values.
+    // These events came after the last cycle, so their line has no values.
     const std::vector<std::int64_t> raw(signals_.size());
     const std::vector<std::uint8_t> fresh(signals_.size());
     LogRow rest = last_;

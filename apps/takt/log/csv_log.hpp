@@ -10,7 +10,7 @@ namespace takt::logging {
 
 /// Writes one line a cycle: `time [s]` since the first line, `utime [us]` since 1970, `cycle`, one
 /// column a signal, and `event`. A cell is empty if its signal has no new value in this cycle. An
-/// event stands in the first line that comes after it. (RFC 4180, with line feeds.)
+/// event is written in the first line after it. The format is that of RFC 4180, with line feeds.
 class CsvLog final : public LogWriter {
  public:
   /// `sink` must live longer than the log.
@@ -26,8 +26,8 @@ class CsvLog final : public LogWriter {
 
   mcap::ByteSink& sink_;
   std::vector<LoggedSignal> signals_;
-  std::string lines_;               // not yet written
-  std::deque<std::string> events_;  // for the next line
+  std::string lines_;               // lines that are not yet written
+  std::deque<std::string> events_;  // events for the next line
   std::size_t events_left_out_ = 0;
   std::optional<std::int64_t> first_ns_;
   std::int64_t written_ns_ = 0;

@@ -39,8 +39,8 @@ std::string hex_bytes(std::span<const std::uint8_t> bytes) {
   return text;
 }
 
-/// Returns the events of a recording of the black box in the order of time; none if the file is no
-/// such recording. The files may have any content.
+/// Returns the events of a recording of the black box in the order of time, or an empty list if the
+/// file is no such recording. The files may have any content.
 std::vector<LogEvent> events_of(const std::string& log) {
   std::vector<LogEvent> events;
   const auto text = read_whole_file(events_file_of(log));

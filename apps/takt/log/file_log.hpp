@@ -5,10 +5,11 @@
 namespace takt::logging {
 
 struct FileLogOptions {
-  std::string file{};                   ///< recording of candump or of the black box
-  std::string network{};                ///< network file; empty: that of the black box, or none
-  std::string interface{};              ///< of the recording; empty: that of the first frame
-  std::vector<std::string> patterns{};  ///< of signals; empty means all
+  std::string file{};  ///< path of a recording of candump or of the black box
+  /// Path of the network file; empty: that of the black box, or no network file.
+  std::string network{};
+  std::string interface{};  ///< interface in the recording; empty: that of the first frame
+  std::vector<std::string> patterns{};  ///< patterns of signals; empty means all
   std::string output{};
 };
 

@@ -10,15 +10,15 @@
 
 namespace takt::logging {
 
-/// Makes rows of recorded frames: a row has the values of the PDOs between one SYNC and the next
-/// one. Cycles are counted from the first SYNC. On a bus without SYNC, a row is a period long.
+/// Makes rows from recorded frames. A row has the values of the PDOs between one SYNC and the next
+/// one. Cycles are counted from the first SYNC. On a bus without SYNC, a row covers one period.
 /// Multiplexed PDOs are left out.
 class FrameRows {
  public:
   FrameRows(const BusPlan& plan, const std::vector<LoggedSignal>& signals);
 
-  /// Takes the next frame. `us` is its time. Returns the row that it ends, which is valid until the
-  /// next call.
+  /// Takes the next frame. `us` is its time. Returns the row that this frame ends. The row is valid
+  /// until the next call.
   std::optional<LogRow> take(const Frame& frame, std::int64_t us);
   /// Returns the last row.
   std::optional<LogRow> finish();
@@ -44,7 +44,7 @@ class FrameRows {
   std::map<CobId, std::vector<Field>> fields_;
   Values coming_;
   Values ended_;
-  std::int64_t begin_us_ = 0;  // of the cycle
+  std::int64_t begin_us_ = 0;  // begin of the cycle
   std::int64_t cycle_ = -1;    // -1: before the first SYNC
   std::int64_t lost_ = 0;
 };

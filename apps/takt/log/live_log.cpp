@@ -20,9 +20,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// The layout comes once a second.
+/// A daemon sends the layout once a second.
 constexpr Time layout_limit = 5s;
-/// The status comes ten times a second: after this silence the daemon has ended.
+/// A daemon sends its status ten times a second. If none has come for this time, the daemon has
+/// ended.
 constexpr Time silence_limit = 3s;
 
 class LiveLog {
@@ -56,7 +57,7 @@ class LiveLog {
     return buses.empty() ? nullptr : buses.front();
   }
 
-  /// Begins with the layout. The patterns are checked before a file is made.
+  /// Begins the log when the layout has come. The patterns are checked before a file is made.
   void begin() {
     const BusView* const bus = view();
     if (bus == nullptr || bus->signals().empty() || bus->session() != status_.session) return;
@@ -106,7 +107,7 @@ class LiveLog {
     if (!written) reason_ = "the file is full";
   }
 
-  /// Returns why the log ends now; empty if it does not.
+  /// Returns the reason why the log ends now, or an empty text if the log continues.
   std::string end_reason() {
     if (Interrupt::asked()) return "ended by a signal";
     const BusView* const bus = view();
@@ -117,7 +118,7 @@ class LiveLog {
     return {};
   }
 
-  /// Tells which of the missing cycles the daemon itself has missed.
+  /// Prints how many cycles the daemon itself has missed during the log.
   void report_daemon() const {
     const BusView* const bus = view();
     if (bus == nullptr || !bus->status()) return;

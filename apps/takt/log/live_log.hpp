@@ -10,9 +10,10 @@ namespace takt::logging {
 
 struct LiveLogOptions {
   LiveOptions live{};
-  std::vector<std::string> patterns{};  ///< of signals; empty means all
+  std::vector<std::string> patterns{};  ///< patterns of signals; empty means all
   std::string output{};
-  std::optional<Time> length{};  ///< empty: until Ctrl-C or the end of the daemon
+  /// Length of the log; empty: until Ctrl-C or the end of the daemon.
+  std::optional<Time> length{};
 };
 
 /// Records the running bus. Throws a Failure if there is no daemon, if a pattern matches no signal,

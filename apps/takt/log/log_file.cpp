@@ -19,7 +19,7 @@ std::string because(const std::string& path, int error) {
   return fmt::format("{}: can't be written: {}", path, std::strerror(error));
 }
 
-/// Returns true if reserving is impossible here, which says nothing about the room.
+/// Returns true if the file system can't reserve room. There may be room all the same.
 bool is_unsupported(int error) noexcept {
   return error == EOPNOTSUPP || error == ENOSYS || error == ENODEV || error == ESPIPE;
 }

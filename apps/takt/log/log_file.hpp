@@ -19,11 +19,11 @@ class LogFile final : public mcap::ByteSink {
 
   bool reserve(std::uint64_t bytes) override;
   bool write(std::string_view bytes) override;
-  /// Gives the file its name. The error is a sentence with the name of the file.
+  /// Gives the file its final name. The error is a sentence with the name of the file.
   std::expected<void, std::string> commit();
 
-  /// Returns why reserve() or write() has failed first: `No space left on device`. Empty if neither
-  /// has.
+  /// Returns why reserve() or write() has failed first: `No space left on device`. The text is
+  /// empty if neither has failed.
   const std::string& trouble() const noexcept { return trouble_; }
   const std::string& path() const noexcept { return path_; }
   std::uint64_t size() const noexcept { return size_; }
@@ -34,7 +34,7 @@ class LogFile final : public mcap::ByteSink {
   bool fail(int error);
 
   std::string path_;
-  std::string part_;  // empty for stdout, pipes and devices
+  std::string part_;  // path of the file until commit(); empty for stdout, pipes and devices
   FileDescriptor file_;
   std::uint64_t size_ = 0;
   std::string trouble_;

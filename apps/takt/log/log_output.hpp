@@ -9,34 +9,34 @@
 
 namespace takt::logging {
 
-/// What the ending of a file name selects.
+/// The format of a log, which the ending of the file name selects.
 enum class LogFormat : std::uint8_t { csv, mcap };
 
 /// Returns the format of a file: `.csv`, `.mcap`, or `-` for CSV on stdout. Throws a Failure for
 /// any other name.
 LogFormat format_of(const std::string& path);
 
-/// One log: its file, its format, and the counts for the line at the end.
+/// One log: its file, its format, and the counts for the summary line.
 class LogOutput {
  public:
-  /// `with_frames` asks for frames, which only MCAP has. Throws a Failure if the
-  /// file can't be made.
+  /// `with_frames` requests that frames are recorded, which only MCAP files can contain. Throws a
+  /// Failure if the file can't be made.
   LogOutput(const std::string& path, const LogHead& head, bool with_frames);
 
   bool takes_frames() const noexcept { return takes_frames_; }
 
-  /// These return false when the file takes no more.
+  /// These functions return false when nothing more can be written to the file.
   bool row(const LogRow& row);
   bool event(const LogEvent& event);
   bool frame(const LogFrame& frame);
 
-  /// Ends the file and prints the line of statistics on stderr, with the reason of the end. Throws
-  /// a Failure with exit code 1 if the disk was full: what was written before is in the file, or
-  /// there is no file.
+  /// Completes the file and prints the summary line on stderr, with the reason why the log ended.
+  /// Throws a Failure with exit code 1 if the disk was full: what was written before is in the
+  /// file, or there is no file.
   void finish(const std::string& reason);
 
  private:
-  /// The first gaps are named.
+  /// A gap in the log. The summary names the first gaps.
   struct Gap {
     std::int64_t cycle = 0;
     std::int64_t lost = 0;

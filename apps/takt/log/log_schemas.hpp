@@ -13,8 +13,8 @@ std::string cycle_field(const std::vector<LoggedSignal>& signals);
 
 /// JSON schema of an image: an object for each node, with objects and units as descriptions.
 nlohmann::json image_schema(const std::vector<LoggedSignal>& signals);
-/// JSON schema of an event: the fields of foxglove.Log, which panels of events understand. `file`
-/// is the kind of the event, `line` the cycle.
+/// JSON schema of an event: the fields of foxglove.Log, which viewers show in their panels of
+/// events. `file` is the kind of the event, `line` the cycle.
 nlohmann::json event_schema();
 /// JSON schema of a frame.
 nlohmann::json frame_schema();

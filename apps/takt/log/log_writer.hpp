@@ -10,20 +10,20 @@
 
 namespace takt::logging {
 
-/// What a log is about.
+/// The bus and the signals that a log records.
 struct LogHead {
   std::string bus{};
-  Time period{};  ///< of SYNC
+  Time period{};  ///< period of SYNC
   std::vector<LoggedSignal> signals{};
 };
 
 /// The values of one cycle.
 struct LogRow {
   std::int64_t utime = 0;    ///< wall clock of SYNC, microseconds since 1970
-  std::int64_t sync_ns = 0;  ///< of SYNC, on a clock that is never corrected
+  std::int64_t sync_ns = 0;  ///< time of SYNC on a clock that is never corrected
   std::int64_t cycle = 0;
-  std::int64_t lost = 0;                  ///< cycles between the row before and this one
-  std::span<const std::int64_t> raw{};    ///< in the order of LogHead::signals
+  std::int64_t lost = 0;  ///< number of cycles that are missing between the row before and this one
+  std::span<const std::int64_t> raw{};    ///< raw values in the order of LogHead::signals
   std::span<const std::uint8_t> fresh{};  ///< 0: this signal has no new value in this cycle
 };
 
@@ -39,21 +39,21 @@ struct LogEvent {
 /// One frame of the bus, and its meaning.
 struct LogFrame {
   std::int64_t utime = 0;
-  std::string id{};       ///< "0x181"
-  std::string data{};     ///< hex, with blanks
-  std::string service{};  ///< "TPDO"
-  unsigned node = 0;      ///< 0: none or all
+  std::string id{};       ///< COB-ID, for example "0x181"
+  std::string data{};     ///< data bytes in hex, separated by blanks
+  std::string service{};  ///< service, for example "TPDO"
+  unsigned node = 0;      ///< node-ID; 0 if the frame belongs to no node or to all nodes
   std::string text{};
 };
 
-/// Writes a log in one of the formats. All calls return false when the file takes no more: what was
-/// written before stays.
+/// Writes a log in one of the formats. All calls return false when nothing more can be written to
+/// the file. What was written before remains in the file.
 class LogWriter {
  public:
   virtual ~LogWriter() = default;
   virtual bool row(const LogRow& row) = 0;
   virtual bool event(const LogEvent& event) = 0;
-  /// Most formats have no place for frames.
+  /// Most formats can't contain frames.
   virtual bool frame(const LogFrame& frame) {
     static_cast<void>(frame);
     return true;
@@ -62,7 +62,7 @@ class LogWriter {
   virtual bool finish() = 0;
 };
 
-/// Returns the event that tells of the cycles that are missing before a row.
+/// Returns the event that reports the cycles that are missing before a row.
 inline LogEvent gap_event(const LogRow& row) {
   return {.utime = row.utime,
           .cycle = row.cycle,

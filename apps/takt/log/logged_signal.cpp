@@ -27,7 +27,7 @@ LoggedSignal logged(const signal_t& signal, std::size_t position) {
       .position = position};
 }
 
-/// Explains that nothing matches, with the name that is most likely meant.
+/// Returns the error that no signal matches a pattern, with the most similar name.
 std::string no_match(const std::vector<signal_t>& layout, const std::string& pattern) {
   std::set<std::string> nodes;
   std::set<std::string> names;

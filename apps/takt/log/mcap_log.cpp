@@ -56,7 +56,7 @@ McapLog::McapLog(mcap::ByteSink& sink, const LogHead& head, FrameChannelUse fram
 bool McapLog::row(const LogRow& row) {
   if (row.lost > 0 && !event(gap_event(row))) return false;
   json_ = begin_ + std::to_string(row.cycle);
-  bool is_first = true;  // value of its node
+  bool is_first = true;  // the next value is the first of its node
   for (const Column& column : columns_) {
     if (!column.node.empty()) {
       json_ += (&column == columns_.data() ? "," : "},") + column.node;

@@ -7,12 +7,13 @@
 
 namespace takt::logging {
 
-/// Frames of recordings: with or without a channel for them.
+/// States whether the log has a channel for the frames of recordings.
 enum class FrameChannelUse : std::uint8_t { none, one };
 
 /// Writes an MCAP file with JSON messages and JSON schemas, as Foxglove, Lichtblick and PlotJuggler
 /// read it: `/BUS/image` has one message a cycle with an object for each node, `/BUS/event` is a
-/// foxglove.Log, and `/BUS/frame` has the frames of recordings. All times are wall clock.
+/// foxglove.Log, and `/BUS/frame` has the frames of recordings. All times are those of the wall
+/// clock.
 class McapLog final : public LogWriter {
  public:
   /// `sink` must live longer than the log.
@@ -26,9 +27,9 @@ class McapLog final : public LogWriter {
   bool full() const noexcept { return writer_.full(); }
 
  private:
-  /// A signal in a message. Those of a node follow each other.
+  /// A signal in a message. The signals of a node follow each other.
   struct Column {
-    std::size_t at = 0;  // in LogRow
+    std::size_t at = 0;  // position in LogRow
     ValueFormat format{};
     std::string node{};  // JSON that begins the object of the node; empty within the object
     std::string name{};  // JSON before the value

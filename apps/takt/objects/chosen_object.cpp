@@ -18,7 +18,8 @@ std::string device_text(const KnownDevice& device) {
   return device.id ? fmt::format("node {}", device.id->value()) : device.file;
 }
 
-/// Returns where names come from, as the reason why a name is unknown.
+/// Returns the reason why names of objects may be unknown: no device file, or one that can't be
+/// read. Empty if the device file was read.
 std::string sources_text(const KnownDevice& device) {
   if (device.dictionary) return {};
   if (device.file.empty()) {

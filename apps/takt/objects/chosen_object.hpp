@@ -19,11 +19,11 @@ struct ChosenObject {
 };
 
 /// Returns true if a word of the command line may be the name of an object: `statusword`,
-/// `identity_object.vendor_id`. Numbers such as `6041` and `1018:1` are none.
+/// `identity_object.vendor_id`. Returns false for numbers such as `6041` and `1018:1`.
 bool is_object_name(std::string_view word) noexcept;
 
-/// Finds an object of a device by its name: that of a signal, or that in the device file. Throws a
-/// Failure that lists the candidates if the name is ambiguous, or similar names if it is unknown.
+/// Finds an object of a device by the name of its signal, or by its name in the device file. Throws
+/// a Failure that lists the candidates if the name is ambiguous, or similar names if it is unknown.
 ChosenObject find_object(const KnownDevice& device, const std::string& word);
 
 /// Returns the type of an object, or DataType::unknown if nothing describes it.

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A daemon tells its layout once a second.
+/// A daemon sends its layout once a second.
 constexpr Time layout_limit = std::chrono::milliseconds{1500};
 constexpr Time answer_limit = std::chrono::seconds{3};
 
@@ -70,7 +70,7 @@ std::vector<KnownSignal> signals_of(const std::vector<signal_t>& layout, std::in
 }
 
 /// Returns true if a path that a daemon named may be opened. The path comes over the network, so
-/// nothing but a device file is read.
+/// only a device file is read.
 bool is_device_file(const fs::path& path) {
   std::error_code error;
   const std::string extension = path.extension().string();

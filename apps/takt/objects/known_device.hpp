@@ -23,17 +23,17 @@ struct KnownSignal {
   ObjectKey object;
   DataType type = DataType::unknown;
   bool output = false;  ///< true: an RPDO carries it
-  std::string pdo{};    ///< "TPDO1"; empty if only the layout of a daemon is known
+  std::string pdo{};    ///< for example "TPDO1"; empty if only the layout of a daemon is known
   double scale = 1.0;
   double offset = 0.0;
   std::string unit{};
 };
 
-/// What files and a daemon say about one device.
+/// The data of one device from files and from a daemon.
 struct KnownDevice {
-  std::string name{};          ///< in the network file; empty if only an EDS is known
+  std::string name{};          ///< name in the network file; empty if only an EDS is known
   std::optional<NodeId> id{};  ///< empty if only an EDS is known, and nobody gave a node-ID
-  std::string file{};          ///< path of the EDS or DCF; empty if nobody names one
+  std::string file{};          ///< path of the EDS or DCF; empty if the path is not known
   std::optional<ObjectDictionary> dictionary{};  ///< empty if the file can't be read here
   std::vector<KnownSignal> signals{};
 };

@@ -98,7 +98,8 @@ int browse(const OdOptions& options, const OdChoice& choice) {
   return show(device, std::move(entries), reader ? &*reader : nullptr, options.live.json);
 }
 
-/// Returns true for `6041` and `6000..6100`, which are no node: node ids have at most three digits.
+/// Returns true for `6041` and `6000..6100`. These words can't be a node, because a node-ID has at
+/// most three digits.
 bool is_range(const std::string& word) {
   OdChoice unused;
   return word.size() > 3 && word.front() >= '0' && word.front() <= '9' && read_range(word, unused);
@@ -106,7 +107,7 @@ bool is_range(const std::string& word) {
 
 int run(const OdOptions& given) {
   OdOptions options = given;
-  // `takt od --eds FILE 6000..6100` has no node.
+  // In `takt od --eds FILE 6000..6100`, the first word is the range, not a node.
   if (options.range.empty() && is_range(options.node)) {
     std::swap(options.node, options.range);
   }

@@ -11,18 +11,19 @@
 namespace takt {
 namespace {
 
-/// Returns why an object is not read from a device; empty if reading it has no effect.
+/// Returns the reason why an object is not read from a device, or an empty text if reading it has
+/// no effect.
 std::string reason_not_to_read(ObjectKey key, const SubObject& sub) {
-  constexpr std::uint32_t refuse_on_scan = 2;  // ObjFlags, CiA 306
+  constexpr std::uint32_t refuse_on_scan = 2;  // bit 1 of ObjFlags, CiA 306
   if (sub.access == Access::wo) return "write-only";
   if (sub.type == DataType::domain) return "a file: takt sdo upload";
   if ((sub.flags & refuse_on_scan) != 0) return "not read: the EDS forbids it (ObjFlags)";
-  // OS command, OS command mode, OS debugger and OS prompt: reading takes the answer away.
+  // OS command, OS command mode, OS debugger and OS prompt: reading removes the answer.
   if (key.index >= 0x1023 && key.index <= 0x1026) return "not read: reading has an effect";
   return {};
 }
 
-/// Returns the PDOs by the objects that they carry.
+/// Returns the PDOs that carry each object.
 std::multimap<ObjectKey, std::string> carriers(const KnownDevice& device) {
   std::multimap<ObjectKey, std::string> pdos;
   for (const KnownSignal& signal : device.signals) {

@@ -13,21 +13,22 @@ namespace takt {
 /// One object of a device, as `takt od` prints it.
 struct OdEntry {
   ObjectKey key;
-  std::string name;                 ///< as ObjectNames has it
-  const Object* object = nullptr;   ///< of the dictionary of the device
-  const SubObject* sub = nullptr;   ///< of the same dictionary
-  std::vector<std::string> pdos{};  ///< PDOs that carry it: "TPDO1"
-  std::string why_unread{};         ///< why it is not read from a device; empty if it is read
+  std::string name;                 ///< name in the form of ObjectNames
+  const Object* object = nullptr;   ///< object in the dictionary of the device
+  const SubObject* sub = nullptr;   ///< sub-index of this object
+  std::vector<std::string> pdos{};  ///< PDOs that carry the object: "TPDO1"
+  /// Reason why the object is not read from a device; empty if it is read.
+  std::string why_unread{};
   std::optional<std::vector<std::byte>> value{};
-  std::string error{};  ///< why the device did not give its value
+  std::string error{};  ///< reason why the device did not give the value
 
-  /// Returns true if the object is an ARRAY or RECORD, of which this is one entry.
+  /// Returns true if the object is an ARRAY or RECORD, and this is one of its entries.
   bool is_entry() const noexcept {
     return object->type == ObjectType::array || object->type == ObjectType::record;
   }
 };
 
-/// Which objects the user wants to see.
+/// The objects that the user wants to see.
 struct OdChoice {
   std::uint16_t first = 0;
   std::uint16_t last = 0xFFFF;

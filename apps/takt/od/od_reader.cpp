@@ -6,7 +6,7 @@
 namespace takt {
 namespace {
 
-constexpr int is_refusal = 1;  // exit code of a transfer that the device or the daemon refused
+constexpr int is_refusal = 1;  // exit code after a transfer that the device or the daemon refused
 
 }  // namespace
 

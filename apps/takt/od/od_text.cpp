@@ -20,8 +20,8 @@ constexpr std::size_t fixed_width = object_width + type_width + access_width + p
 constexpr std::size_t narrowest_name = 12;
 constexpr std::size_t widest_name = 44;
 
-/// Returns `T1 R2` for the PDOs that carry an object, `T` where their numbers are not known, and a
-/// dot for an object that a PDO can carry.
+/// Returns `T1 R2` for the PDOs that carry an object, `T` if the number of the PDO is not known,
+/// and a dot for an object that no PDO carries but a PDO can carry.
 std::string pdo_text(const OdEntry& entry) {
   if (entry.pdos.empty()) return entry.sub->pdo_mappable ? "." : "";
   std::string text;
@@ -42,7 +42,7 @@ std::string without_trailing_blanks(std::string line) {
 std::string entry_text(const KnownDevice& device, const OdEntry& entry) {
   if (!entry.value && !entry.error.empty()) return entry.error;
   if (!entry.value && !entry.why_unread.empty()) return entry.why_unread;
-  if (!entry.value) return entry.sub->text();  // such as $NODEID+0x80 without a node-ID
+  if (!entry.value) return entry.sub->text();  // for example $NODEID+0x80 without a node-ID
   const std::string value = shown_value(entry.key, entry.sub->type, *entry.value);
   const std::string meaning = value_meaning(device, entry.key, entry.sub->type, *entry.value);
   return meaning.empty() ? value : value + "  " + meaning;
@@ -88,7 +88,7 @@ std::string OdTable::cells(const OdEntry& entry, const std::string& value) const
   return continued(line, value);
 }
 
-/// Continues a value that does not fit in the line on the next lines, in the same column.
+/// Writes a value that does not fit in the line on several lines, in the same column.
 std::string OdTable::continued(const std::string& line, const std::string& value) const {
   const std::size_t column = fixed_width + name_width_;
   const std::size_t room = width_ > column + 8 ? width_ - column : 8;

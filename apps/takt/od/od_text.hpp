@@ -25,10 +25,10 @@ class OdTable {
   const KnownDevice& device_;
   std::size_t width_;
   std::size_t name_width_;
-  const Object* group_ = nullptr;  // the ARRAY or RECORD of the entry before
+  const Object* group_ = nullptr;  // ARRAY or RECORD of the previous entry
 };
 
-/// Returns the value of an entry and its meaning, or why there is no value.
+/// Returns the value of an entry and its meaning, or the reason why there is no value.
 std::string entry_text(const KnownDevice& device, const OdEntry& entry);
 
 /// Returns one JSON document. `live` is true if the values come from the device.

@@ -99,8 +99,8 @@ std::string profile_text(std::uint32_t type) {
   return profile == 0 ? "no profile" : fmt::format("CiA {}", profile);
 }
 
-/// Returns the meaning of a COB-ID of a PDO, of EMCY or of SYNC. Bit 30 has another meaning in each
-/// of them, so only the others are named.
+/// Returns the meaning of a COB-ID of a PDO, of EMCY or of SYNC. Bit 30 has a different meaning in
+/// each of these objects, so the text describes only the other bits.
 std::string cob_id_text(std::uint32_t value) {
   const bool extended = (value & 0x2000'0000) != 0;
   const std::uint32_t id = value & (extended ? 0x1FFF'FFFF : 0x7FF);
@@ -167,14 +167,14 @@ std::string drive_text(ObjectKey key, std::int64_t value) {
   }
 }
 
-/// Returns true if the device has the statusword of a CiA 402 drive: indices above 0x6000 have the
-/// meaning of another profile otherwise.
+/// Returns true if the device has the statusword and the controlword of a CiA 402 drive. In other
+/// devices, indices above 0x6000 have the meaning of another profile.
 bool is_drive(const KnownDevice& device) {
   return device.dictionary && device.dictionary->find(ObjectKey{0x6041, 0}) != nullptr &&
          device.dictionary->find(ObjectKey{0x6040, 0}) != nullptr;
 }
 
-/// Returns true for sub-index 0 of an ARRAY or RECORD, which is a number of entries.
+/// Returns true for sub-index 0 of an ARRAY or RECORD, which is the number of entries.
 bool is_count(const KnownDevice& device, ObjectKey key) {
   const Object* const object = device.dictionary ? device.dictionary->find(key.index) : nullptr;
   return key.sub == 0 && object != nullptr &&

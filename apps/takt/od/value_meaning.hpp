@@ -16,7 +16,7 @@ std::string shown_value(ObjectKey key, DataType type, std::span<const std::byte>
 
 /// Returns what the value means, in words: the state of a drive, its mode, the parts of a COB-ID or
 /// of a mapping entry, an error code. Returns the value in the unit of the network file for objects
-/// with a quantity (CiA 402). Empty if there is nothing to say.
+/// with a quantity (CiA 402). The text is empty if the value has no further meaning.
 std::string value_meaning(const KnownDevice& device, ObjectKey key, DataType type,
                           std::span<const std::byte> bytes);
 

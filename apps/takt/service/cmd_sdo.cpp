@@ -27,7 +27,7 @@ constexpr std::size_t most_file_bytes = 16 << 20;
 
 struct SdoOptions : SdoRouteOptions {
   std::string object;
-  std::string type;  ///< of a value that is read; empty if not given
+  std::string type;  ///< type of the value that is read; empty if not given
   /// The words of a value that is written: its type and the value, or the value alone.
   std::optional<std::string> first_word;
   std::optional<std::string> second_word;

@@ -12,7 +12,7 @@ namespace takt {
 /// The command line of the verbs of `takt lss`.
 struct LssOptions {
   LssAccessOptions access;
-  std::array<std::string, 4> parts;  ///< as typed: a number, or a range A-B of a scan
+  std::array<std::string, 4> parts;  ///< words as typed: a number, or a range A-B of a scan
   bool alone = false;
   bool all = false;
   bool store = false;

@@ -12,8 +12,8 @@ namespace {
 
 /// Without a daemon there is no network file, so nothing else gives a time-out.
 constexpr std::chrono::milliseconds direct_timeout{1000};
-/// How long a daemon may take for a request with the time-out of the node, which this program does
-/// not know. A node with a longer time-out needs --timeout.
+/// The longest time that a daemon may take for a request. The daemon uses the time-out of the node,
+/// which this program does not know. A node with a longer time-out needs --timeout.
 constexpr std::chrono::milliseconds longest_wait_for_daemon = std::chrono::seconds{30};
 
 }  // namespace

@@ -64,7 +64,7 @@ int run(const SimArguments& arguments) {
   if (print_findings(network.findings)) return 2;
   const std::vector<DeviceTable> devices = chosen(network, arguments);
   if (devices.empty()) throw Failure{arguments.network + " has no nodes", 2};
-  // Whether the interface follows a change of the bit rate is not known here.
+  // It is not known here whether the interface follows a change of the bit rate.
   sim::WorldOptions options{
       .seed = arguments.seed, .bitrate = network.plan.bitrate, .one_bit_rate = false};
   if (!arguments.faults.empty()) {

@@ -22,7 +22,7 @@ struct EntryItem {
   std::string key;
   YAML::Mark key_mark;
   bool is_scalar;
-  std::string text;  ///< of a scalar
+  std::string text;  ///< text of a scalar
   YAML::Mark mark;
   YAML::Node value;
 };

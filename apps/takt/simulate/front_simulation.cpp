@@ -18,7 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr unsigned rival_number = 7;  // identifies the rivals in the low bits of positions
-constexpr Time last_words = 50ms;     // for the front thread to report the result of the stop
+constexpr Time last_words = 50ms;     // time for the front thread to report the result of the stop
 constexpr Time without_taktd = 1ms;   // step of the simulation while taktd does not run
 
 /// Returns the nodes of one application. The CiA 402 nodes without an axis in `motions` are

@@ -72,7 +72,7 @@ struct FrontOutcome {
   std::uint64_t starts = 0;  ///< starts of taktd
   std::uint64_t images = 0;  ///< images published
   std::uint64_t commands_taken = 0;
-  std::array<std::uint64_t, command_refusals> refused{};  ///< in the order of CommandRefusal
+  std::array<std::uint64_t, command_refusals> refused{};  ///< counts in the order of CommandRefusal
   std::uint64_t damaged = 0;                              ///< messages that could not be decoded
   std::uint64_t gaps = 0;       ///< stalls of the front thread that discarded waiting requests
   std::uint64_t lost = 0;       ///< messages lost because the queue of taktd was full
@@ -100,8 +100,8 @@ struct SimulationOutcome {
   std::size_t axes_moved = 0;
   bool move = false;
   std::optional<FrontOutcome> front;   ///< empty without applications and motions
-  std::size_t programs = 0;            ///< that command motions
-  std::vector<MotionOutcome> motions;  ///< in the order of the file
+  std::size_t programs = 0;            ///< number of programs that command motions
+  std::vector<MotionOutcome> motions;  ///< results in the order of the file
   bool stopped = false;                ///< the ordered stop was completed in time
   StopResult stop = StopResult::none;
   std::vector<std::string> unconfirmed;  ///< a sentence for each axis that was not stopped

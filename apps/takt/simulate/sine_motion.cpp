@@ -7,8 +7,8 @@
 namespace takt {
 namespace {
 
-constexpr double frequency = 0.5;            // Hz
-constexpr double amplitude_si = 0.5;         // in the unit of the position, if it has one
+constexpr double frequency = 0.5;     // Hz
+constexpr double amplitude_si = 0.5;  // in the unit of the position, if the position has a unit
 constexpr double amplitude_counts = 5000.0;  // for a position without a unit
 constexpr std::int64_t cyclic_position = 8;
 

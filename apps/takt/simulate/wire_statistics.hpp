@@ -8,7 +8,7 @@
 
 namespace takt {
 
-/// How even the SYNC period was on the wire.
+/// The regularity of the SYNC period on the wire.
 struct SyncOnWire {
   std::uint64_t count = 0;
   std::uint64_t gaps = 0;  ///< distances of at least 1.5 periods
@@ -66,7 +66,7 @@ class WireStatistics final : public sim::BusObserver {
   SyncOnWire sync_;
   std::vector<PdoOnWire> tpdos_;
   std::vector<PdoOnWire> rpdos_;
-  std::vector<Content> base_ids_ = std::vector<Content>(0x800);  ///< by 11-bit identifier
+  std::vector<Content> base_ids_ = std::vector<Content>(0x800);  ///< indexed by 11-bit identifier
   std::map<CobId, Content> extended_ids_;
   Time last_sync_{};
   std::uint64_t cycle_bits_ = 0;

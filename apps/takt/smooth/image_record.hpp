@@ -22,7 +22,7 @@ class ImageRecord {
   BusRecord finish();
 
  private:
-  /// Where a value of the image goes.
+  /// The destination of a value of the image.
   struct Route {
     std::size_t axis = 0;
     ObjectKey object{};

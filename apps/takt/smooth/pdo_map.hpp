@@ -36,7 +36,7 @@ struct MapNode {
   std::vector<ObjectKey> refused{};  ///< objects whose write the device has refused
 };
 
-/// Where the signals of a bus are.
+/// The places of the signals of a bus.
 struct PdoMap {
   std::map<CobId, MapPdo> pdos{};
   std::map<std::uint8_t, MapNode> nodes{};

@@ -14,7 +14,7 @@ struct Trace {
   learn::LearnedBus bus;
   std::vector<StampedFrame> frames;  ///< without error frames; times count from the first frame
                                      ///< and always increase
-  Time resolution{};                 ///< of the time stamps
+  Time resolution{};                 ///< resolution of the time stamps
   bool with_times = true;            ///< false if a frame has no time stamp
   bool cut = false;                  ///< true if the recording has more frames than are kept
 };

@@ -15,7 +15,7 @@ namespace takt::soak {
 
 /// Cycles as the front thread sees them.
 struct SeenCycles {
-  std::int64_t newest = 0;  ///< that of the newest image that it has received
+  std::int64_t newest = 0;  ///< cycle of the newest image that the front thread has received
   std::int64_t now = 0;     ///< the one that has come meanwhile by the clock
 };
 

@@ -21,7 +21,7 @@ class HomingProgram {
   struct Setting {
     std::string bus;
     std::vector<std::string> axes;
-    std::vector<std::size_t> numbers;  ///< of the axes, for the judge
+    std::vector<std::size_t> numbers;  ///< numbers of the axes for the judge
     std::function<std::unique_ptr<Transport>()> connect;
     std::function<bool()> is_killed;
     /// Called with the name of each call that begins, and with its result.

@@ -52,7 +52,7 @@ sim::Faults homing_faults(const BusPlan& plan, const SoakOptions& options) {
   return faults;
 }
 
-/// Tells the judge what programs are told about motions.
+/// Passes to the judge the messages about motions that programs receive.
 class MotionListener final : public Actor {
  public:
   MotionListener(VirtualLcm& lcm, const BusPlan& plan, HomingJudge& judge)

@@ -19,14 +19,15 @@ namespace takt::soak {
 
 /// In which runs of the front thread the programs also command motions.
 enum class MotionRuns : std::uint8_t {
-  some,  ///< those whose seed has the remainder 4 when it is divided by 5
+  some,  ///< runs whose seed leaves the remainder 4 when it is divided by 5
   all,
 };
 
 struct SoakOptions {
   std::uint64_t seed = 1;
-  Time duration = std::chrono::seconds{20};  ///< of the faults; afterwards all must recover
-  std::string candump{};                     ///< file for all frames; empty means no file
+  /// Duration of the faults; afterwards all nodes must recover.
+  Time duration = std::chrono::seconds{20};
+  std::string candump{};  ///< file for all frames; empty means no file
   MotionRuns motions = MotionRuns::some;
   bool verbose = false;  ///< prints faults and events to stderr
   /// Called after each cycle and before the judges look. The judges must find what it breaks.
@@ -44,14 +45,15 @@ struct SoakCounts {
   std::uint64_t requests = 0;
   std::uint64_t boots = 0;  ///< successful boots
   std::uint64_t events = 0;
-  std::uint64_t commands = 0;        ///< commands that the programs sent
-  std::uint64_t moves = 0;           ///< positions on the wire that the programs commanded
-  std::uint64_t motions = 0;         ///< motions of an axis that the programs commanded
-  std::uint64_t arrivals = 0;        ///< motions that ended at their target
-  std::uint64_t groups = 0;          ///< groups whose begin was seen and judged
-  std::uint64_t gears = 0;           ///< gears that the programs commanded
-  std::uint64_t streams = 0;         ///< streams that the programs began
-  std::uint64_t judged_streams = 0;  ///< of these, compared with their paths up to the ends
+  std::uint64_t commands = 0;  ///< commands that the programs sent
+  std::uint64_t moves = 0;     ///< positions on the wire that the programs commanded
+  std::uint64_t motions = 0;   ///< motions of an axis that the programs commanded
+  std::uint64_t arrivals = 0;  ///< motions that ended at their target
+  std::uint64_t groups = 0;    ///< groups whose begin was seen and judged
+  std::uint64_t gears = 0;     ///< gears that the programs commanded
+  std::uint64_t streams = 0;   ///< streams that the programs began
+  /// Number of these that were compared with their paths up to the ends.
+  std::uint64_t judged_streams = 0;
   std::uint64_t judged_gears = 0;    ///< gears that were compared with their leaders, locked
   std::uint64_t homings = 0;         ///< homing runs of programs that have ended well
   std::uint64_t forged = 0;          ///< forged messages

@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t widest_channel = 32;
-/// A channel is shown as silent after this time, in dim letters.
+/// A channel without a message for this time is shown as silent, in dim letters.
 constexpr Time silence = 3s;
 
 std::string age_text(Time age) {

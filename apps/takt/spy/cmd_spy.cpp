@@ -65,7 +65,7 @@ struct SpyOptions {
 
 bool has_terminal() { return ::isatty(STDOUT_FILENO) != 0 && ::isatty(STDIN_FILENO) != 0; }
 
-/// When the command ends: by --for, -n, a signal or a key.
+/// Determines when the command ends: at the time of --for, or on a signal.
 class End {
  public:
   explicit End(std::optional<Time> length) {
@@ -78,7 +78,7 @@ class End {
   Time until_ = Time::max();
 };
 
-/// Lines on the whole terminal. The first one stays while the others scroll.
+/// A view on the whole terminal. Its first line stays while the others scroll.
 class View {
  public:
   /// Does what the pressed keys ask for. Returns true if one of them ends the view.
@@ -156,7 +156,7 @@ class ChannelReader {
     typed_ = add_typed(types_, network.plan);
   }
 
-  /// Returns the values if this is a message of the channel.
+  /// Returns the values of the message if it came on the channel.
   std::optional<std::vector<Value>> take(std::string_view channel, Bytes data) {
     if (!image_bus_.empty()) views_.take(channel, data);
     if (channel != channel_ || awaits_layout()) return {};
@@ -189,7 +189,7 @@ class ChannelReader {
         {}};
   }
 
-  /// Puts the signals of an image in the place of its raw values, once the layout has come.
+  /// Replaces the raw values of an image by its signals when the layout has come.
   void name_signals(std::vector<Value>& values) const {
     const auto found = views_.buses().find(image_bus_);
     if (found == views_.buses().end() || found->second.values().empty()) return;
@@ -207,7 +207,7 @@ class ChannelReader {
   }
 
   std::string channel_;
-  std::string image_bus_;  // empty: not an image
+  std::string image_bus_;  // bus of the image; empty if the channel is not that of an image
   MessageTypes types_;
   TypedChannels typed_;
   BusViews views_;
@@ -236,7 +236,8 @@ void print_line(const std::string& channel, const std::vector<Value>& values) {
   std::fflush(stdout);
 }
 
-/// Explains that no message of the channel has come, with a similar channel on which some have.
+/// Returns the error that no message of the channel has come. Names a similar channel on which
+/// messages have come.
 Failure no_message(const std::string& channel, const ChannelTable& table,
                    const std::string& where) {
   std::vector<std::string> names;

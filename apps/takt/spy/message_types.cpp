@@ -14,7 +14,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// Reads `int64_t values[num_values];  // raw`.
+/// Reads a line such as `int64_t values[num_values];  // raw`.
 bool parse_member(std::string_view line, Member& member) {
   const std::size_t end = line.find(';');
   if (end == line.npos) return false;

@@ -15,8 +15,8 @@ namespace takt::spy {
 namespace {
 
 constexpr std::size_t most_values = 20'000;
-constexpr std::size_t most_numbers = 16;  // of an array that are shown
-constexpr int most_depth = 8;             // of types in types
+constexpr std::size_t most_numbers = 16;  // largest number of elements of an array that are shown
+constexpr int most_depth = 8;             // deepest nesting of types
 
 struct Broken {
   std::string sentence;
@@ -53,7 +53,7 @@ class Decoder {
     for (const std::string& dimension : member.dimensions) {
       const auto left = static_cast<std::int64_t>(rest_.size());
       const std::int64_t size = size_of(dimension, sizes);
-      // Each element has at least one byte.
+      // An element has at least one byte, so more elements can't be in the message.
       if (size < 0 || size > left || count * size > left) {
         throw Broken{
             fmt::format("{} has {} elements, but {} bytes are left", name, size, rest_.size())};
@@ -128,7 +128,7 @@ class Decoder {
     throw Broken{fmt::format("takt does not know the type {}", type)};
   }
 
-  /// The length counts the zero at the end.
+  /// The length in the message includes the terminating zero.
   std::string text(const std::string& name) {
     const std::size_t length = number<std::uint32_t>(name);
     if (length == 0 || length > rest_.size()) throw Broken{"the message ends at " + name};
@@ -141,7 +141,7 @@ class Decoder {
   const MessageTypes& types_;
   Bytes rest_;
   std::vector<Value> values_;
-  std::optional<std::int64_t> last_integer_;  // of the newest value, if it is one
+  std::optional<std::int64_t> last_integer_;  // the newest value, if it is an integer
 };
 
 }  // namespace

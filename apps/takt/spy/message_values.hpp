@@ -9,11 +9,11 @@
 
 namespace takt::spy {
 
-/// One value of a message: `nodes[2].name`, `"elbow"`.
+/// One value of a message, for example the name `nodes[2].name` and the text `"elbow"`.
 struct Value {
   std::string name;
   std::string text;
-  std::string comment;  ///< of its member
+  std::string comment;  ///< comment of its member in the .lcm file
 };
 
 /// Decodes a message, whose fingerprint is not checked. An array of numbers is one value. The bytes

@@ -9,16 +9,16 @@
 
 namespace takt::spy {
 
-/// A type of `takt export lcm`.
+/// A message type of `takt export lcm`.
 struct TypedChannel {
   std::string type;
   std::uint64_t fingerprint = 0;
 };
 
-/// These types by their channels.
+/// The types of `takt export lcm` by their channels.
 using TypedChannels = std::map<std::string, TypedChannel, std::less<>>;
 
-/// Adds the types of the nodes of a bus to `types`. Returns their channels.
+/// Adds the message types of the nodes of a bus to `types`. Returns the channels of these types.
 TypedChannels add_typed(MessageTypes& types, const BusPlan& plan);
 
 }  // namespace takt::spy

@@ -39,7 +39,7 @@ bool is_ignored(int number) noexcept {
 StopSignal::StopSignal() {
   struct sigaction action{};
   action.sa_handler = on_stop_signal;
-  action.sa_flags = SA_RESTART;  // for short system calls that a signal can still interrupt
+  action.sa_flags = SA_RESTART;  // restarts short system calls that a signal can still interrupt
   sigemptyset(&action.sa_mask);
   sigset_t stops;
   sigemptyset(&stops);

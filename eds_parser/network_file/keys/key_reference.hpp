@@ -9,7 +9,7 @@ namespace takt {
 
 /// The keys of one map.
 struct KeySection {
-  std::string name;  ///< for example "nodes: limits: objects"
+  std::string name;  ///< heading, for example "nodes: limits: objects"
   KeyRows keys;
 };
 

@@ -59,16 +59,17 @@ struct RealRange {
 /// The values that a key accepts.
 struct KeyValue {
   KeyType type = KeyType::value;
-  IntegerRange range{};    ///< of an integer, or of the numbers of a map
-  RealRange numbers{};     ///< of a number
-  IntegerRange entries{};  ///< of each value, if the key is a list or a map of numbers
+  IntegerRange range{};    ///< range of an integer, or of the numbers of a map
+  RealRange numbers{};     ///< range of a number
+  IntegerRange entries{};  ///< range of each value, if the key is a list or a map of numbers
   std::span<const std::string_view> words{};  ///< words that are accepted, beside numbers if any
   KeyRows (*parts)() = nullptr;
 };
 
 /// The part of a row that the printed reference shows.
 struct KeyText {
-  std::string_view name;  ///< for foreign keys, all their names with blanks between them
+  /// Name of the key; for foreign keys, all their names with blanks between them.
+  std::string_view name;
   KeyValue value{};
   std::string_view otherwise{};  ///< the default; empty if there is none
   std::string_view meaning{};

@@ -18,7 +18,7 @@ namespace takt {
 struct IntegerRange {
   std::int64_t low = 0;
   std::int64_t high = std::numeric_limits<std::int64_t>::max();
-  std::string_view unit = {};  ///< for example "ms"; follows the limits in messages
+  std::string_view unit = {};  ///< unit, for example "ms"; follows the limits in messages
 
   constexpr bool operator==(const IntegerRange&) const noexcept = default;
 };

@@ -70,7 +70,7 @@ class YamlTreeBuilder : public YAML::EventHandler {
   struct Open {
     YamlNode* node;
     YAML::anchor_t anchor;
-    const YamlNode* key = nullptr;  ///< in a map: the key that waits for its value
+    const YamlNode* key = nullptr;  ///< for a map: the key that waits for its value
     SourcePos key_pos;
     std::vector<std::pair<const YamlNode*, SourcePos>> merges;
     std::map<std::string, SourcePos, std::less<>> seen;

@@ -13,7 +13,7 @@
 namespace takt {
 namespace {
 
-constexpr std::uint32_t homing_mode = 1U << 5;  // of 0x6502
+constexpr std::uint32_t homing_mode = 1U << 5;  // bit of 0x6502
 
 class HomingSteps : BootPart {
  public:

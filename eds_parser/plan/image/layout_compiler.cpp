@@ -53,7 +53,7 @@ class LayoutCompiler {
   struct Source {
     std::size_t node_index;
     const EffectivePdo* pdo;
-    const EffectiveEntry* entry = nullptr;  ///< for an MPDO: the object of this row
+    const EffectiveEntry* entry = nullptr;  ///< object of this row for an MPDO
     std::uint32_t header = 0;
 
     /// Returns the entries that become signals.

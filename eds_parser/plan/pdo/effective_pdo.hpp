@@ -43,7 +43,7 @@ struct EffectiveEntry {
   }
 };
 
-/// How takt uses a PDO.
+/// The way in which takt uses a PDO.
 enum class PdoUse : std::uint8_t {
   exchanged,  ///< The PDO is part of the process image.
   linked,     ///< Another device sends this RPDO.
@@ -80,7 +80,8 @@ struct EffectivePdo : PdoNumber {
   bool drop_late = false;
   bool on_request = false;  ///< The PDO is sent and expected only on request.
   Mpdo mpdo = Mpdo::none;
-  std::vector<EffectiveEntry> mapping;  ///< for an MPDO: the objects that it carries
+  /// Entries of the mapping; for an MPDO, the objects that it carries.
+  std::vector<EffectiveEntry> mapping;
   unsigned bits = 0;
   SourcePos pos;         ///< place of the PDO in the network file, or of its node
   SourcePos cob_id_pos;  ///< place of `cob_id`, or the same as `pos`

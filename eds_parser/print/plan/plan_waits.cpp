@@ -90,7 +90,7 @@ class Waits {
   void sdo_objects() {
     std::set<ObjectLimit> limits;
     for (const NodePlan& node : plan_.nodes) limits.merge(object_limits(node.sdo));
-    std::map<ObjectLimit, std::string> rows;  // from limit and nodes to objects
+    std::map<ObjectLimit, std::string> rows;  // maps limit and nodes to objects
     for (const ObjectLimit& limit : limits) {
       const std::string whose =
           nodes([&](const NodePlan& node) { return object_limits(node.sdo).contains(limit); });

@@ -8,7 +8,7 @@ namespace takt {
 
 /// One kind of wait of the master, and how long it lasts at most.
 struct PlanWait {
-  std::string wait;  ///< its name in JSON: "lss_store"
+  std::string wait;  ///< name of the wait in JSON: "lss_store"
   Time limit{};
   std::string what;  ///< what the master waits for, in words
 };

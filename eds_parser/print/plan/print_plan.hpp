@@ -10,7 +10,7 @@
 
 namespace takt {
 
-/// Which parts of a plan to print, and the options to print with it.
+/// The parts of a plan to print, and the options for printing.
 struct PlanPrint {
   std::optional<NodeId> node;  ///< only this node; empty = all nodes
   RealtimeOptions realtime;

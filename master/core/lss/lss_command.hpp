@@ -38,9 +38,9 @@ enum class LssOp : std::uint8_t {
 /// One LSS service with its parameters; LssOp says which of them it uses.
 struct LssCommand {
   LssOp op = LssOp::switch_global;
-  /// See LssOp.
+  /// First parameter of the service, as LssOp describes it.
   std::uint8_t a = 0;
-  /// See LssOp.
+  /// Second parameter of the service, as LssOp describes it.
   std::uint8_t b = 0;
   bool several = false;  ///< configure and store: wait for the answers of several devices; the
                          ///< worst answer counts

@@ -112,8 +112,8 @@ class Standstill {
   std::int64_t velocity_ = 0;
   std::int64_t anchor_ = 0;  ///< Differences are measured from this position.
   Time anchor_at_{};
-  Time anchor_from_{};  ///< When the anchor was requested by SDO; anchor_at_ if a TPDO has carried
-                        ///< it.
+  /// Time at which the anchor was requested by SDO; anchor_at_ if a TPDO has carried it.
+  Time anchor_from_{};
   std::int64_t position_ = 0;
   std::optional<Time> position_at_;
   std::optional<Time> velocity_at_;  ///< The time of the newest 0x606C.

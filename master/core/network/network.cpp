@@ -208,7 +208,8 @@ Time Network::deadline() const noexcept {
 void Network::withdraw(std::uint64_t id) noexcept {
   requests_.withdraw(id);
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
-    if (sessions_[i].withdraw(id)) deadlines_[i] = Time{};  // its next request may begin
+    // The next request of the node may begin.
+    if (sessions_[i].withdraw(id)) deadlines_[i] = Time{};
   }
 }
 

@@ -215,7 +215,7 @@ class Network {
   NmtGate nmt_gate_;
   NetworkStart start_;
   FixedQueue<NmtMessage, 4> broadcasts_;  // broadcasts of the master itself
-  std::vector<NodeSession> sessions_;     // in the order of plan.nodes
+  std::vector<NodeSession> sessions_;     // sessions in the order of plan.nodes
   // Copies of the statuses of the sessions, contiguous for the reader.
   std::vector<NodeStatus> statuses_;
   std::vector<bool> streams_;            // by session: a block transfer is running

@@ -30,7 +30,7 @@ struct StopAxis {
 /// Input of the ordered stop in one cycle.
 struct StopView {
   ReceivedValues received;
-  std::span<const bool> exchanging;  ///< by node index: its PDOs are exchanged
+  std::span<const bool> exchanging;  ///< by node index: the PDOs of the node are exchanged
   std::span<const NodeStatus> nodes;
   /// True if the disarming of every device is finished, with or without success.
   bool disarmed = false;

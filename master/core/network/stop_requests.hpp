@@ -100,7 +100,7 @@ class StopRequests {
   std::vector<StopAxis> axes_;
   std::vector<Poll> polls_;
   std::vector<Job> jobs_;
-  std::vector<std::uint8_t> failed_;  // by node: it accepted no write, or does not exist
+  std::vector<std::uint8_t> failed_;  // by node: the node accepted no write, or does not exist
   std::vector<bool> refused_boots_;   // by node, see note_boot()
   std::size_t next_job_ = 0;
   std::size_t answered_ = 0;  // answered jobs

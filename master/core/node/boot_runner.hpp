@@ -153,7 +153,7 @@ class BootRunner {
   enum class Compared : std::uint8_t { same, differs };
   /// States whether this boot has written to the device, see BootAction::write_if_changed.
   enum class Device : std::uint8_t { untouched, written };
-  /// See guards().
+  /// States whether the guarding of the node has begun.
   enum class Guarding : std::uint8_t { not_yet, begun };
   /// The progress of the current step.
   struct Progress {

@@ -52,7 +52,7 @@ struct CommandsOptions {
 struct CommandContext {
   std::uint64_t cycle = 0;  ///< present cycle by the clock; 0 before the first image
   Time now{};
-  std::span<const NodeStatus> nodes;  ///< in the order of BusPlan::nodes
+  std::span<const NodeStatus> nodes;  ///< states in the order of BusPlan::nodes
   /// The node of the typed channel; a release on it reaches only this node.
   std::optional<std::size_t> only_node{};
 };
@@ -125,7 +125,7 @@ class Commands {
 
   bool check_message(const Received& from);
   bool read_items(const Received& from);
-  /// Why a sender does not get a node.
+  /// The reason why a sender does not get a node.
   struct Objection {
     CommandRefusal reason;
     std::string why;
@@ -143,7 +143,8 @@ class Commands {
                          std::uint32_t configured) const noexcept;
   std::uint32_t shortest_limit(std::size_t node) const noexcept;
   std::uint32_t lease_cycles(std::size_t node_index) const noexcept;
-  /// Why a command is refused, and the node that it concerns; 0 if it concerns no single node.
+  /// The reason why a command is refused, and the node that it concerns; 0 if it concerns no single
+  /// node.
   struct Refused {
     CommandRefusal reason;
     std::uint8_t node = 0;
@@ -158,9 +159,10 @@ class Commands {
   std::uint32_t second_;  // cycles in one second
   LeaseTable leases_;
   RateLimit reported_{std::chrono::seconds{1}};
-  std::vector<Item> items_;                          // items of the current message
-  std::vector<Verdict> verdicts_;                    // per node, for the current message
-  std::vector<std::optional<CommandLimit>> limits_;  // by signal: that of the newest command
+  std::vector<Item> items_;        // items of the current message
+  std::vector<Verdict> verdicts_;  // per node, for the current message
+  // Limit of the newest command, indexed by signal.
+  std::vector<std::optional<CommandLimit>> limits_;
   std::uint64_t taken_ = 0;
   std::array<std::uint64_t, command_refusals> refused_{};
 };

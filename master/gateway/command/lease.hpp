@@ -24,7 +24,7 @@ struct Freshness {
 struct CommandAge {
   std::uint64_t computed_from = 0;  ///< cycle of the image
   std::uint64_t now = 0;            ///< present cycle by the clock
-  std::uint32_t time_to_live = 0;   ///< from the message; 0 if the message sets none
+  std::uint32_t time_to_live = 0;   ///< time to live in the message; 0 if the message sets none
   std::uint32_t configured = 0;     ///< 0 means no limit
   std::uint32_t most = 1;           ///< cycles in one second; the limit if none is configured
 };
@@ -38,7 +38,7 @@ struct Sender {
   std::string_view name;
 };
 
-/// Why a sender does not get a node.
+/// The reason why a sender does not get a node.
 enum class LeaseVerdict : std::uint8_t {
   taken,
   held,       ///< another sender holds the node
@@ -87,7 +87,7 @@ class LeaseTable {
     std::uint64_t end = 0;      // first cycle in which the node is free again
     std::uint64_t newest = 0;   // cycle from which the newest command was computed
     std::uint64_t ordered = 0;  // cycle of the newest command that is no sign of life
-    bool released = false;      // that command is a release
+    bool released = false;      // the command is a release
   };
   static LeaseVerdict judge(const Lease& lease, std::int64_t instance,
                             const LeaseTerm& term) noexcept;

@@ -25,7 +25,8 @@ class Transfers {
   static constexpr std::size_t parts_at_once = 16;      ///< largest number of answers to one "more"
 
   struct Sinks {
-    std::function<bool(const Request&)> submit;  ///< to the bus thread; false if it has no room
+    /// Hands a request to the bus thread; returns false if it has no room.
+    std::function<bool(const Request&)> submit;
     std::function<void(const transfer_state_t&)> state;  ///< sends it to the program that asked
   };
   /// `buffers` have to outlive every request.

@@ -39,7 +39,7 @@ class TypedChannels {
   struct Type {
     TypedMessage message;
     std::uint64_t fingerprint = 0;
-    std::uint64_t fingerprint_of_schema_1 = 0;  // for commands
+    std::uint64_t fingerprint_of_schema_1 = 0;  // only for commands
   };
 
   void encode(const Type& state, const ImageView& image, Time wall_minus_monotonic);

@@ -109,7 +109,7 @@ class MotionCommands {
   MotionJobs jobs_;
   MotionStops stops_;
   MotionStreams streams_;
-  std::vector<MotionSequence> sequences_;  ///< by axis
+  std::vector<MotionSequence> sequences_;  ///< indexed by axis
   bool watched_ = false;
   bool active_ = false;
 };

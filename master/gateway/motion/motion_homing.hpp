@@ -27,7 +27,7 @@ class MotionHoming {
  private:
   const std::vector<MotionAxis>& axes_;
   MotionAnswers& answers_;
-  std::vector<motion::HomingState> states_;  ///< by axis
+  std::vector<motion::HomingState> states_;  ///< indexed by axis
 };
 
 }  // namespace takt

@@ -20,7 +20,8 @@ struct MotionName {
   std::string sender{};
 };
 
-/// Why a motion is refused, and the axis that caused the refusal, as an index into motion_axes().
+/// The reason why a motion is refused, and the axis that caused the refusal, as an index into
+/// motion_axes().
 struct MotionRefusal {
   std::string why{};
   std::optional<std::size_t> axis{};

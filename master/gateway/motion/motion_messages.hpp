@@ -10,7 +10,7 @@ namespace takt {
 
 /// What motion_t reports about the motions of one axis, with the ids of the application.
 struct ShownMotion {
-  /// How a motion has ended. The numbers are those of axis_motion_t::outcome.
+  /// The end of a motion. The numbers are those of axis_motion_t::outcome.
   enum class Ended : std::uint8_t { none, done, stopped, replaced, refused };
 
   std::int32_t id = 0;        ///< id of the motion that runs; 0 means none

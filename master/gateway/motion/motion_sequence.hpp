@@ -71,7 +71,7 @@ class MotionSequence {
     std::int64_t utime = 0;
     std::int32_t id = 0;
   };
-  Message stop_;         ///< its cycle is the latest cycle of all stops of its sender
+  Message stop_;         ///< the cycle of this stop is the latest cycle of all stops of the sender
   Message newest_stop_;  ///< the stop that came last
   Message move_;
   Message stream_;  ///< only the instance and the id are set

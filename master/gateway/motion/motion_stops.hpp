@@ -62,8 +62,8 @@ class MotionStops {
   const std::vector<MotionAxis>& axes_;
   const Commands& commands_;
   SubmitMotion submit_;
-  std::vector<Owner> owners_;  ///< by axis: the sender of the motion that began last
-  std::vector<bool> waiting_;  ///< by axis: a stop waits to be handed over
+  std::vector<Owner> owners_;  ///< sender of the motion that began last, indexed by axis
+  std::vector<bool> waiting_;  ///< a stop waits to be handed over, indexed by axis
 };
 
 }  // namespace takt

@@ -61,11 +61,12 @@ class MotionStreams {
     std::uint64_t begin = 0;  ///< first cycle, see AxisReport::began
     double first_time = 0.0;  ///< time of the first point as the messages give it, in s
     std::vector<motion::AxisGoal> goals{};  ///< the axes and their limits
-    std::vector<double> turns{};  ///< by axis: whole turns between the points and the motion
-    std::vector<motion::StreamPoint> last{};  ///< by axis: the newest point
+    /// Whole turns between the points and the motion, indexed by axis.
+    std::vector<double> turns{};
+    std::vector<motion::StreamPoint> last{};  ///< newest point, indexed by axis
     std::int64_t next = 1;                    ///< number of the next point
     std::deque<double> times{};               ///< times of the points that the bus thread may hold
-    std::vector<motion::MotionMessage> filling{};  ///< by axis: the message for the next points
+    std::vector<motion::MotionMessage> filling{};  ///< message for the next points, indexed by axis
     std::deque<motion::MotionMessage> waiting{};   ///< messages that wait for the bus thread
   };
 

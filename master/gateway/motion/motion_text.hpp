@@ -7,15 +7,15 @@
 
 namespace takt {
 
-/// Why there is no motion, as the end of a sentence: "the axis is stopping".
+/// Returns the reason why there is no motion, as the end of a sentence: "the axis is stopping".
 std::string_view text(const motion::PlanRefusal& refusal) noexcept;
-/// Why a point of a stream is refused.
+/// Returns the reason why a point of a stream is refused.
 std::string_view text(motion::StreamDefect defect) noexcept;
-/// Why an order did not begin.
+/// Returns the reason why an order did not begin.
 std::string_view text(motion::Outcome outcome) noexcept;
-/// Why a group has stopped.
+/// Returns the reason why a group has stopped.
 std::string_view text(motion::StopCause cause) noexcept;
-/// Why an absolute motion of an axis in this state is refused, and what to do.
+/// Returns the reason why an absolute motion of an axis in this state is refused, and what to do.
 std::string_view text(motion::HomingState homing) noexcept;
 
 }  // namespace takt

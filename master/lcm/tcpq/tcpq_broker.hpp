@@ -66,7 +66,7 @@ class TcpqBroker final : public Transport {
     Time heard{};            // time of its newest message
     Time read{};             // last time at which it read, or had nothing to read
     std::uint64_t taken{};   // bytes that the kernel had taken by then
-    bool has_asked = false;  // it has subscribed or published
+    bool has_asked = false;  // the client has subscribed or published
   };
 
   static Options defaults() { return {}; }

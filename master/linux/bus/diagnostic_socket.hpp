@@ -15,8 +15,9 @@ namespace takt {
 /// Traffic on the bus since the socket was opened.
 struct HeardTraffic {
   std::uint64_t frames = 0;
-  std::uint64_t bits = 0;  ///< with the stuff bits of average data; load = bits / (t * bit rate)
-  std::uint64_t lost = 0;  ///< frames that this socket was too slow to receive
+  /// Number of bits with the stuff bits of average data; load = bits / (t * bit rate).
+  std::uint64_t bits = 0;
+  std::uint64_t lost = 0;          ///< frames that this socket was too slow to receive
   std::uint64_t error_frames = 0;  ///< error frames of all classes, including single bus errors
 };
 

@@ -142,7 +142,7 @@ void AxisMotions::stop_split_streams() noexcept {
     std::uint32_t stream = 0;
     double until = 0.0;
   };
-  std::array<Moving, max_axes> moving{};  // by group
+  std::array<Moving, max_axes> moving{};  // indexed by group
   for (const AxisRunner& runner : runners_) {
     Moving& other = moving[runner.group()];
     const bool is_first = other.stream != runner.newest();
@@ -184,7 +184,7 @@ void AxisMotions::stop_groups() noexcept {
 /// An order begins if all orders of its group are due, have its id, and may begin.
 void AxisMotions::begin_orders(CycleNumber cycle) noexcept {
   std::array<Outcome, max_axes> objections{};
-  std::array<std::uint8_t, max_axes> ready{};  // by group: number of orders that may begin
+  std::array<std::uint8_t, max_axes> ready{};  // number of orders that may begin, indexed by group
   const auto leads = [&](const MotionOrder& order) {
     if (order.group >= runners_.size()) return false;
     const MotionOrder* first = runners_[order.group].due(cycle);

@@ -101,8 +101,9 @@ class AxisMotions {
 
   std::vector<AxisRunner> runners_;
   std::vector<AxisReport> reports_;
-  std::array<GroupStop, max_axes> stops_{};    ///< by group: its stop in the next cycle
-  std::array<CycleNumber, max_axes> heard_{};  ///< by sender: its newest sign of life
+  /// Stop of the group in the next cycle, indexed by group.
+  std::array<GroupStop, max_axes> stops_{};
+  std::array<CycleNumber, max_axes> heard_{};  ///< newest sign of life, indexed by sender
 };
 
 }  // namespace takt::motion

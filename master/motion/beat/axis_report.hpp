@@ -56,7 +56,7 @@ struct AxisInput {
 
 enum class AxisState : std::uint8_t { unpowered, standing, moving, stopping };
 
-/// Why a group stops.
+/// The reason why a group stops.
 enum class StopCause : std::uint8_t {
   none,
   sender_silent,  ///< the sender was silent for longer than the timeout of the motion
@@ -99,7 +99,7 @@ enum class Outcome : std::uint8_t {
   // The following outcomes are refusals: the order did not begin.
   unsound,          ///< see is_sound()
   second_in_cycle,  ///< the axis has received another order in the same cycle
-  too_late,         ///< its first cycle had passed
+  too_late,         ///< the first cycle of the order had passed
   other_start,      ///< the order does not begin in the commanded state of the axis
   no_rest,          ///< the end of its profile contradicts `ending`
   no_stop,      ///< the limits of a gear do not allow a stop within the permitted time and range
@@ -115,7 +115,7 @@ constexpr bool has_begun(Outcome outcome) noexcept {
   return outcome == Outcome::done || outcome == Outcome::stopped || outcome == Outcome::replaced;
 }
 
-/// How an order ended.
+/// The end of an order.
 struct EndedOrder {
   std::uint32_t id = 0;
   Outcome outcome = Outcome::none;

@@ -13,7 +13,7 @@ enum class LeaderKind : std::uint8_t {
   measured,   ///< a position in the image of the bus
 };
 
-/// How the phase of a gear is determined.
+/// The way in which the phase of a gear is determined.
 enum class PhaseMatch : std::uint8_t {
   here,  ///< the velocities are matched first; the phase is the one that the axis has at that
          ///< moment
@@ -63,7 +63,7 @@ struct LeaderSample {
   enum class Age : std::uint8_t {
     fresh,
     missing,  ///< the signal was not received in this cycle
-    lost,     ///< its node does not exchange PDOs
+    lost,     ///< the node of the leader does not exchange PDOs
   };
   static constexpr std::uint16_t no_signal = 0xFFFF;
 

@@ -40,7 +40,7 @@ class LeaderEstimate {
   std::int64_t last_ = 0;  ///< counts of the last sample
   double total_ = 0.0;     ///< counts since the first sample
   double elapsed_ = 0.0;   ///< s since the first sample
-  State state_;            ///< at the last sample, relative to the first one
+  State state_;            ///< state at the last sample, relative to the first one
   double jerk_ = 0.0;
   double slope_ = 0.0;  ///< the sum of the filter
   std::uint8_t missing_ = 0;

@@ -9,7 +9,7 @@
 
 namespace takt::motion {
 
-/// How the motion reaches a point of a stream.
+/// The shape of the motion to a point of a stream.
 enum class Curve : std::uint8_t {
   quintic,  ///< reaches the position, velocity and acceleration of the point
   cubic,    ///< reaches its position and velocity; the acceleration follows from them, and jumps at

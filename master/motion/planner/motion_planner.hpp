@@ -62,7 +62,7 @@ struct TaggedOrder {
   MotionTag tag;
 };
 
-/// Why a motion can't be planned.
+/// The reason why a motion can't be planned.
 enum class PlanFault : std::uint8_t {
   no_axis,      ///< there is no such axis, or it is named twice
   no_report,    ///< the bus thread has not reported yet
@@ -92,7 +92,7 @@ class MotionPlanner {
   /// Largest number of cycles in which the axes of a jog reach their velocities, as the sum over
   /// all axes. It limits the time that plan() takes.
   static constexpr double longest_jog_start = 20'000;
-  static constexpr double longest_motion = 1e9;  ///< in cycles
+  static constexpr double longest_motion = 1e9;  ///< duration in cycles
   /// Largest difference between the first point of a stream and the state of the axis that counts
   /// as rounding. It is relative to the position (at least 1) and to the limits.
   static constexpr double start_tolerance = 1e-6;

@@ -8,14 +8,14 @@
 
 namespace takt::motion {
 
-/// Why an axis may not follow a stream to a point.
+/// The reason why an axis may not follow a stream to a point.
 enum class StreamDefect : std::uint8_t {
   not_finite,     ///< a number of the point is infinite or NaN
-  not_later,      ///< its time is not later than that of the point before
+  not_later,      ///< the time of the point is not later than that of the point before
   position,       ///< the axis would leave its range of positions
-  velocity,       ///< on the way, the velocity would be outside the limits
-  acceleration,   ///< on the way, the acceleration would be outside the limits
-  jerk,           ///< on the way, the jerk would be outside the limits
+  velocity,       ///< the velocity would be outside the limits on the way
+  acceleration,   ///< the acceleration would be outside the limits on the way
+  jerk,           ///< the jerk would be outside the limits on the way
   stop_position,  ///< a stop on the way would leave the range of positions
   stop_velocity,  ///< the velocity would be outside the limits during a stop on the way
 };

@@ -9,7 +9,7 @@
 
 namespace takt::sim {
 
-/// Which of its queued frames a controller offers to the bus.
+/// The frame of its queue that a controller offers to the bus next.
 enum class QueueOrder : std::uint8_t {
   fifo,      ///< the oldest frame, as in a SocketCAN queue
   priority,  ///< the frame with the lowest identifier, as in a controller with many mailboxes

@@ -32,7 +32,7 @@ class FaultSchedule {
   void find_next() noexcept { next_at_ = next_ < edges_.size() ? edges_[next_].at : never; }
 
   Faults faults_;
-  std::vector<Edge> edges_;  ///< by time, then by order of addition
+  std::vector<Edge> edges_;  ///< sorted by time, then by order of addition
   std::size_t next_ = 0;
   Time next_at_ = never;  ///< time of edges_[next_], which each step of the world asks for
 };

@@ -58,7 +58,7 @@ struct Fault {
                                  ///< including the master
   Time at{};
   Time until = never;
-  double probability = 0.0;  ///< for each frame, 0..1
+  double probability = 0.0;  ///< probability for each frame, 0..1
   Time time{};
   int ppm = 0;
   CobId cob_id{};

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::uint16_t pdos_a_direction = 512;
 constexpr std::uint16_t sdo_servers = 128;
-constexpr Time fast_tick = std::chrono::milliseconds{1};   // for event-driven TPDOs
+constexpr Time fast_tick = std::chrono::milliseconds{1};   // period for event-driven TPDOs
 constexpr Time slow_tick = std::chrono::milliseconds{10};  // between updates of a model
 
 /// True if the frame belongs to the exchange of process data, which changes no deadline of a

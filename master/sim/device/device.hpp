@@ -46,10 +46,10 @@ enum class DeviceState : std::uint8_t {
 
 /// Times that a device needs for its work.
 struct DeviceTimes {
-  Time startup = std::chrono::milliseconds{50};  ///< from power-on or reset to boot-up
+  Time startup = std::chrono::milliseconds{50};  ///< time from power-on or reset to boot-up
   Time communication_reset = std::chrono::milliseconds{5};
-  Time sdo = std::chrono::microseconds{200};      ///< from the request to the answer
-  Time pdo = std::chrono::microseconds{30};       ///< from SYNC to the TPDO
+  Time sdo = std::chrono::microseconds{200};      ///< time from the request to the answer
+  Time pdo = std::chrono::microseconds{30};       ///< time from SYNC to the TPDO
   Time segment = std::chrono::microseconds{112};  ///< between upload block segments
 };
 

@@ -28,7 +28,7 @@ enum class RouteKind : std::uint8_t {
 struct Route {
   CobId id;
   RouteKind kind = RouteKind::nmt;
-  std::uint16_t index = 0;  ///< of several SDO servers or PDOs
+  std::uint16_t index = 0;  ///< index of one of several SDO servers or PDOs
 };
 
 /// The identifiers that a device receives. An 11-bit identifier is found without a search, because

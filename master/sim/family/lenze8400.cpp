@@ -22,7 +22,8 @@ constexpr std::uint64_t order_halt = 0x0100;
 
 // Bits of the status word, and the states in its bits 8 to 11.
 constexpr std::uint64_t shows_no_power = 0x0002;
-constexpr std::uint64_t shows_speed_reached = 0x0018;  // of the ramp, and of the motor
+// Bits for the speed of the ramp, and for that of the motor.
+constexpr std::uint64_t shows_speed_reached = 0x0018;
 constexpr std::uint64_t shows_standstill = 0x0040;
 constexpr std::uint64_t shows_inhibit = 0x0080;
 constexpr std::uint64_t shows_ready = 0x0300;

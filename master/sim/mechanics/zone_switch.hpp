@@ -26,7 +26,7 @@ enum class EdgeKind : std::uint8_t { none, rising, falling };
 /// A change of a switch within a stretch.
 struct SwitchEdge {
   EdgeKind kind = EdgeKind::none;
-  double part = 0;  ///< of the stretch, 0 .. 1
+  double part = 0;  ///< part of the stretch, 0 .. 1
 };
 
 /// A switch that is active where the axis is in a zone (low <= position < high). A zone without low

@@ -89,7 +89,7 @@ class AxisObjects {
   Slot homing_speed_switch;
   Slot homing_speed_zero;
   Slot homing_acceleration;
-  std::vector<Slot> homing_methods;  ///< those that the drive lists in 0x60E3
+  std::vector<Slot> homing_methods;  ///< objects with the methods that the drive lists in 0x60E3
   Slot position_offset;
   Slot velocity_offset;
   Slot torque_offset;

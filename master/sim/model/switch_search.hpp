@@ -7,8 +7,9 @@
 
 namespace takt::sim {
 
-/// How a homing method finds its reference: it seeks a switch, goes to one side of it if it has to
-/// enter it again, and crosses the edge slowly. CiA 402-2, homing methods.
+/// The motions with which a homing method finds its reference: the drive seeks a switch, goes to
+/// one side of it if it has to enter it again, and crosses the edge slowly. CiA 402-2, homing
+/// methods.
 struct HomingMethod {
   TravelSwitch seeks = TravelSwitch::home;
   bool needs_switch = true;
@@ -23,8 +24,8 @@ std::optional<HomingMethod> homing_method(std::int64_t number) noexcept;
 
 /// Velocities of a search, in counts/s.
 struct SearchSpeeds {
-  double fast = 0;  ///< to the switch
-  double slow = 0;  ///< to the edge and the index pulse
+  double fast = 0;  ///< speed to the switch
+  double slow = 0;  ///< speed to the edge and the index pulse
 };
 
 /// The search for the reference with the switches that the axis has.

@@ -18,7 +18,7 @@ constexpr std::uint16_t falling_stored = 1U << 2;
 
 struct TouchProbe::Input {
   TravelSwitch which;
-  unsigned shift;  ///< of its bits
+  unsigned shift;  ///< shift of the bits of this input
   Slot& rising_edge;
   Slot& falling_edge;
 };

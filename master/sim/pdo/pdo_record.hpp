@@ -13,7 +13,7 @@ namespace takt::sim {
 /// EMCY code: a frame is too short for the mapping of its PDO. CiA 301, table 26.
 inline constexpr std::uint16_t too_short = 0x8210;
 
-/// How the frames of a multiplexed PDO are addressed. CiA 301, 7.2.3.
+/// The addressing of the frames of a multiplexed PDO. CiA 301, 7.2.3.
 enum class Multiplex : std::uint8_t { none, source, destination };
 
 /// The communication and mapping objects of one PDO in the dictionary, and the checks of a device

@@ -20,10 +20,10 @@ class Tpdo {
   /// traits say otherwise) and counters are zero.
   void start(Time now) noexcept;
   void stop() noexcept { running_ = active_ = false; }
-  /// To be called after a write to one of the objects of this TPDO.
+  /// Call this after a write to one of the objects of this TPDO.
   void reconfigure(Time now) noexcept;
-  /// To be called after its objects were changed without a write by SDO. The new values count from
-  /// the next start or write on, but an invalid COB-ID ends the TPDO at once.
+  /// Call this after the objects of this TPDO were changed without a write by SDO. The new values
+  /// take effect at the next start or write, but an invalid COB-ID ends the TPDO at once.
   void look_at_record() noexcept;
 
   /// The frame may be on the wire from `ready` on; after `window_end` the frame is dropped.

@@ -37,7 +37,7 @@ class HeartbeatConsumer {
  public:
   HeartbeatConsumer(ObjectStore& store, EmcyProducer& emcy);
 
-  /// To be called after a reset and after a write to 0x1016.
+  /// Call this after a reset and after a write to 0x1016.
   void configure() noexcept;
   void forget() noexcept;
   void on_heartbeat(std::uint8_t node, std::uint8_t state, Time now) noexcept;

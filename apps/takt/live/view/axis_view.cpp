@@ -24,10 +24,10 @@ constexpr int mode_interpolated_position = 7;
 constexpr int mode_cyclic_position = 8;
 constexpr std::int8_t sequence_of_cia402 = 1;
 constexpr int mode_velocity = 2;
-/// Motions of a cycle that is further away say nothing about the present image.
+/// Motions that belong to a cycle further away than this say nothing about the present image.
 constexpr std::uint64_t most_cycles_apart = 1000;
 
-/// Looks at one axis of a bus.
+/// Finds the values to show for one axis of a bus.
 class AxisLook {
  public:
   AxisLook(const BusView& bus, std::int16_t node) : bus_{bus} {
@@ -90,7 +90,7 @@ PaintedText state_text(std::uint16_t statusword) {
   const auto state = decode_statusword(statusword);
   if (!state) return {fmt::format("unknown {:04X}", statusword), Paint::bad};
   if (*state == fault) return {"fault", Paint::bad};
-  // The names of the standard are longer than their column.
+  // The names of the standard are too long for their column.
   if (*state == fault_reaction_active) return {"fault reaction", Paint::bad};
   if (*state == not_ready_to_switch_on) return {"not ready", Paint::warning};
   const Paint paint = *state == operation_enabled   ? Paint::good
@@ -112,7 +112,7 @@ const axis_motion_t* motion_of(const BusView& bus, std::int16_t node, std::int8_
   return found == axes.end() || found->state == 0 ? nullptr : &*found;
 }
 
-/// Returns the following error that the drive states, else that of the motion, else the difference
+/// Returns the following error that the drive reports, else that of the motion, else the difference
 /// of the target and the actual position in a mode that follows the target in each cycle.
 ShownQuantity following_error(const BusView& bus, const AxisLook& look, const AxisSignals& signals,
                               std::int8_t number, int mode) {

@@ -16,22 +16,22 @@ struct DriveWord {
   std::string text;
 };
 
-/// What is shown of one axis.
+/// The values that are shown for one axis.
 struct AxisView {
   std::string name;
   std::int16_t node = 0;
-  PaintedText state;  ///< of its drive, or of the node while that has not booted
+  PaintedText state;  ///< state of the drive, or of the node while the node has not booted
   std::string mode;
   ShownQuantity position;
   ShownQuantity velocity;
   ShownQuantity following_error;
-  PaintedText error;  ///< "-", or code and words
+  PaintedText error;  ///< "-", or the code and its meaning
   std::optional<DriveWord> statusword;
   std::optional<DriveWord> controlword;
 };
 
-/// Returns the axes of a bus with positions, then its speed axes, each by its node-ID. Empty before
-/// the layout and the first image.
+/// Returns the axes of a bus with positions, then its speed axes, each by its node-ID. The list is
+/// empty until the layout and the first image have come.
 std::vector<AxisView> axes_of(const BusView& bus);
 
 /// Returns the nodes that have no axis.

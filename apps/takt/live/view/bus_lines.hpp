@@ -7,7 +7,8 @@
 
 namespace takt {
 
-// Parts of the views of one bus whose status has come. No line is longer than `width` columns.
+// These functions make parts of the views of one bus whose status has come. No line is longer than
+// `width` columns.
 
 /// Returns the state of the bus, its load, and what is wrong with it.
 std::vector<Line> bus_lines(const BusView& bus, std::size_t width);

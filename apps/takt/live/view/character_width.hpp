@@ -6,8 +6,9 @@ namespace takt {
 
 /// The first character of a text in UTF-8.
 struct FirstCharacter {
-  std::size_t bytes = 0;    ///< at least 1 unless the text is empty
-  std::size_t columns = 0;  ///< in a terminal: 0 for marks on the character before, 2 for wide ones
+  std::size_t bytes = 0;  ///< length in bytes: at least 1 unless the text is empty
+  /// Columns in a terminal: 0 for marks on the character before, 2 for wide characters.
+  std::size_t columns = 0;
 };
 
 FirstCharacter first_character(std::string_view text) noexcept;

@@ -18,7 +18,8 @@ void add_word(std::string& text, std::string_view word) {
   text += word;
 }
 
-/// Meanings of two bits of a word in one mode of operation. Empty: none.
+/// Meanings of two bits of a word in one mode of operation. An empty text means that the bit has no
+/// meaning.
 struct ModeBits {
   int mode;
   std::string_view low;

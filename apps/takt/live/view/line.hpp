@@ -16,7 +16,7 @@ struct PaintedText {
 };
 
 /// One line of a terminal view, cut to the width of the terminal at a character boundary. The text
-/// may come from other programs, so the line lets no control characters through.
+/// may come from other programs, so control characters are not printed.
 class Line {
  public:
   Line& add(std::string_view text, Paint paint = Paint::plain);
@@ -31,18 +31,18 @@ class Line {
 };
 
 /// Puts the items on lines of at most `width` columns, two spaces apart. An item that does not fit
-/// begins a new line, two columns in. Empty items are left out.
+/// begins a new line, which is indented by two columns. Empty items are left out.
 std::vector<Line> flow(const std::vector<PaintedText>& items, std::size_t width);
 
 void append(std::vector<Line>& lines, const std::vector<Line>& more);
 
-/// Breaks a text at its spaces into lines of at most `width` columns. All but the first begin
-/// `indent` columns in. A word that is longer than a line is cut.
+/// Breaks a text at its spaces into lines of at most `width` columns. All lines but the first are
+/// indented by `indent` columns. A word that is longer than a line is cut.
 std::vector<Line> paragraph(std::string_view text, Paint paint, std::size_t width,
                             std::size_t indent);
 
-/// Returns `text` padded with spaces to `width` columns, or cut if longer. left() aligns to the
-/// left, right() to the right.
+/// Returns `text` padded with spaces to `width` columns, or cut if it is longer. left() aligns to
+/// the left, right() to the right.
 std::string left(std::string_view text, std::size_t width);
 std::string right(std::string_view text, std::size_t width);
 

@@ -20,14 +20,15 @@ inline constexpr std::array<std::string_view, 6> page_names{"axes", "words",  "i
 /// Returns the page with this name.
 std::optional<Page> page_of(std::string_view name);
 
-// Each returns the text of one page. No line is longer than `width` columns, and no column is left
-// out.
+// Each function returns the text of one page. No line is longer than `width` columns, and no column
+// is left out.
 
-/// One row for each axis, then one for each other node.
+/// Returns one row for each axis, then one for each other node.
 Table::Text axes_page(const BusView& bus, std::size_t width);
-/// The statuswords and controlwords of all axes, in hex and in words.
+/// Returns the statuswords and controlwords of all axes, in hex and in words.
 Table::Text words_page(const BusView& bus, std::size_t width);
-/// All values of the image, those of nodes without axes first, with the bits of digital ones.
+/// Returns all values of the image, those of nodes without axes first, with the bits of digital
+/// values.
 Table::Text io_page(const BusView& bus, std::size_t width);
 Table::Text pdos_page(const BusView& bus, std::size_t width);
 Table::Text timing_page(const BusView& bus, std::size_t width);

@@ -24,8 +24,8 @@ std::uint64_t pattern(const signal_t& signal, std::int64_t raw) {
   return static_cast<std::uint64_t>(raw) & (bits == 64 ? ~0ULL : (1ULL << bits) - 1);
 }
 
-/// Returns true for inputs and outputs whose bits mean one line each: CiA 401, 0x6000 to 0x63FF,
-/// and CiA 402, 0x60FD and 0x60FE.
+/// Returns true for inputs and outputs each of whose bits is one digital line: CiA 401, 0x6000 to
+/// 0x63FF, and CiA 402, 0x60FD and 0x60FE.
 bool is_digital(const signal_t& signal) {
   if (!signal.unit.empty() || is_real(type_of(signal))) return false;
   const std::int32_t in_axis = 0x6000 + (signal.index & 0x7FF);

@@ -46,7 +46,7 @@ std::size_t Table::least(std::size_t column) const {
   return std::min(whole, std::max(columns_[column].least, columns_of(columns_[column].title)));
 }
 
-/// Takes columns away from the widest ones until the line fits.
+/// Makes the widest columns narrower until the line fits.
 Table::Group Table::fitted(std::size_t first, std::size_t end, std::size_t indent,
                            std::size_t width) const {
   Group group{.first = first, .widths = {}, .indent = indent};

@@ -8,20 +8,21 @@
 
 namespace takt {
 
-/// How a table shows a text that is longer than its column.
+/// The way in which a table shows a text that is longer than its column.
 enum class Cell : unsigned char {
-  name,    ///< aligned to the left, without its middle
-  words,   ///< aligned to the left, without its end
-  number,  ///< aligned to the right, and never cut: `###` if there is no room
+  name,    ///< aligned to the left; a long text loses its middle
+  words,   ///< aligned to the left; a long text loses its end
+  number,  ///< aligned to the right, and never cut: a number that does not fit is shown as `###`
 };
 
 struct Column {
   std::string title;
   Cell kind = Cell::words;
-  /// Columns that stay if the table is too wide; 0 means that the whole text stays.
+  /// The number of columns that remain if the table is too wide; 0 means that the whole text
+  /// remains.
   std::size_t least = 0;
-  /// Columns that the column has at least where there is room, so that tables do not move while
-  /// their texts change.
+  /// The number of columns that the column has at least where there is room, so that tables do not
+  /// move while their texts change.
   std::size_t usual = 0;
 };
 
@@ -35,7 +36,7 @@ class Table {
   void add(std::vector<PaintedText> row);
   bool empty() const noexcept { return rows_.empty(); }
 
-  /// The lines of the titles, and those of the rows.
+  /// The lines with the titles, and the lines of the rows.
   struct Text {
     std::vector<Line> head;
     std::vector<Line> body;
@@ -44,7 +45,7 @@ class Table {
   Text text(std::size_t width) const;
 
  private:
-  /// Columns that stand on one line.
+  /// Columns that are printed on one line.
   struct Group {
     std::size_t first = 0;
     std::vector<std::size_t> widths;

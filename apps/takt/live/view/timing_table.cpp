@@ -12,7 +12,7 @@
 namespace takt {
 namespace {
 
-/// A range of octaves of times. Octave i covers [2^i, 2^(i+1)) / 8 us.
+/// A range of octaves of a histogram of times. Octave i covers [2^i, 2^(i+1)) / 8 us.
 struct Octaves {
   std::size_t first = 0;
   std::size_t end = 0;

@@ -14,7 +14,7 @@
 namespace takt {
 namespace {
 
-/// Returns how many lines of the terminal are reserved for messages.
+/// Returns the number of lines of the terminal that are reserved for messages.
 std::size_t message_lines(std::size_t rows) {
   return rows == 0 ? 6 : std::clamp<std::size_t>(rows / 5, 2, 6);
 }
@@ -64,7 +64,7 @@ Line event_line(const event_t& event, std::size_t width) {
 }
 
 /// Adds the rows of the page that fit into `room` lines, from `wanted` on, and a line that says
-/// which they are. Returns the first row that is shown.
+/// which rows are shown. Returns the first row that is shown.
 std::size_t add_rows(std::vector<Line>& lines, const std::vector<Line>& rows, std::size_t wanted,
                      std::size_t room) {
   const std::size_t shown = std::min(room, rows.size());

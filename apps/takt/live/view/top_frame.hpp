@@ -11,9 +11,9 @@ namespace takt {
 
 struct TopOptions {
   Page page = Page::axes;
-  std::size_t columns = 80;   ///< of the terminal
-  std::size_t rows = 24;      ///< of the terminal; 0 means no limit
-  std::size_t first_row = 0;  ///< of the page, for scrolling
+  std::size_t columns = 80;   ///< columns of the terminal
+  std::size_t rows = 24;      ///< rows of the terminal; 0 means no limit
+  std::size_t first_row = 0;  ///< first row of the page to show, for scrolling
   /// Events up to this time, in microseconds since 1970, are acknowledged and not shown.
   std::int64_t seen_until = 0;
 };

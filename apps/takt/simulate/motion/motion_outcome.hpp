@@ -10,7 +10,7 @@
 
 namespace takt {
 
-/// The words of a speed axis that tell its speed.
+/// The words that report the speed of a speed axis.
 struct SpeedWord {
   SignalIndex signal = 0;  ///< actual speed, or the set speed if no TPDO has the actual one
   double scale = 1.0;      ///< speed = raw value x scale
@@ -21,10 +21,10 @@ struct SpeedWord {
 /// `speed_word`, and the others are 0.
 struct AxisMaxima {
   std::string axis;
-  std::string unit;          ///< of positions; of a speed axis: of speeds. Empty for raw counts
-  std::int16_t node_id = 0;  ///< as in axis_motion_t, as the next one
-  std::int8_t number = 0;    ///< of the axis in its device, from 1
-  std::optional<SpeedWord> speed_word{};  ///< of a speed axis
+  std::string unit;  ///< unit of positions; of speeds for a speed axis; empty for raw counts
+  std::int16_t node_id = 0;  ///< node-ID as in axis_motion_t
+  std::int8_t number = 0;    ///< number of the axis in its device, from 1, as in axis_motion_t
+  std::optional<SpeedWord> speed_word{};  ///< empty unless the axis is a speed axis
   double following_error = 0.0;           ///< commanded minus actual position
   double velocity = 0.0;
   double acceleration = 0.0;  ///< commanded

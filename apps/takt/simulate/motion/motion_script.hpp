@@ -48,7 +48,7 @@ constexpr bool needs_position(MotionKind kind) noexcept {
   return (goes_on(kind) && kind != MotionKind::jog) || kind == MotionKind::home;
 }
 
-/// How an entry may be expected to end: `ended` by its own script, or a word of
+/// The possible ends of an entry that a file can expect: `ended` by its own script, or a word of
 /// MotionOutcome::result.
 inline constexpr std::array<std::string_view, 9> expectable_ends{
     "done",   "ended",     "refused",   "stopped",  "blocked",
@@ -58,7 +58,7 @@ inline constexpr std::array<std::string_view, 9> expectable_ends{
 struct MotionEntry {
   MotionKind kind = MotionKind::enable;
   SourcePos pos{};
-  /// When the program does it. Empty: as soon as the entry before has ended.
+  /// The time at which the program begins the entry. Empty: as soon as the entry before has ended.
   std::optional<Time> at{};
   /// One of expectable_ends. Empty: `ended` for an endless motion, `done` for the others.
   std::string expect{};

@@ -39,7 +39,7 @@ class VirtualProcess final : public Actor, private Surroundings {
 
  private:
   class Connection;
-  /// Which of the two threads runs.
+  /// The thread that runs now.
   enum class Turn : std::uint8_t { simulation, program };
   void await(Turn turn);
   void pass_to(Turn turn);
@@ -59,7 +59,7 @@ class VirtualProcess final : public Actor, private Surroundings {
   bool ended_ = false;
   bool killed_ = false;
   Time wake_ = never;
-  Time reaction_{};     // from the arrival of a message until the program sees it
+  Time reaction_{};     // time from the arrival of a message until the program sees it
   Time after_death_{};  // time that has passed for the program since kill()
 };
 

@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 constexpr Time message_period = 20ms;
 constexpr Time message_jitter = 10ms;
 constexpr Time busy_pause = 800ms;  // between two motions, at most
-constexpr Time calm_pause = 2s;     // at least; a motion comes to rest in it
+constexpr Time calm_pause = 2s;     // minimum; a motion comes to rest in this pause
 constexpr double quick = 20'000;    // counts/s; of all axes without a lower limit
 constexpr double quick_rise = 0.1;  // s until the velocity is reached
 constexpr double jerk_rise = 0.05;  // s until the acceleration is reached
@@ -22,8 +22,8 @@ constexpr double reach_time = 3.0;  // s of a quick motion to the farthest targe
 constexpr double part_of_range = 0.5;
 constexpr double near = 0.1;  // part of the reach within which most targets are
 constexpr Time longest_path = 8s;
-constexpr double part_of_leader = 0.6;  // of the limits of its follower
-constexpr Time time_to_lock = 1s;       // from a gear to the motion of its leader
+constexpr double part_of_leader = 0.6;  // part of the limits of the follower
+constexpr Time time_to_lock = 1s;       // from the command of a gear to the motion of its leader
 constexpr Time time_to_lead = 3s;       // from this motion to the next one
 constexpr unsigned rival = 7;
 constexpr std::array<std::int32_t, 6> timeouts{0, 0, 100, 200, 1000, 3000};  // ms

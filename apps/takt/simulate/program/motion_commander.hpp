@@ -26,12 +26,12 @@ class MotionCommander {
 
   /// Begins as a new process.
   void start(sim::Random random);
-  /// Returns the next message if it is due. The caller fills in the fields that tell who sends it,
-  /// and when. A message of the kind "gear" has to be sent as gear() returns it, and one of the
-  /// kinds "stream" (the first one of a stream) and "points" as stream() returns it.
+  /// Returns the next message if it is due. The caller fills in the fields for the sender and the
+  /// time. A message of the kind "gear" has to be sent as gear() returns it, and one of the kinds
+  /// "stream" (the first one of a stream) and "points" as stream() returns it.
   std::optional<motion_command_t> next(Time now);
-  /// Returns the message that tells the goals of `command`, which next() has returned last, to
-  /// follow their leader.
+  /// Returns the message with which the axes of `command`, which next() has returned last, follow
+  /// their leader.
   motion_gear_t gear(const motion_command_t& command) const;
   /// Returns the message with the points of a stream, as gear() does.
   motion_stream_t stream(const motion_command_t& command) const;
@@ -49,10 +49,10 @@ class MotionCommander {
   struct Axis {
     MotionAxis signals{};
     std::string node{};
-    double scale = 1.0;         ///< of the target position
-    double offset = 0.0;        ///< of the target position
+    double scale = 1.0;         ///< scale of the target position
+    double offset = 0.0;        ///< offset of the target position
     double speed = 0.0;         ///< a quick motion, in counts/s
-    double acceleration = 0.0;  ///< of a quick motion, in counts/s^2
+    double acceleration = 0.0;  ///< acceleration of a quick motion, in counts/s^2
     double reach = 0.0;         ///< farthest target, in counts
     bool limited = false;       ///< `limits:` has a velocity and an acceleration
     double position = 0.0;      ///< present target position, in counts
@@ -81,12 +81,12 @@ class MotionCommander {
   std::vector<Leader> leaders_;
   unsigned number_;
   sim::Random random_{0};
-  Time due_{};         ///< of the next message
-  Time motion_due_{};  ///< of the next message that is more than a sign of life
+  Time due_{};         ///< time of the next message
+  Time motion_due_{};  ///< time of the next message that is more than a sign of life
   std::int32_t timeout_ms_ = 0;
   std::int32_t id_ = 0;
   bool leaves_ = false;
-  bool calm_ = false;   ///< its motions come to rest before the next one
+  bool calm_ = false;   ///< the motions of the program come to rest before the next one
   bool gears_ = false;  ///< some of its motions are gears
   sim::Random gear_random_{0};
   motion_gear_t gear_{};                    ///< leader, phase and ratio of the newest gear

@@ -20,10 +20,10 @@ constexpr std::uint64_t images_a_reset = 60;   // between fault resets, which ta
 constexpr std::uint16_t from_target_to_offset = 0x60B0 - 0x607A;
 constexpr double turn_before = 2000;   // distance from a limit, in counts
 constexpr Time longest_deafness = 3s;  // the layout is published once a second
-constexpr Time longest_turn = 15s;     // with motions
+constexpr Time longest_turn = 15s;     // longest turn with motions
 constexpr Time longest_set_points = 4s;
-constexpr Time leaving_time = 2s;       // in which the motions of a program come to rest
-constexpr Time talkative_time = 500ms;  // in which the first motion has begun
+constexpr Time leaving_time = 2s;       // time in which the motions of a program come to rest
+constexpr Time talkative_time = 500ms;  // time in which the first motion has begun
 
 }  // namespace
 

@@ -18,9 +18,9 @@ namespace takt {
 
 /// The way in which a program moves its axes.
 enum class Commanding : std::uint8_t {
-  set_points,  ///< by a set-point for each image
-  motions,     ///< by motions that taktd runs, see MotionCommander
-  by_turns,    ///< by both, one after the other, for random times
+  set_points,  ///< the program moves the axes by a set-point for each image
+  motions,     ///< the program moves the axes by motions that taktd runs, see MotionCommander
+  by_turns,    ///< the program uses both, in turns of random length
 };
 
 /// A message about motions that a program sends. A motion_gear_t is a command of the kind "gear";
@@ -28,7 +28,7 @@ enum class Commanding : std::uint8_t {
 struct CommandedMotion {
   const motion_command_t& command;
   Time computed_from{};  ///< SYNC time of the image that the program has seen
-  Time points_until{};   ///< of a stream: time of the newest point, from the begin of the stream on
+  Time points_until{};   ///< time of the newest point of a stream, from the begin of the stream on
   const motion_gear_t* gear = nullptr;      ///< the message, if it is one about a gear
   const motion_stream_t* stream = nullptr;  ///< the same for a stream
 };

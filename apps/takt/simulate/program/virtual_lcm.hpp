@@ -16,7 +16,7 @@ namespace takt {
 
 class VirtualLcm;
 
-/// Whether a program also receives its own messages.
+/// States whether a program also receives its own messages.
 enum class Echo : std::uint8_t { heard, unheard };
 
 /// One program's connection to a VirtualLcm. Messages wait in a queue, like that of a socket, until
@@ -28,7 +28,7 @@ class VirtualEndpoint final : public Transport {
       : lcm_{lcm}, place_{place}, room_{room}, echo_{echo} {}
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override;
-  /// True if a program has subscribed to the channel, as the broker of LCM tells it.
+  /// True if a program has subscribed to the channel, as the broker of LCM reports.
   bool wanted(std::string_view channel) const override;
   /// Accepts whole names only, no patterns.
   void subscribe(const std::string& channel) override;
@@ -92,7 +92,7 @@ class VirtualLcm {
   sim::Random random_;
   Time delay_ = usual_delay;
   std::vector<std::unique_ptr<VirtualEndpoint>> endpoints_;
-  std::map<std::string, Subscribers, std::less<>> subscribers_;  // by channel
+  std::map<std::string, Subscribers, std::less<>> subscribers_;  // keys are channels
   Subscribers nobody_;
   std::uint64_t messages_ = 0;
 };

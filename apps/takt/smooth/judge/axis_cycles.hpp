@@ -13,8 +13,8 @@ struct Cycle {
   Time end{};               ///< SYNC at which the set-point takes effect
   bool whole = true;        ///< false: a SYNC is missing between begin and end
   std::uint32_t count = 0;  ///< number of set-points in this cycle
-  Time first_arrival{};     ///< of the first set-point; only if count is not 0
-  Time arrival{};           ///< of the last set-point; only if count is not 0
+  Time first_arrival{};     ///< arrival of the first set-point; valid only if count is not 0
+  Time arrival{};           ///< arrival of the last set-point; valid only if count is not 0
   std::int64_t value = 0;   ///< the last set-point up to `end`
   bool varied = false;      ///< the set-points of the cycle differ from each other
   bool active = false;      ///< enabled and in a cyclic mode, as far as the recording shows it

@@ -46,7 +46,7 @@ struct AxisRecord {
 /// A frame as a load of the bus.
 struct WireFrame {
   Time when{};             ///< end of the frame
-  std::uint16_t bits = 0;  ///< its length on the wire with average bit stuffing
+  std::uint16_t bits = 0;  ///< length of the frame on the wire with average bit stuffing
 };
 
 /// Everything of a recording that matters for the smoothness of the axes. Times count from the
@@ -54,9 +54,9 @@ struct WireFrame {
 struct BusRecord {
   std::string source{};  ///< file, or what was listened to
   Time length{};
-  Time resolution{};       ///< of the time stamps
+  Time resolution{};       ///< resolution of the time stamps
   bool with_times = true;  ///< false: the times of the set-points within their cycles are not known
-  std::optional<Time> planned_period{};  ///< of SYNC, by the network file or 0x1006
+  std::optional<Time> planned_period{};  ///< period of SYNC by the network file or 0x1006
   std::uint32_t bitrate = 0;             ///< bit/s; 0 = not known
   std::vector<Time> syncs{};
   std::vector<WireFrame> frames{};

@@ -10,7 +10,7 @@
 namespace takt::smooth {
 namespace {
 
-/// How often something happened, and when it happened first.
+/// The number of times that something happened, and the time at which it happened first.
 struct Tally {
   std::uint64_t count = 0;
   Time first{};
@@ -27,7 +27,7 @@ struct Arrivals {
   Tally skipped;                         // no set-point
   Tally overwritten;                     // two set-points
   std::uint32_t longest_gap = 0;         // cycles without set-point
-  std::vector<std::size_t> late_cycles;  // in which the late set-points came
+  std::vector<std::size_t> late_cycles;  // cycles in which the late set-points came
   std::vector<Time> lateness;
   std::vector<Time> earliness;
 };
@@ -64,9 +64,9 @@ Arrivals count_arrivals(const std::vector<Cycle>& cycles) {
   return out;
 }
 
-/// How the times of the set-points relate to SYNC.
+/// The relation between the times of the set-points and SYNC.
 struct Rhythm {
-  Time period{};       // of the set-points
+  Time period{};       // period of the set-points
   double slips = 0;    // periods by which set-points and SYNC diverge in the recording
   double focus = 1;    // 1: always at one place between two SYNCs; 0: anywhere
   double steady = 0;   // share of intervals that are near the usual one

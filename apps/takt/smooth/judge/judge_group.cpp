@@ -40,7 +40,7 @@ std::vector<Motion> motions_of(const AxisCycles& cycles) {
   return list;
 }
 
-/// How well the steps of `b`, `lag` cycles earlier, explain those of `a` in a motion.
+/// A measure of how well the steps of `b`, `lag` cycles earlier, explain those of `a` in a motion.
 struct Fit {
   double residual = std::numeric_limits<double>::infinity();  // increments
   double factor = 0;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint64_t fewest_zigzags = 8;
 
-/// How often each value is far from the one before but near the one before that.
+/// A count of values that are far from the value before but near the one before that.
 struct Zigzag {
   std::uint64_t compared = 0;
   std::uint64_t count = 0;

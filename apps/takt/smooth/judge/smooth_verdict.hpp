@@ -24,7 +24,7 @@ struct AxisVerdict {
   std::uint64_t with_two = 0;    ///< cycles in motion with more than one
   Time period{};                 ///< between two set-points as they should come
   Time interpolation{};          ///< 60C2; 0 = not known
-  double peak_velocity = 0;      ///< of the set-points, increments per second
+  double peak_velocity = 0;      ///< peak velocity of the set-points, increments per second
   std::vector<Finding> findings{};
 };
 
@@ -33,7 +33,7 @@ struct Verdict {
   std::string source{};
   Time length{};
   SyncGrid sync{};
-  std::vector<Finding> findings{};  ///< of SYNC
+  std::vector<Finding> findings{};  ///< findings about SYNC
   std::vector<AxisVerdict> axes{};
   std::vector<std::string> remarks{};
   /// Returns true if there is a finding of severity `error`.

@@ -124,7 +124,7 @@ class GridBuilder {
   }
 
   SyncGrid grid_;
-  Time place_{};  // of the newest SYNC in an even grid
+  Time place_{};  // time of the newest SYNC in an even grid
 };
 
 }  // namespace

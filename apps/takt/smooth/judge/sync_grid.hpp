@@ -23,7 +23,7 @@ struct SyncGrid {
   Time first_missing{};
   Time first_surplus{};
   Time jitter{};                 ///< 95 of 100 intervals differ less than this from the period
-  Time largest_deviation{};      ///< of an interval without missing SYNC
+  Time largest_deviation{};      ///< largest deviation of an interval without missing SYNC
   std::uint64_t unpunctual = 0;  ///< intervals that differ by more than a tenth of the period
   Time first_unpunctual{};
 };

@@ -12,7 +12,7 @@ namespace takt::soak {
 struct Violation {
   std::uint64_t cycle = 0;
   Time when{};
-  std::string invariant;  ///< for example "no torn image"
+  std::string invariant;  ///< name of the invariant, for example "no torn image"
   std::string what;
 };
 

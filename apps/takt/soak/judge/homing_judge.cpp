@@ -12,10 +12,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time report_time = 60ms;  // from a frame until programs have heard of it
+constexpr Time report_time = 60ms;  // time from a frame until programs have received a report of it
 constexpr Time longest_silence = 1500ms;
 constexpr unsigned known_cycles = 3;      // age of the position that the master knows
-constexpr double most_cycles = 1000;      // that count for one distance
+constexpr double most_cycles = 1000;      // largest number of cycles that count for one distance
 constexpr std::uint64_t homing_mode = 6;  // 6061
 constexpr std::int8_t is_homed = 2;       // axis_motion_t::homing
 constexpr std::uint32_t boot_up = 0x700;

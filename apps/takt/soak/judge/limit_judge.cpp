@@ -147,7 +147,7 @@ std::optional<std::int64_t> LimitJudge::mode_of(const Place& place) const noexce
   return known ? std::optional{place.mode} : place.limit->fixed_mode;
 }
 
-/// Returns true if the axis follows this set-point. `mode_doubt` tells whether this is certain.
+/// Returns true if the axis follows this set-point. `mode_doubt` shows whether this is certain.
 bool LimitJudge::in_force(const Place& place) const noexcept {
   const auto mode = mode_of(place);
   return !mode || takt::follows(place.limit->quantity, *mode);

@@ -52,7 +52,7 @@ class LimitJudge {
   enum class Change : std::uint8_t { none, value, begins };
   struct Place {
     const OutputLimit* limit = nullptr;
-    std::optional<SignalIndex> controlword{};  ///< of the same axis, if it is an output
+    std::optional<SignalIndex> controlword{};  ///< controlword of the same axis, if it is an output
     std::optional<double> value{};             ///< value sent last
     double target = 0;                         ///< the part of `value` that is no offset
     double offset = 0;                         ///< the offset in `value`, in its own counts
@@ -63,7 +63,7 @@ class LimitJudge {
     bool enables = false;           ///< the last controlword sent enables operation
     bool enabled = true;            ///< the last statusword received is enabled
     unsigned doubt = 0;             ///< cycles in which the master may not know the state
-    unsigned mode_doubt = 0;        ///< as `doubt`, for the mode
+    unsigned mode_doubt = 0;        ///< doubt about the mode, as `doubt`
     Change change = Change::none;
     std::deque<Seen> actual{};  ///< actual values since cycles_[0], newest last
   };
@@ -96,7 +96,7 @@ class LimitJudge {
   Verdict& verdict_;
   double most_cycles_;            // greatest number of cycles that counts for one distance
   std::vector<Place> places_;     // one for each output
-  std::vector<Place*> limited_;   // those that have a limit
+  std::vector<Place*> limited_;   // places that have a limit
   std::vector<double> sent_;      // newest value of each output
   std::array<Time, 6> cycles_{};  // start times of the newest cycles, oldest first
   std::uint64_t judged_ = 0;

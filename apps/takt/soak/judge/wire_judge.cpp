@@ -101,7 +101,7 @@ void WireJudge::judge(SignalIndex index, std::uint64_t value, Time now) {
 }
 
 /// Returns true if a motion may be the cause of the value: it leads the output, it has led the axis
-/// to where it stands, or its sender keeps the outputs of the node valid.
+/// to its position, or its sender keeps the outputs of the node valid.
 bool WireJudge::by_motion(SignalIndex index, std::uint64_t value, bool differs,
                           Time now) const noexcept {
   const Signal& signal = plan_.layout.signals[index];

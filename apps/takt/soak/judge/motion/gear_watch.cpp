@@ -7,9 +7,10 @@
 namespace takt::soak {
 namespace {
 
-constexpr unsigned clear_cycles = 100;  // with a constant difference, while the axis moves
-constexpr double clear_way = 50.0;      // counts by which it moves
-constexpr double slack = 0.1;           // counts
+// Number of cycles with a constant difference while the axis moves.
+constexpr unsigned clear_cycles = 100;
+constexpr double clear_way = 50.0;  // counts by which it moves
+constexpr double slack = 0.1;       // counts
 
 }  // namespace
 

@@ -36,9 +36,9 @@ class GearWatch {
  private:
   /// Smallest and largest values of some cycles.
   struct Span {
-    double low = 0.0;  ///< of the difference
+    double low = 0.0;  ///< lower bound of the difference
     double high = 0.0;
-    double own_low = 0.0;  ///< of the position
+    double own_low = 0.0;  ///< lower bound of the position
     double own_high = 0.0;
     unsigned cycles = 0;
   };
@@ -49,7 +49,7 @@ class GearWatch {
   Task task_;
   Time since_;                   // the leader has been such that the axis can follow it
   std::optional<Time> lock_at_;  // the axis is locked by then
-  std::optional<Span> span_;     // with a constant difference
+  std::optional<Span> span_;     // time span with a constant difference
   std::optional<double> last_own_;
   bool is_locked_ = false;
   bool has_begun_ = false;  // the gear was seen to move the axis

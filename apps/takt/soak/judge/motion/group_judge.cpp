@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double cruise_cycles = 8;   // in which the velocity is measured
+constexpr double cruise_cycles = 8;   // number of cycles in which the velocity is measured
 constexpr double least_way = 50;      // counts; an axis with less is not watched
 constexpr unsigned late_cycles = 10;  // an axis that has not moved so much later has not begun
 
@@ -72,7 +72,7 @@ void GroupJudge::look(Begin& axis, Group& group, double value, Time now) const {
   const double expected = bounds.velocity * seconds(now - axis.cruises_since);
   const double tolerance = 0.5 * bounds.velocity * seconds(plan_.cycle.period) + 2;
   if (std::abs(measured - expected) > tolerance) {
-    group.over = true;  // it is stopping
+    group.over = true;  // the group is stopping
   } else {
     axis.begun = now - from_seconds(way / bounds.velocity + rise(bounds) / 2);
   }

@@ -9,17 +9,17 @@
 namespace takt::soak {
 
 /// Checks that the axes of a group begin in one cycle. It watches groups without synchronisation
-/// whose axes stand: each axis then accelerates along its own limits, so the position in which it
-/// has its velocity tells when it has begun.
+/// whose axes are at rest. Each axis then accelerates along its own limits, so the position at
+/// which it has its velocity shows when it has begun.
 class GroupJudge {
  public:
   GroupJudge(const BusPlan& plan, Verdict& verdict) : plan_{plan}, verdict_{verdict} {}
 
-  /// An axis of a group. It stands before the motion begins.
+  /// An axis of a group. The axis is at rest before the motion begins.
   struct Member {
     std::size_t axis = 0;
-    double from = 0;    ///< where it stands, in counts
-    double target = 0;  ///< in counts
+    double from = 0;    ///< position at rest, in counts
+    double target = 0;  ///< target in counts
     MotionBounds bounds{};
   };
 

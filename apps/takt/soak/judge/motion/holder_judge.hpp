@@ -41,7 +41,7 @@ class HolderJudge {
 
   const BusPlan& plan_;
   Verdict& verdict_;
-  std::vector<Holder> holders_;  // in the order of BusPlan::nodes
+  std::vector<Holder> holders_;  // holders in the order of BusPlan::nodes
   std::vector<Time> moved_;      // time of the last move, by the number of the sender's bit
   std::vector<Time> released_;   // time of the release, by the number of the sender's bit
 };

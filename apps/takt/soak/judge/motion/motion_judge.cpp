@@ -13,10 +13,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr unsigned failed_cycles = 3;      // after these, the master knows that a drive is disabled
-constexpr unsigned silent_cycles = 8;      // after these, the master knows that a drive is silent
-constexpr unsigned hold_tolerance = 5;     // a lease may end this much early
-constexpr unsigned cycles_after_late = 3;  // in which a late frame may be followed by an early one
+constexpr unsigned failed_cycles = 3;   // after these, the master knows that a drive is disabled
+constexpr unsigned silent_cycles = 8;   // after these, the master knows that a drive is silent
+constexpr unsigned hold_tolerance = 5;  // a lease may end this much early
+// Number of cycles in which a late frame may be followed by an early one.
+constexpr unsigned cycles_after_late = 3;
 constexpr unsigned most_cycles_of_frame = 2;  // one frame may be missing
 constexpr Time short_rest = 150ms;            // a motion that ends has ended by then
 constexpr Time long_rest = 100ms;             // no motion runs
@@ -172,7 +173,7 @@ void MotionJudge::heard(const Frame& frame) {
       axis.silent_cycles = 0;
       if (!axis.enabled) axis.doubt = state_doubt;
     }
-    // A frame of a babbling node may also tell another mode.
+    // A frame of a babbling node may also contain another mode.
     const auto mode = orders_.axes()[i].mode;
     const auto told = mode ? input_in(plan_, frame, *mode) : std::nullopt;
     if (told && *told != cyclic_synchronous_position) axis.doubt = state_doubt;

@@ -40,7 +40,7 @@ class MotionJudge {
   /// Call this when the master passes a SYNC to the interface.
   void sync_sent();
 
-  /// How a target position came to the wire.
+  /// The cause of a target position on the wire.
   struct Cause {
     bool begins = false;        ///< the output was not sent in the last cycles
     bool by_set_point = false;  ///< a set-point or the actual position explains the value
@@ -93,7 +93,7 @@ class MotionJudge {
   Time last_cycle_{};
   unsigned late_cycles_ = 0;  // a SYNC was left out in the last cycles
   unsigned cycles_without_sync_ = 0;
-  std::uint64_t syncs_ = 0;  // on the wire
+  std::uint64_t syncs_ = 0;  // number of SYNCs on the wire
   std::uint64_t syncs_at_cycle_ = 0;
   bool stops_ = false;  // the ordered stop has begun
   std::uint64_t arrivals_ = 0;

@@ -10,11 +10,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr unsigned cycles_kept_alive = 16;  // from the end of a timeout to the end of a node
-constexpr unsigned cycles_to_the_wire = 6;  // from the end of a timeout to the last frame
-constexpr Time oldest_message = 1s;         // an older one is refused
+// Number of cycles from the end of a timeout until the motion no longer keeps the outputs of its
+// node valid.
+constexpr unsigned cycles_kept_alive = 16;
+// Number of cycles from the end of a timeout to the last frame.
+constexpr unsigned cycles_to_the_wire = 6;
+constexpr Time oldest_message = 1s;  // an older one is refused
 constexpr Time usual_timeout = 500ms;
-constexpr Time longest_creep = 5s;   // by one count
+constexpr Time longest_creep = 5s;   // longest time in which a slow axis moves by one count
 constexpr double usual_rise = 0.05;  // s until the acceleration is reached
 
 MotionBounds larger(const MotionBounds& a, const MotionBounds& b) noexcept {
@@ -180,7 +183,7 @@ void MotionOrders::failed(std::size_t axis, Time now) {
   if (orders_[axis].empty()) return;
   const OrderedMotion newest = orders_[axis].back();
   const auto end = [&](OrderedMotion& order) {
-    if (order.sent + longest_way >= now) return;  // it may begin later
+    if (order.sent + longest_way >= now) return;  // the motion may still begin
     const Time at_rest =
         now + stop_time(order.bounds, order.fastest) + cycles_to_the_wire * plan_.cycle.period;
     order.ended = std::min(order.ended, at_rest);

@@ -29,26 +29,26 @@ struct SentMotion {
   const motion_command_t& command;
   SenderBit sender = 0;
   Time computed_from{};  ///< SYNC time of the image that the program has seen
-  Time points_until{};   ///< of a stream: time of the newest point, from the begin of the stream on
-  const motion_gear_t* gear = nullptr;      ///< of the kind "gear"
-  const motion_stream_t* stream = nullptr;  ///< of the kinds "stream" and "points"
+  Time points_until{};   ///< time of the newest point of a stream, from the begin of the stream on
+  const motion_gear_t* gear = nullptr;      ///< message of the kind "gear"
+  const motion_stream_t* stream = nullptr;  ///< message of the kinds "stream" and "points"
 };
 
 /// A move, a jog, a gear or a stream of one axis that a program has sent.
 struct OrderedMotion {
   std::uint64_t message = 0;  ///< number of the message; all axes of a group have the same
   std::size_t group_size = 1;
-  bool creeps = false;  ///< it may be as slow as the slowest axis of its group
+  bool creeps = false;  ///< the axis may be as slow as the slowest axis of its group
   SenderBit sender = 0;
   Time sent{};
   Time computed_from{};
   Time timeout{};
   MotionBounds bounds{};
-  MotionBounds fastest{};                ///< of all motions that may have run before
-  std::optional<std::int64_t> target{};  ///< in counts; empty for a jog and a gear
-  bool follows = false;                  ///< a gear: it stands while its leader stands
+  MotionBounds fastest{};                ///< largest limits of all motions that may have run before
+  std::optional<std::int64_t> target{};  ///< target in counts; empty for a jog and a gear
+  bool follows = false;  ///< the motion is a gear: the axis is at rest while its leader is at rest
   std::optional<std::int32_t> stream{};  ///< `id` of a stream; empty for other motions
-  Time ended = never;                    ///< it moves nothing after this time
+  Time ended = never;                    ///< time after which the motion moves nothing
   Time points_end = never;               ///< the same for a stream that gets no further points
 };
 
@@ -58,8 +58,8 @@ struct OrderedMotion {
 /// have been refused, and a gear may have been replaced.
 class MotionOrders {
  public:
-  /// So long after it was sent, a motion has begun, or it never does: messages are not slower, and
-  /// those that wait for longer while the front thread stands still are discarded.
+  /// The longest time from the sending of a motion to its begin. Messages are not slower, and those
+  /// that wait for longer while the front thread does not run are discarded.
   static constexpr Time longest_way = std::chrono::milliseconds{400};
   /// Returns an upper limit of the time of a stop within `bounds` from a motion within `fastest`.
   static Time stop_time(const MotionBounds& bounds, const MotionBounds& fastest) noexcept;
@@ -114,10 +114,12 @@ class MotionOrders {
   const BusPlan& plan_;
   std::vector<MotionAxis> axes_;
   std::vector<FileLimits> file_;
-  std::vector<std::vector<OrderedMotion>> orders_;       // by axis, oldest first
-  std::vector<std::array<Time, most_senders>> longest_;  // by axis and sender: timeout and stop
+  std::vector<std::vector<OrderedMotion>> orders_;  // indexed by axis; the oldest motion first
+  // Longest sum of timeout and stopping time, indexed by axis and sender.
+  std::vector<std::array<Time, most_senders>> longest_;
   std::array<Time, most_senders> heard_{};
-  std::vector<std::array<Time, most_senders>> named_;  // by axis: a message that renews its jog
+  // Time of the message that renews a jog, indexed by axis and sender.
+  std::vector<std::array<Time, most_senders>> named_;
   std::uint64_t messages_ = 0;
   std::uint64_t motions_ = 0;
   std::uint64_t gears_ = 0;

@@ -10,11 +10,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time longest_message = 40ms;   // from its cycle until the daemon knows it
-constexpr double part_for_leader = 0.7;  // of the limits; with 0.8, an axis does not fall behind
-constexpr double part_for_phase = 0.1;   // of the velocity, to catch up
-constexpr int phase_ins = 6;             // times of a stop until the velocities are equal
-constexpr double end_margin = 1000.0;    // counts, from the end of the range
+// Longest time from the cycle of a message until the daemon knows it.
+constexpr Time longest_message = 40ms;
+// Part of the limits; with 0.8, an axis does not fall behind.
+constexpr double part_for_leader = 0.7;
+constexpr double part_for_phase = 0.1;  // part of the velocity for catching up
+constexpr int phase_ins = 6;            // times of a stop until the velocities are equal
+constexpr double end_margin = 1000.0;   // counts, from the end of the range
 
 }  // namespace
 

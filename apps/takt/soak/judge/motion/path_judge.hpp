@@ -61,7 +61,7 @@ class PathJudge {
   struct Axis {
     std::optional<Watch> watch{};
     std::optional<double> counts{};  // sent in this cycle
-    std::optional<double> last{};    // in the cycle before
+    std::optional<double> last{};    // value in the previous cycle
     bool by_set_point = false;
   };
   void begin(const SentMotion& sent, std::size_t axis, bool stands, Time now);

@@ -16,7 +16,7 @@ class StreamWatch {
   /// The counts of the axis, and the cycles.
   struct Frame {
     double scale = 1.0;
-    double offset = 0.0;         ///< in the unit of the axis
+    double offset = 0.0;         ///< offset in the unit of the axis
     double period = 0.0;         ///< s
     unsigned longest_begin = 0;  ///< cycles in which the stream may begin
   };
@@ -43,7 +43,7 @@ class StreamWatch {
 
   Frame frame_;
   std::vector<Point> points_;
-  unsigned cycle_ = 0;            // that is judged next
+  unsigned cycle_ = 0;            // cycle that is judged next
   std::vector<unsigned> begins_;  // cycles in which the stream may have begun
   bool at_start_ = true;          // the axis has stood at the first point so far
 };
