@@ -55,8 +55,8 @@ class MasterRun {
   /// Begins the ordered stop. finished() returns true when it is over, within
   /// BusPlan::stop_timeout.
   void request_stop() noexcept { exchange_->stop_requested.store(true); }
-  /// The flag that request_stop() sets, for use in a signal handler. It lives as long as the
-  /// master.
+  /// Returns the flag that request_stop() sets, for use in a signal handler. It lives as long as
+  /// the master.
   std::atomic<bool>& stop_requested() noexcept { return exchange_->stop_requested; }
   /// Returns true when the ordered stop is over.
   bool finished() const noexcept { return exchange_->finished.load(std::memory_order_acquire); }

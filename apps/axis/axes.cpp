@@ -6,7 +6,8 @@
 namespace takt {
 namespace {
 
-/// The place of the axes in the messages is known until taktd restarts; then the values are 0.
+/// The places of the axes in the messages are known until taktd restarts. From then on, the values
+/// are 0.
 template <class State, class Value>
 Eigen::VectorXd of_each(const State& state, Value value) {
   Eigen::VectorXd values = Eigen::VectorXd::Zero(state.size());

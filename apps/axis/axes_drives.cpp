@@ -8,7 +8,7 @@ namespace takt {
 namespace {
 
 /// Number of status_t (10 in a second) in sequence in which another program holds an axis before
-/// enable() gives up. It may be a program that has died, whose last command lives on.
+/// enable() gives up. That program may have died, while its last command is still valid.
 constexpr int held_statuses = 20;
 /// axis_motion_t::state of a drive that is not enabled.
 constexpr std::int8_t motion_not_enabled = 0;
@@ -70,7 +70,7 @@ std::string Axes::State::why_not_ready_text() const {
 
 Done Axes::State::enable() {
   if (!is_current()) return restarted();
-  // A drive that moves in another mode must stand before its mode changes.
+  // A drive that moves in another mode must be at standstill before its mode changes.
   if (readiness_ != Readiness::not_enabled && !all_in_mode_of_motions()) {
     if (Done stood = stop(); !stood) return stood;
   }

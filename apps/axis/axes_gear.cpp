@@ -9,8 +9,8 @@ namespace {
 /// Value of axis_motion_t::gear.
 constexpr std::int8_t gear_locked = 2;
 
-/// Fills one number for each axis: its own, the one for all, or `otherwise`. Returns false if the
-/// number of values does not fit.
+/// Fills in one number for each axis: the number for this axis, the number for all axes, or
+/// `otherwise`. Returns false if the number of values does not fit.
 bool spread(const Eigen::VectorXd& values, Eigen::Index axes, double otherwise,
             std::vector<double>& found) {
   if (values.size() > 1 && values.size() != axes) return false;

@@ -5,7 +5,7 @@
 
 #include "apps/axis/axes_state.hpp"
 
-// Halt and quick stop: the drives stop by themselves.
+// Halt and quick stop. The drives generate the ramps.
 
 namespace takt {
 namespace {
@@ -58,7 +58,7 @@ Done Axes::State::resume() {
   if (readiness_ != Readiness::halted) return {};
   end_halt(Readiness::enabled);
   sending_ = Sending::controls;
-  std::int64_t halted = group.input().cycle();  // the newest cycle in which an axis was
+  std::int64_t halted = group.input().cycle();  // newest cycle in which an axis was halted
   const auto over = [&] {
     const std::int64_t cycle = group.input().cycle();
     if (any([this](Index axis) { return shows_halt(axis); })) halted = cycle;
@@ -117,7 +117,7 @@ std::optional<Done> Axes::State::wait_for_rest(std::span<const Index> chosen,
   struct Window {
     double counts;
     std::int64_t cycles;
-    std::int64_t since = 0;  ///< the newest cycle in which an axis has left it
+    std::int64_t since = 0;  ///< newest cycle in which an axis has left the window
     Eigen::VectorXd middle{};
   };
   // Both windows correspond to the same speed; the second one is for fine encoders.

@@ -16,7 +16,7 @@ constexpr std::uint16_t homing_result = 0x3000;  // bits of the statusword
 /// If the statusword shows no homing for this time, the drive has not begun the run, or has
 /// interrupted it.
 constexpr std::chrono::seconds start_patience{1};
-/// The longest homing run if taktd names none.
+/// The longest time of a homing run if taktd reports none.
 constexpr std::chrono::seconds usual_time{60};
 /// Values of axis_motion_t::homing.
 constexpr std::int8_t is_homed = 2;
@@ -27,8 +27,9 @@ constexpr std::int8_t has_failed = 3;
 /// The homing run of one axis.
 struct Axes::State::HomingRun {
   Index axis;
-  std::optional<std::int64_t> started{};   ///< cycle of the first image that shows the start
-  Clock::time_point moved = Clock::now();  ///< the statusword did not say "not started" then
+  std::optional<std::int64_t> started{};  ///< cycle of the first image that shows the start
+  /// The newest time at which the statusword said more than "not started".
+  Clock::time_point moved = Clock::now();
   bool done = false;
 };
 
@@ -123,8 +124,8 @@ Done Axes::State::run_homing(std::span<const Index> chosen, nanoseconds longest)
   return obstacle(Obstacle::Kind::time_over, trouble);
 }
 
-/// Looks at a run. Returns why it has ended badly, or an empty text. A report of taktd about the
-/// cycle in which the start was sent, or about a later one, is about this run.
+/// Checks a run. Returns the reason if it has failed, otherwise an empty text. A report of taktd
+/// about the cycle in which the start was sent, or about a later one, is about this run.
 std::string Axes::State::trouble_of(HomingRun& run) {
   const AxisControl& known = group.axes();
   const std::uint16_t word = known.statusword(run.axis);

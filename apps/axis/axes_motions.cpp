@@ -14,7 +14,7 @@ using std::chrono::nanoseconds;
 constexpr std::chrono::seconds answer_time{2};
 /// Longest wait for the event with the reason of an end.
 constexpr std::chrono::milliseconds reason_time{100};
-/// Cycles between two stops, until the axes stand.
+/// Number of cycles between two stop messages, until the axes are at rest.
 constexpr std::int64_t cycles_between_stops = 4;
 /// A motion begins at most this number of cycles after its command, or never.
 constexpr std::int64_t longest_begin = 12;
@@ -25,7 +25,7 @@ constexpr std::int8_t outcome_done = 1;
 constexpr std::int8_t outcome_stopped = 2;
 constexpr std::int8_t outcome_refused = 4;
 
-/// Returns the value for one axis: its own, the one for all, or 0.
+/// Returns the value for one axis: the value for this axis, the value for all axes, or 0.
 double value_of(const Eigen::VectorXd& values, Eigen::Index axis) {
   if (values.size() == 0) return 0.0;
   return values(values.size() == 1 ? 0 : axis);
@@ -33,7 +33,7 @@ double value_of(const Eigen::VectorXd& values, Eigen::Index axis) {
 
 }  // namespace
 
-/// The names of all axes, as taktd knows them.
+/// The names of all axes, in the form in which taktd knows them.
 std::vector<motion_goal_t> Axes::State::goals() const {
   std::vector<motion_goal_t> named;
   for (const Index axis : axes) {
@@ -130,7 +130,7 @@ Done Axes::State::jog(const Values& velocities, const MotionBounds& bounds) {
   Done begun = begin("jog", velocities, bounds);
   if (begun) begun = wait_for_answer();
   if (begun && course() == Course::runs) return {};
-  // An older motion may still run.
+  // An older motion may still run, so it is stopped.
   if (const Done stood = stop(); begun) begun = stood;
   return begun;
 }
@@ -181,7 +181,7 @@ Axes::State::Course Axes::State::course() const {
   return event_text("motion_refused", refusal).empty() ? all_axes : Course::refused;
 }
 
-/// Returns what the events and the drives say about the end of the newest motion.
+/// Returns what the events and the drives report about the end of the newest motion.
 std::string Axes::State::reason(Course course) const {
   const bool refused = course == Course::refused;
   std::string text = refused
@@ -234,7 +234,7 @@ Done Axes::State::stop() {
   stream_.reset();
   if (sending_ == Sending::nothing) return {};
   if (!has_motion_ && !moving()) return stop_set_points();
-  // taktd refuses a stop from an old image, so the messages that wait come first.
+  // taktd refuses a stop from an old image, so the messages that wait are read first.
   const Done heard = step(Interruption::ignored);
   if (!is_current()) return heard;
   return stop_now();

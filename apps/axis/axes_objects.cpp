@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-/// A request is sent again after this time, because LCM may lose it or its answer.
+/// A request is sent again after this time, because LCM may lose the request or its answer.
 constexpr std::chrono::milliseconds request_patience{500};
 constexpr std::int16_t last_node_id = 127;
 

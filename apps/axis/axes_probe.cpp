@@ -19,7 +19,7 @@ constexpr unsigned at_falling = 0x20;
 constexpr unsigned rising_stored = 0x02;
 constexpr unsigned falling_stored = 0x04;
 constexpr unsigned bits_of_input = 0xFF;
-/// Cycles between two questions to the drive.
+/// Number of cycles between two requests to the drive.
 constexpr std::int64_t probe_pause = 5;
 
 }  // namespace

@@ -11,16 +11,17 @@
 
 namespace takt {
 
-/// What the programs that command axes have in common.
+/// The settings that all programs that command axes have in common.
 struct AxesProgram {
   std::string name;                    ///< name in events and messages: "takt-jog"
   std::string bus = {};                ///< empty: the first bus whose layout arrives
   std::vector<std::string> axes = {};  ///< names in this order; empty: all axes of the bus
   LcmAccess lcm = {};
   std::chrono::nanoseconds wait = std::chrono::seconds{10};  ///< wait for the daemon and the drives
-  std::chrono::nanoseconds timeout = std::chrono::milliseconds{500};  ///< as in AxesOptions
-  std::string plot = {};  ///< file for a picture of the motions; empty: none
-  /// Returns what the axes use in the place of their connection to LCM. Empty: the connection.
+  std::chrono::nanoseconds timeout = std::chrono::milliseconds{500};  ///< timeout as in AxesOptions
+  std::string plot = {};  ///< path of a file for a picture of the motions; empty: no picture
+  /// Returns the transport that the axes use instead of their connection to LCM. An empty function
+  /// means that they use the connection.
   std::function<std::unique_ptr<Transport>(std::unique_ptr<Transport>)> through = {};
 };
 
@@ -33,7 +34,7 @@ std::expected<std::unique_ptr<AxisGroup>, Obstacle> open_group(const AxesProgram
 /// Opens the axes of a program. A signal interrupts their calls while run_program() runs.
 std::expected<Axes, Obstacle> open_axes(const AxesProgram& program);
 
-/// As above, for a program that moves one axis.
+/// Opens the axis of a program that moves one axis. Signals interrupt it as in open_axes().
 std::expected<Axes, Obstacle> open_axis(const AxesProgram& program);
 
 /// Runs the work of a program. SIGINT, SIGTERM, SIGHUP and SIGPIPE interrupt it. Prints the

@@ -29,14 +29,14 @@ std::string list_of(std::span<const DriveMode> modes) {
 
 }  // namespace
 
-/// A kind of set-points: in which modes drives take them, and in which output.
+/// A kind of set-points: the modes in which drives take them, and the output that carries them.
 struct Axes::State::SetPoints {
   std::array<DriveMode, 2> modes;
   AxisSignals::Position AxisSignals::* output;
   std::string_view object;
 };
 
-/// Returns why these axes do not take set-points of this kind now.
+/// Returns the reason if these axes do not take set-points of this kind now.
 Done Axes::State::check_set_points(const Values& values, const SetPoints& kind) {
   if (values.size() != size() || !values.allFinite()) {
     return obstacle(Obstacle::Kind::wrong_use,
@@ -64,7 +64,8 @@ Done Axes::State::check_set_points(const Values& values, const SetPoints& kind) 
   return all_ready() ? Done{} : obstacle(Obstacle::Kind::blocked, why_not_ready_text());
 }
 
-/// Returns these values at the places of the axes in the group, and `otherwise` for its others.
+/// Returns these values at the places of the axes in the group, and `otherwise` for the other axes
+/// of the group.
 Eigen::VectorXd Axes::State::in_group(const Values& values, double otherwise) const {
   Eigen::VectorXd all_axes = Eigen::VectorXd::Constant(group.axes().size(), otherwise);
   for (Index i = 0; i < size(); ++i) all_axes(in_group(i)) = values(i);
@@ -98,7 +99,8 @@ Done Axes::State::command_torques(const Values& values) {
   return send_set_points(values, torques);
 }
 
-/// Returns when an image shows that the values were sent. If taktd refuses them, the axes get 0.
+/// Sends the values, and returns when an image shows that they were sent. If taktd refuses them,
+/// the axes get 0.
 Done Axes::State::send_set_points(const Values& values, const SetPoints& kind) {
   std::vector<std::pair<std::size_t, std::int64_t>> expected;
   for (Index i = 0; i < size(); ++i) {
@@ -134,7 +136,8 @@ Done Axes::State::send_set_points(const Values& values, const SetPoints& kind) {
                   why.empty() ? "the set-points were not sent: no image shows them" : why);
 }
 
-/// Returns what taktd has said against the newest values for one of these axes, or an empty text.
+/// Returns the reason why taktd has refused the newest values for one of these axes, or an empty
+/// text.
 std::string Axes::State::refusal() const {
   for (const Index axis : axes) {
     const std::string text =
@@ -144,8 +147,8 @@ std::string Axes::State::refusal() const {
   return {};
 }
 
-/// Writes a value of an axis by its output if an RPDO has it, for that would overwrite it, and
-/// otherwise by SDO. `index` is the object of the first axis of a device.
+/// Writes a value of an axis by its output if an RPDO carries the object, because the RPDO would
+/// overwrite it, and otherwise by SDO. `index` is the object of the first axis of a device.
 Done Axes::State::write_of_axis(Index axis, std::uint16_t index, std::int64_t raw,
                                 std::size_t bytes) {
   const Object object = object_of_axis(axis, index);
@@ -280,8 +283,8 @@ Done Axes::State::wait_for_profiles(std::chrono::nanoseconds longest) {
 }
 
 /// Brings axes to rest that are not in cyclic synchronous position mode. A drive in profile
-/// position mode gets a Halt and then its own position as target, because without this it would
-/// go on when the Halt ends.
+/// position mode gets a Halt and then its own position as target, because without this target it
+/// would continue when the Halt ends.
 Done Axes::State::stop_set_points() {
   profile_targets_.reset();
   const auto slowed = slow_down();

@@ -14,7 +14,7 @@ namespace {
 /// Longest wait until an image shows that an output was sent.
 constexpr std::chrono::seconds output_time{1};
 
-/// The outputs that lead an axis of CiA 402.
+/// The outputs that control a CiA 402 axis.
 constexpr std::array leading_outputs{&AxisSignals::controlword,     &AxisSignals::mode,
                                      &AxisSignals::target_position, &AxisSignals::target_velocity,
                                      &AxisSignals::target_torque,   &AxisSignals::velocity_offset,
@@ -103,7 +103,8 @@ Done Axes::State::set(const std::string& name, double value) {
   return set_raw(*place, *raw);
 }
 
-/// Keeps the value until the end of the object, or until this program was silent.
+/// The value is sent until this object ends, or until this program was silent for longer than its
+/// timeout.
 Done Axes::State::set_raw(std::size_t place, std::int64_t raw) {
   const std::string& node = group.input().signals()[place].node;
   const std::int16_t id = group.input().signals()[place].node_id;
@@ -125,7 +126,7 @@ Done Axes::State::set_raw(std::size_t place, std::int64_t raw) {
                   why.empty() ? fmt::format("{} was not sent: no image shows it", node) : why);
 }
 
-/// Returns what taktd has said against the newest values for this node, or an empty text.
+/// Returns the reason why taktd has refused the newest values for this node, or an empty text.
 std::string Axes::State::refusal_of(const std::string& node) const {
   for (const event_t& event : events_) {
     const bool refused = event.kind == "command_refused" || event.kind == "limit_exceeded";

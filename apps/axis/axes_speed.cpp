@@ -4,8 +4,8 @@
 
 #include "apps/axis/axes_state.hpp"
 
-// The calls of Axes for speed axes. This program computes their words from each image; taktd stops
-// them when it is silent.
+// The calls of Axes for speed axes. This program computes the words of the axes from each image.
+// taktd stops the axes when this program is silent.
 
 namespace takt {
 namespace {
@@ -52,8 +52,8 @@ bool Axes::State::find_speed_axes() {
   return true;
 }
 
-/// Ends a run that something has ended: the drives must not run again by themselves when its cause
-/// is gone. All axes of the run stop.
+/// Ends the run after a stop that was not requested: the drives must not run again without a
+/// command when the cause of the stop is gone. All axes of the run stop.
 void Axes::State::end_stopped_run() {
   if (!speed->any_wants_to_run()) return;
   stopped_text_ = why_speed_ended();
@@ -180,7 +180,7 @@ Done Axes::State::check_speeds(const Values& velocities, const MotionBounds& bou
   return {};
 }
 
-/// An older run does not go on if the new one fails.
+/// If the new run fails, an older run does not continue.
 Done Axes::State::run_speed(const Values& velocities, const MotionBounds& bounds) {
   Done done = begin_run(velocities, bounds);
   // Only the first obstacle is reported.
@@ -212,7 +212,7 @@ Done Axes::State::begin_run(const Values& velocities, const MotionBounds& bounds
   return obstacle(Obstacle::Kind::blocked, why.empty() ? "the drives do not begin to run" : why);
 }
 
-/// Ends only when the drives no longer run.
+/// This wait ends only when the drives no longer run.
 Done Axes::State::wait_speed(nanoseconds longest) {
   const auto over = [&] { return !speed->moving() || !why_speed_ended().empty(); };
   const auto waited = wait_until(over, longest);

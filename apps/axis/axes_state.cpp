@@ -8,9 +8,9 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-/// Longest wait for a message before the time is looked at again.
+/// Longest wait for a message between two checks of the time.
 constexpr std::chrono::milliseconds axes_tick{5};
-/// Longest time between signs of life. A shorter timeout of the motions shortens it.
+/// Longest time between signs of life. A shorter timeout of the motions shortens this time.
 constexpr std::chrono::milliseconds longest_silence{50};
 constexpr int signs_in_timeout = 4;
 /// Longest wait for the speed axes of a layout, which are published once a second.
@@ -107,8 +107,8 @@ bool Axes::State::is_speed_axis(const std::string& name) const {
   return std::ranges::find(known, name, &speed_axis_t::node) != known.end();
 }
 
-/// The message about speed axes comes with the layout, but this program may have begun to listen
-/// between the two.
+/// The message about speed axes comes with the layout, but this program may have subscribed between
+/// these two messages.
 bool Axes::State::lacks_speed_axes() const {
   if (!group.speed_axes().empty()) return false;
   const AxisControl& known = group.axes();
@@ -154,7 +154,7 @@ Done Axes::State::step(Interruption interruption) {
 }
 
 /// taktd knows a program that commands other outputs than those of its motions only by its
-/// commands, so these live as long as its motions would.
+/// commands, so these commands are valid for as long as motions of the program would be.
 void Axes::State::send_outputs() {
   give_up_after_silence();
   if (speed) {

@@ -30,12 +30,12 @@ inline std::unexpected<Obstacle> obstacle(Obstacle::Kind kind, std::string text)
 
 /// Bit 10 of the statusword. CiA 402-2.
 inline constexpr std::uint16_t target_reached = 0x0400;
-/// Cycles in which a drive may show words from before a command.
+/// Number of cycles in which a drive may still show words from before a command.
 inline constexpr std::int64_t settled_cycles = 10;
 
-/// What an Axes knows and does. Waiting is in axes_state.cpp; each other file has the code of the
-/// calls that it names: drives, halt, homing, motions, stream, gear, speed, set_points, objects,
-/// signals, ramps and probe.
+/// The state and the functions of an Axes. Waiting is in axes_state.cpp; each other file has the
+/// code of the calls that it names: drives, halt, homing, motions, stream, gear, speed, set_points,
+/// objects, signals, ramps and probe.
 class Axes::State {
  public:
   using Clock = ProgramClock;
@@ -78,7 +78,8 @@ class Axes::State {
   std::expected<double, Obstacle> touch_probe(Index number, const ProbeOptions& wanted);
 
   Done home(const HomingOptions& wanted);
-  /// What taktd has reported last about the axis with this index in the group.
+  /// These functions return what taktd has reported last about the axis with this index in the
+  /// group.
   bool homed(Index axis) const;
   bool needs_homing(Index axis) const;
 
@@ -94,7 +95,7 @@ class Axes::State {
   Done stop();
   bool moving() const;
 
-  // The same for speed axes; see axes_speed.cpp.
+  // The calls for speed axes; see axes_speed.cpp.
   Done enable_speed();
   Done disable_speed();
   Done reset_speed();
@@ -114,18 +115,20 @@ class Axes::State {
   AxisGroup group;
   AxesOptions options;
   std::vector<Index> axes;           // axes of the group; empty if these are speed axes
-  std::optional<SpeedDrives> speed;  // the axes, if they are speed axes
+  std::optional<SpeedDrives> speed;  // the axes if they are speed axes
   std::vector<std::string> names;    // parallel to `axes`
   std::vector<std::string> units;
 
  private:
-  /// What this program sends without being asked.
+  /// The messages that this program sends without a call that requests them.
   enum class Sending : std::uint8_t {
-    nothing,   ///< The program only listens.
-    controls,  ///< Controlwords with each image and signs of life: the drives change their states.
-    alive,     ///< Signs of life: the drives are enabled.
+    nothing,  ///< The program only listens.
+    /// Controlwords with each image, and signs of life, while the drives change their states.
+    controls,
+    alive,  ///< Signs of life while the drives are enabled.
   };
-  /// What this program has made of the drives, and so whether it may move them.
+  /// The state to which this program has brought the drives. It determines whether the program may
+  /// move them.
   enum class Readiness : std::uint8_t {
     not_enabled,
     enabled,  ///< enabled by enable()
@@ -173,7 +176,7 @@ class Axes::State {
   std::expected<std::size_t, Obstacle> find_signal(const std::string& name, Signals among) const;
   std::expected<std::int16_t, Obstacle> node_id(const std::string& name) const;
   double value_at(std::size_t place) const;
-  /// Returns true if the output at this place leads an axis.
+  /// Returns true if the output at this place controls an axis.
   bool leads(std::size_t place) const;
   Done set_raw(std::size_t place, std::int64_t raw);
   std::string refusal_of(const std::string& node) const;
@@ -223,7 +226,8 @@ class Axes::State {
   /// mode, or in interpolated position mode if the axis has no target position (0x607A).
   bool is_in_mode_of_motions(Index axis) const;
   bool all_in_mode_of_motions() const;
-  /// Drives in other modes need the commands of this program all the time.
+  /// Chooses what to send. Drives in other modes than that of taktd's motions need commands with
+  /// each image.
   void send_as_modes_need();
   /// Returns the obstacle of a call before enable().
   Done not_enabled() const;
@@ -231,21 +235,22 @@ class Axes::State {
   void end_halt(Readiness next);
   /// Returns true if the newest image shows that the controlword was sent with the Halt bit.
   bool shows_halt(Index axis) const;
-  /// Waits until the actual positions of these axes stand, or their drives say so, and taktd moves
-  /// none of them.
+  /// Waits until the actual positions of these axes no longer change, or their drives report
+  /// standstill, and taktd moves none of them.
   std::optional<Done> wait_for_rest(std::span<const Index> chosen, Interruption interruption);
   /// Puts the name and the statusword of each of these axes into `words`.
   std::string text_of_each(std::span<const Index> chosen,
                            fmt::format_string<const std::string&, std::uint16_t> words) const;
   std::string why_not_ready_text() const;
 
-  /// Waits until a motion may begin, or returns why none may.
+  /// Waits until a motion may begin, or returns the reason why no motion may begin.
   Done wait_for_begin(const MotionBounds& bounds);
   /// Returns the goals of all axes with these limits.
   std::vector<motion_goal_t> goals_within(const MotionBounds& bounds) const;
   /// Returns the id of a motion that begins now.
   std::int32_t note_begin();
-  /// Waits until taktd has answered a motion that goes on. If it does not go on, returns why.
+  /// Waits until taktd has answered a motion that goes on. If the motion does not go on, returns
+  /// the reason.
   Done wait_for_answer();
   Course course() const;
   /// Returns true if a motion runs, or if taktd may still answer it.
@@ -259,7 +264,7 @@ class Axes::State {
   std::string reason(Course course) const;
   Done ended();
   void send_stop();
-  /// Repeats the stop until all axes stand and nothing that was begun before can still begin.
+  /// Repeats the stop until all axes are at rest and no earlier motion can still begin.
   Done stop_now();
 
   Sending sending_ = Sending::nothing;
@@ -269,22 +274,22 @@ class Axes::State {
   bool has_set_points_ = false;               // velocities or torques were commanded, and not ended
   // Decelerations of target velocities that drives follow at once.
   Eigen::VectorXd decelerations_{};
-  std::optional<Eigen::VectorXd> profile_targets_;  // the newest since the axes were stopped
-  Clock::time_point last_values_{};                 // the newest image from which outputs were sent
+  std::optional<Eigen::VectorXd> profile_targets_;  // newest targets since the axes were stopped
+  Clock::time_point last_values_{};  // time of the newest image from which outputs were sent
   std::string lost_text_;         // reason why set-points were discarded, until a call returns it
   std::int64_t request_id_ = 0;   // id of the newest request
   std::int32_t id_ = 0;           // id of the newest motion
   bool has_motion_ = false;       // false before the first motion, and after a stop
   bool has_begun_ = false;        // a motion has begun since the drives were enabled
   bool jog_goes_on_ = false;      // the newest motion is a jog, and no call has ended it
-  std::optional<Stream> stream_;  // until it has ended
+  std::optional<Stream> stream_;  // the stream, until it has ended
   std::int64_t session_ = 0;      // session of the layout in which the axes were found
   Clock::time_point motion_begin_{};
   std::int64_t stop_cycle_ = -1;   // cycle of the image from which the newest stop was sent
-  Clock::time_point last_sent_{};  // the newest sign of life
+  Clock::time_point last_sent_{};  // time of the newest sign of life
   Clock::time_point last_image_ = Clock::now();
-  std::string stopped_text_;     // why this object has stopped speed axes by itself
-  std::vector<event_t> events_;  // since the newest motion began
+  std::string stopped_text_;     // reason why this object has stopped the speed axes
+  std::vector<event_t> events_;  // events since the newest motion began
 };
 
 }  // namespace takt

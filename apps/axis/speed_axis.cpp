@@ -91,7 +91,7 @@ void SpeedAxis::read(const ImageInput& input) noexcept {
   state_ = is_ready ? SpeedState::ready : SpeedState::not_ready;
 }
 
-/// A CiA 402 drive that has left Operation enabled by itself is not led back by itself.
+/// A CiA 402 drive that has left Operation enabled by itself is not led back to it automatically.
 void SpeedAxis::leave_with_drive() noexcept {
   if (words_.sequence != sequence_of_cia402) return;
   const bool is_enabled = (status_ & state_bits) == operation_enabled;

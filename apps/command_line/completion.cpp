@@ -8,7 +8,7 @@
 namespace takt {
 namespace {
 
-/// What a value is, by the name of an option or of a place on the command line.
+/// The kind of a value, by the name of an option or of a place on the command line.
 struct ValueKind {
   std::string_view name;
   std::string_view answer;
@@ -50,10 +50,10 @@ std::string first_line(std::string text) {
 
 bool takes_value(const CLI::Option& option) { return option.get_type_size() != 0; }
 
-/// The place on a command line that the last word has.
+/// The position of the last word on a command line.
 struct Place {
   const CLI::App* at;
-  const CLI::Option* option = nullptr;  ///< whose value it is
+  const CLI::Option* option = nullptr;  ///< option whose value the last word is
   std::size_t positional = 0;
   std::string network;              ///< the network file on the line
   std::vector<std::string> values;  ///< words that are no options and no commands

@@ -13,7 +13,7 @@ namespace takt {
 namespace {
 
 constexpr std::size_t usual_width = 80;
-constexpr std::size_t narrow = 70;     // below it, descriptions stand below the names
+constexpr std::size_t narrow = 70;     // in narrower terminals, descriptions are below the names
 constexpr std::size_t full_line = 70;  // a line that was broken because it was full
 constexpr std::size_t narrow_indent = 6;
 
@@ -38,7 +38,8 @@ class Wrapper {
  public:
   explicit Wrapper(std::size_t width) : width_{width} {}
 
-  /// Appends a text. Its first line begins behind what the last line has, the others at `indent`.
+  /// Appends a text. The first line continues the last line of the output, and the others begin at
+  /// `indent`.
   void add(std::string_view text, std::size_t indent) {
     bool first = true;
     while (!(text = trimmed(text)).empty()) {
@@ -85,13 +86,15 @@ class Wrapper {
   std::string out_;
 };
 
-/// Returns the name on a line of an option or a command. The description may stand behind it.
+/// Returns the name on a line of an option or a command. The description may follow on the same
+/// line.
 std::string_view name_on(std::string_view line, std::size_t column) {
   const bool joined = line.size() > column && line[column - 1] == ' ';
   return trimmed(joined ? line.substr(0, column) : line);
 }
 
-/// Returns the column of the descriptions: behind the longest name that had room for one.
+/// Returns the column of the descriptions: after the longest name that leaves room for a
+/// description.
 std::size_t description_column(const std::vector<std::string_view>& lines, std::size_t column) {
   std::size_t longest_name = 0;
   for (const std::string_view line : lines) {

@@ -100,7 +100,7 @@ void print_help(const CLI::App& app, std::FILE* out) {
   std::fputs(wrapped_help(options, column, notes, text_width()).c_str(), out);
 }
 
-/// Returns the command that the words name, or the last one before a word that names none.
+/// Returns the command that the words name, or the last command before a word that names none.
 const CLI::App& command_of(const CLI::App& app, std::span<const char* const> words) {
   const CLI::App* at = &app;
   for (const char* const word : words) {
@@ -111,8 +111,8 @@ const CLI::App& command_of(const CLI::App& app, std::span<const char* const> wor
   return *at;
 }
 
-/// Answers what a shell or the build asks, and not a person: `--complete WORD...` and `--manual
-/// DIR`, which are no options of the help.
+/// Answers requests of a shell or of the build, and not of the user: `--complete WORD...` and
+/// `--manual DIR`, which are no options of the help.
 std::optional<int> answer_machine(const CLI::App& app, std::span<const char* const> arguments) {
   if (arguments.empty()) return std::nullopt;
   const std::string_view question = arguments.front();

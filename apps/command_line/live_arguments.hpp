@@ -13,7 +13,7 @@ class App;
 
 namespace takt {
 
-/// Options of all verbs that talk to a running daemon.
+/// Options of all verbs that exchange messages with a running daemon.
 struct LiveOptions {
   std::string lcm_url;
   std::string bus_name;  ///< empty means the only bus
@@ -26,7 +26,7 @@ struct LiveOptions {
 void add_bus_choice(CLI::App& verb, LiveOptions& options);
 /// Adds `--keys` and `--check-images`: the options of programs whose daemon may have a key file.
 void add_key_options(CLI::App& app, std::string& keys, bool& check_images);
-/// Adds both, and `--json`.
+/// Adds the options of add_bus_choice() and of add_key_options(), and `--json`.
 void add_live_options(CLI::App& verb, LiveOptions& options);
 
 /// Parses a number of 32 bits without a sign. A number with 0x is hex, whatever the base is.

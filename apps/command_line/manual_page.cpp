@@ -47,7 +47,7 @@ std::string dashed(std::string path) {
   return path;
 }
 
-/// The taktd daemon is a program for administrators.
+/// Returns the section of the manual. The taktd daemon is a program for administrators.
 std::string section_of(const std::string& path) { return path == "taktd" ? "8" : "1"; }
 
 /// The notes below the options, which --help prints as they are.
@@ -171,7 +171,7 @@ void add_part(std::string& page, const char* heading, const std::string& text) {
   if (!text.empty()) page += std::string{".SH "} + heading + '\n' + text;
 }
 
-/// Returns a description without the name of the program, as NAME wants it.
+/// Returns a description without the name of the program, in the form of the section NAME.
 std::string summary(const CLI::App& app) {
   std::string text = app.get_description();
   const std::string name = app.get_name() + " - ";

@@ -32,7 +32,7 @@ int Keyboard::byte() {
   return nothing;
 }
 
-/// The arrow keys are ESC [ C and ESC [ D, or ESC O C and ESC O D.
+/// Returns the next key. The arrow keys are ESC [ C and ESC [ D, or ESC O C and ESC O D.
 JogKey Keyboard::next() {
   constexpr int escape = 0x1B;
   const int first = byte();

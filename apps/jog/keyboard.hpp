@@ -20,7 +20,7 @@ class Keyboard {
   static bool exists() noexcept;
   /// Returns the next key that has come, or JogKey::none.
   JogKey next();
-  /// Forgets the keys that have come.
+  /// Discards the keys that have come.
   void forget();
   /// Returns false if the terminal is closed.
   bool open() const noexcept { return open_; }

@@ -10,9 +10,9 @@ namespace takt {
 
 /// An operation of an expression. A value is true if it is not 0; results are 0 or 1.
 enum class Operation : std::uint8_t {
-  negate,  ///< not
-  both,    ///< and
-  either,  ///< or
+  negate,  ///< operator `not`
+  both,    ///< operator `and`
+  either,  ///< operator `or`
   equal,
   unequal,
   less,

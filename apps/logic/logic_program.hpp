@@ -57,11 +57,11 @@ class LogicProgram {
     double scale = 1.0;
     double offset = 0.0;
   };
-  using Code = std::variant<double, std::size_t, Operation>;  // a place in sources_
+  using Code = std::variant<double, std::size_t, Operation>;  // std::size_t: position in sources_
   struct Bound {
     std::vector<Code> steps;
     std::vector<std::size_t> signals;  // signals that the program reads
-    std::vector<char> before;          // operands of its edges, at the image before
+    std::vector<char> before;          // operands of the edges at the previous image
   };
   struct Target {
     std::size_t output = 0;  // position in outputs_

@@ -12,7 +12,7 @@ namespace {
 
 /// Time between signs of life.
 constexpr std::chrono::milliseconds pause{50};
-/// Time between two stops if no image comes.
+/// Time between two stop messages if no image comes.
 constexpr std::chrono::milliseconds stop_pause{10};
 /// After this number of images, taktd has taken a command. The set-points of taktd are at most
 /// three cycles ahead of the images.

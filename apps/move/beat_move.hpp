@@ -19,7 +19,7 @@ class BeatMove {
  public:
   /// The states of a move.
   enum class Course : std::uint8_t {
-    unanswered,  ///< taktd has not taken the command.
+    unanswered,  ///< taktd has not accepted the command yet.
     runs,        ///< At least one axis moves or stops.
     done,        ///< All axes are at their targets.
     stopped,     ///< taktd has stopped the move; its events say why.
@@ -37,8 +37,9 @@ class BeatMove {
   /// Stops the axes along their limits. The caller repeats the call until stands_after_stop(): it
   /// sends once for each image, and every 10 ms without one.
   void stop();
-  /// Returns true if stop() has answered so many images that no earlier command is under way, and
-  /// if no axis moves. A move that taktd had not answered does not begin any more.
+  /// Returns true if stop() has sent messages for enough images, so that no earlier command can
+  /// still take effect, and if no axis moves. A move that taktd had not answered does not begin any
+  /// more.
   bool stands_after_stop() const;
   /// Returns true if the reports of taktd differ from those of the last call. They differ in each
   /// cycle while an axis moves.
@@ -64,9 +65,9 @@ class BeatMove {
   std::int32_t id_;
   Phase phase_ = Phase::lives;
   Clock::time_point sent_{};
-  std::int64_t stop_cycle_ = -1;  // of the image from which the newest stop was sent
-  int stopped_images_ = 0;        // from which a stop was sent
-  std::vector<Report> reports_;   // at the last call of take_news()
+  std::int64_t stop_cycle_ = -1;  // cycle of the image from which the newest stop was sent
+  int stopped_images_ = 0;        // number of images from which a stop was sent
+  std::vector<Report> reports_;   // reports at the last call of take_news()
 };
 
 }  // namespace takt

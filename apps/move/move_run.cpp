@@ -23,15 +23,15 @@ constexpr int exit_no_daemon = 3;
 constexpr double usual_seconds = 10.0;
 /// Duration from full speed to standstill when the motion is held, seconds.
 constexpr double hold_ramp = 0.2;
-/// Most set-points under way, in cycles: one for the next SYNC, one in the queues of this machine,
-/// and one new.
+/// Largest number of set-points under way, in cycles: one for the next SYNC, one in the queues of
+/// this machine, and one new.
 constexpr double longest_lead = 3;
 /// Longest time in which the bus may take no set-point although images arrive, seconds.
 constexpr double longest_refusal = 1.0;
 /// Longest wait for an image before the motion is checked again.
 constexpr std::chrono::milliseconds tick{2};
 /// Number of status_t (10 in a second) in sequence in which another program may hold an axis.
-/// Before the motion it may be a program that has died, whose last command lives on for up to a
+/// Before the motion, that program may have died, while its last command is valid for up to a
 /// second.
 constexpr int held_before_motion = 20;
 constexpr int held_in_motion = 6;
@@ -40,7 +40,7 @@ constexpr int held_in_motion = 6;
 constexpr double enable_seconds = 5.0;
 /// Longest wait for axes that do not confirm that they are disabled, seconds for all axes together.
 constexpr double disable_seconds = 2.0;
-/// Wait for the axes whose turn did not come in that time or before a second signal, seconds.
+/// Wait for the axes that were not disabled within that time or before a second signal, seconds.
 constexpr double last_seconds = 0.2;
 constexpr int second_stop = 2;
 constexpr int any_stops = 3;
@@ -280,7 +280,7 @@ void MoveRun::compare(const char* what) {
 /// Returns the period of SYNC in seconds.
 double MoveRun::period() const { return std::chrono::duration<double>(group_.period()).count(); }
 
-/// Returns the longest step of the motion in seconds. It keeps the motion from a jump after a gap
+/// Returns the longest step of the motion in seconds. It prevents a jump of the motion after a gap
 /// in the images or a stall of this program.
 double MoveRun::longest_step() const { return period() * options_.stale_cycles; }
 

@@ -24,7 +24,7 @@ class MoveRun {
   /// which ends the wait for axes that do not confirm that they are disabled.
   MoveRun(AxisGroup& group, const MoveOptions& options, const volatile std::sig_atomic_t& stop);
 
-  /// Does the whole run. Returns the exit code of takt-move.
+  /// Runs the whole program. Returns the exit code of takt-move.
   int run();
 
  private:
@@ -92,7 +92,7 @@ class MoveRun {
   bool good_ = true;
   bool commanding_ = false;  // false while takt-move only listens until the devices answer
   bool restarted_ = false;
-  std::optional<double> beat_begin_;  // when taktd has begun the move, in bus_seconds()
+  std::optional<double> beat_begin_;  // time in bus_seconds() at which taktd has begun the move
   Hold holding_ = Hold::no;
   int stale_images_ = 0;
   int holds_ = 0;

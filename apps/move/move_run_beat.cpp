@@ -9,8 +9,8 @@ namespace takt {
 namespace {
 
 constexpr std::chrono::milliseconds beat_tick{2};
-/// Longest wait for the answer of taktd and for news of it, seconds, and at least this number of
-/// periods.
+/// Longest wait for the answer of taktd and for its next reports, in seconds; it is also at least
+/// this number of periods.
 constexpr double longest_silence = 2.0;
 constexpr int silent_periods = 20;
 /// Longest wait for the event with the reason of a stop.
@@ -18,7 +18,8 @@ constexpr int reason_images = 20;
 /// Most new begins of a move that comes nearer to its target each time, and of one that does not.
 constexpr int most_new_begins = 10;
 constexpr int most_vain_begins = 3;
-/// A move has come nearer if at least this part of its first distance is behind it since it began.
+/// A move has come nearer to its target if it has covered at least this part of its first distance
+/// since it began.
 constexpr double nearer = 0.01;
 /// Time before a move begins again, seconds. taktd discards the commands that come in the first
 /// 20 ms after a pause of its own, and does not answer them.
@@ -33,8 +34,8 @@ std::vector<MotionLimits> MoveRun::limits() const {
   return limits;
 }
 
-/// Returns the time in seconds by the cycles of the bus, and by the clock of this machine since the
-/// newest image. `newest` is the result of the newest wait().
+/// Returns the time in seconds: that of the newest image by the cycles of the bus, plus the time
+/// since this image by the clock of this machine. `newest` is the result of the newest wait().
 double MoveRun::bus_seconds(Input newest) const {
   if (newest == Input::fresh) return cycle_seconds();
   return cycle_seconds() + std::chrono::duration<double>(group_.age()).count();
@@ -116,7 +117,7 @@ std::string MoveRun::watch_course() {
     if (input == Input::fresh && (beat_.take_news() || !moves)) news = now;
     if (course == Course::runs && !beat_begin_) beat_begin_ = now;
     if (now - news > longest) {
-      beat_.stop();  // taktd may hear this program although nothing comes back
+      beat_.stop();  // taktd may receive the messages of this program although no answer comes back
       return silence(now - cycle_seconds());
     }
     if (course == Course::unanswered && now - begin > longest) {
@@ -133,14 +134,14 @@ std::string MoveRun::watch_course() {
   }
 }
 
-/// Returns when the move has to be over, in bus_seconds(). The images may be as late as the motion
-/// with set-points of this program allows.
+/// Returns the time in bus_seconds() at which the move has to be over. The images may be as late as
+/// the motion with set-points of this program allows.
 double MoveRun::beat_end() const {
   if (!options_.seconds || !beat_begin_) return std::numeric_limits<double>::infinity();
   return *beat_begin_ + *options_.seconds + longest_step();
 }
 
-/// Returns what is missing. The newest image came `seconds` ago.
+/// Returns the sentence that says which messages are missing. The newest image came `seconds` ago.
 std::string MoveRun::silence(double seconds) const {
   if (seconds < longest_silence / 2.0) {
     return fmt::format("taktd has reported nothing new about the move for {:g} s", longest_silence);

@@ -21,8 +21,8 @@ MoveSizes sizes_for(const MoveOptions& options, const std::string& unit);
 /// Shortest durations of the parts of a motion, in seconds. 0 means that the motion does not have
 /// this part.
 struct MotionTime {
-  double move = 0.0;  ///< the move to the point
-  double sine = 0.0;  ///< one period of the sine
+  double move = 0.0;  ///< part of the move to the point
+  double sine = 0.0;  ///< part of one period of the sine
 };
 
 /// Returns a sentence about a motion that does not end within `limit` seconds. The sentence is

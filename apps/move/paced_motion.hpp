@@ -35,7 +35,7 @@ class Pace {
 class PacedMotion {
  public:
   /// `begin` holds the set-points of time 0 as an image shows them. `ramp` is that of Pace. `lead`
-  /// is how far the motion may run ahead of the bus, above zero.
+  /// is the time by which the motion may run ahead of the bus, above zero.
   PacedMotion(const Eigen::VectorXd& begin, double ramp, double lead)
       : pace_{ramp}, taken_{begin}, lead_{lead} {}
 

@@ -5,12 +5,13 @@
 
 namespace takt {
 
-/// Tells how far along a trajectory the bus has taken the set-points: each image shows which
+/// Determines how far along a trajectory the bus has taken the set-points: each image shows which
 /// set-points were sent. While taktd stalls, it sends none, and afterwards only the newest one
-/// counts. The motion must not run away from the axes meanwhile.
+/// counts. During this time, the motion must not run ahead of the axes.
 class TakenSetPoints {
  public:
-  /// The axes rest at the beginning of the trajectory, `begin` as an image shows it.
+  /// At the beginning of the trajectory, the axes are at rest at `begin`, in the form in which an
+  /// image shows it.
   explicit TakenSetPoints(const Eigen::VectorXd& begin);
 
   /// Records set-points that were sent. `time` is their time along the trajectory in seconds; a

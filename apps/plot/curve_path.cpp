@@ -14,7 +14,7 @@ constexpr double flat = 0.15;
 /// Width of a column, pixels.
 constexpr double column = 2.0;
 
-/// The outermost points of each column, in their order.
+/// Returns the outermost points of each column, in their order.
 std::vector<PlotPoint> outermost(const std::vector<PlotPoint>& points) {
   std::vector<PlotPoint> kept;
   for (auto first = points.begin(); first != points.end();) {

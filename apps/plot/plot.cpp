@@ -28,8 +28,8 @@ constexpr double note_height = 20.0;
 constexpr int ticks_of_panel = 4;
 constexpr int ticks_of_time = 8;
 
-/// Colours that people with a weak sense of colour can tell from each other, on light and on dark
-/// ground.
+/// Colours that people with a colour vision deficiency can distinguish, on a light and on a dark
+/// background.
 constexpr std::array colours{"#2a7fc1", "#d55e00", "#009e73", "#cc79a7",
                              "#c99700", "#56b4e9", "#8a6bbe", "#909090"};
 

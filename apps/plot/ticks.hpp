@@ -16,7 +16,7 @@ struct Ticks {
 };
 
 /// Returns ticks that enclose these finite values, with about `wanted` steps, at least 1. A range
-/// of no width gets one.
+/// of no width is widened.
 Ticks enclosing_ticks(double low, double high, int wanted);
 
 }  // namespace takt

@@ -25,7 +25,7 @@ class AsciiFront {
   AsciiFront(const AsciiFront&) = delete;
   AsciiFront& operator=(const AsciiFront&) = delete;
 
-  /// Must be called before the first serve(). `master` and `bridge` must outlive the AsciiFront.
+  /// Call this before the first serve(). `master` and `bridge` must outlive the AsciiFront.
   void attach(MasterRun& master, Bridge& bridge);
   void serve();
   void watch(std::vector<pollfd>& descriptors) const { server_->watch(descriptors); }
@@ -39,7 +39,7 @@ class AsciiFront {
   AsciiGateway gateway_;
   std::unique_ptr<AsciiServer> server_;
   std::uint64_t gaps_ = 0;       // value of Bridge::gaps() at the last serve()
-  std::uint64_t long_gaps_ = 0;  // value of Bridge::long_gaps() then
+  std::uint64_t long_gaps_ = 0;  // value of Bridge::long_gaps() at the last serve()
 };
 
 }  // namespace takt

@@ -15,7 +15,7 @@
 namespace takt {
 namespace {
 
-constexpr Time stop_margin = std::chrono::seconds{1};  // beyond the limit of the ordered stop
+constexpr Time stop_margin = std::chrono::seconds{1};  // time beyond the limit of the ordered stop
 
 }  // namespace
 

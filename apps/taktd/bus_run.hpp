@@ -27,7 +27,7 @@
 
 namespace takt {
 
-/// What all buses of one taktd share. The objects must outlive the buses.
+/// The objects that all buses of one taktd share. They must outlive the buses.
 struct FrontThread {
   const DaemonOptions& options;
   const Clocks& clocks;
@@ -42,7 +42,7 @@ class BusRun {
  public:
   BusRun(LoadedNetwork network, const FrontThread& front);
 
-  /// Locks the bus against a second taktd. Returns the exit code if another one has it.
+  /// Locks the bus against a second taktd. Returns the exit code if another taktd has the lock.
   std::optional<Exit> claim();
   /// Opens the bus, LCM and the files, and looks for another master. Returns the exit code if the
   /// bus can't start.
@@ -53,7 +53,7 @@ class BusRun {
   /// Returns the bus, its interface and its name, for the status line of systemd.
   std::string title() const { return "bus " + network_.plan.name + " on " + bus_name_; }
   bool wants_realtime() const noexcept { return network_.realtime.mode != RtMode::off; }
-  /// The flag that begins the ordered stop. A signal handler may set it.
+  /// Returns the flag that begins the ordered stop. A signal handler may set it.
   std::atomic<bool>& stop_requested() noexcept { return master_->stop_requested(); }
   Time next_image() const noexcept { return master_->next_publish(); }
   /// Does everything that can be done now. Returns the latest time of the next call.
@@ -80,7 +80,7 @@ class BusRun {
   /// writes the summary. Returns false if a recording is still being written.
   bool complete();
   /// Completes a run whose ordered stop is not over, and saves what has been recorded. `by_signal`:
-  /// a second stop signal has ended it, not its time limit.
+  /// a second stop signal has ended the stop, not its time limit.
   void cut_short(bool by_signal);
   Exit result() const noexcept { return exit_; }
 
@@ -119,7 +119,7 @@ class BusRun {
   std::unique_ptr<SecuredTransport> secured_;  // null without keys
   std::unique_ptr<Bridge> bridge_;
   std::unique_ptr<AsciiFront> gateway_;
-  Time stop_limit_ = never;  // when the daemon stops waiting for the ordered stop
+  Time stop_limit_ = never;  // time at which the daemon stops waiting for the ordered stop
   bool stopping_ = false;
   Exit exit_ = Exit::good;
   std::string why_;          // reason for exit_

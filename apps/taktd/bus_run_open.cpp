@@ -106,8 +106,8 @@ std::optional<Exit> BusRun::look_for_master() {
   return Exit::good;
 }
 
-/// Listens for another master on the bus and on LCM. Commands that arrive meanwhile are dropped:
-/// their senders cannot yet have heard from this master.
+/// Listens for another master on the bus and on LCM. Commands that arrive during this time are
+/// dropped, because their senders cannot yet have received a message of this master.
 void BusRun::listen(OtherMaster& other) {
   DiagnosticSocket* const listener = bus_->diagnostics();
   const std::string status = Channels{network_.plan.name}.status;

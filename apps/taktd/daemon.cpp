@@ -124,7 +124,7 @@ bool Daemon::gives_up(Time now) const {
          std::ranges::any_of(buses_, [now](const auto& bus) { return bus->overdue(now); });
 }
 
-/// Stops all buses if one stops by itself, because it lacks a mandatory node or is too late.
+/// Stops all buses if one bus stops because it lacks a mandatory node or is too late.
 void Daemon::watch_conditions(Time now) {
   const auto works = [now](const auto& bus) { return now - bus->alive() < longest_silence; };
   if (std::ranges::all_of(buses_, works)) service_.alive(now);

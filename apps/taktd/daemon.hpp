@@ -22,7 +22,7 @@ class Daemon {
   Daemon(std::vector<LoadedNetwork> networks, DaemonOptions options);
   ~Daemon();
 
-  /// Returns when the ordered stop of all buses is over. To be called once.
+  /// Returns when the ordered stop of all buses is over. Call this once.
   Exit run();
 
  private:
@@ -48,7 +48,7 @@ class Daemon {
   ServiceNotify service_;
   Reporter reporter_;
   std::vector<std::unique_ptr<BusRun>> buses_;
-  Time end_ = never;  // when the time of --for is over
+  Time end_ = never;  // end of the time of --for
 };
 
 }  // namespace takt

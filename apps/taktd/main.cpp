@@ -30,8 +30,8 @@ bool fits_the_bus(const LoadedNetwork& network, const std::string& file, const c
   return false;
 }
 
-/// Returns false and prints the reason if the key file is missing or readable by others: taktd
-/// would refuse to start with it.
+/// Returns false and prints the reason if the key file is missing or readable by others. taktd
+/// would refuse to start with this file.
 bool has_good_keys(const DaemonOptions& options, const LoadedNetwork& network) {
   const auto file = key_file(options, network);
   if (file.empty()) return true;

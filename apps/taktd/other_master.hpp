@@ -30,11 +30,13 @@ class OtherMaster {
   Time listening_time() const noexcept;
 
   void on_frame(const Frame& frame);
-  /// A status counts if its time stamp is within five seconds of `realtime` (messages of a replayed
-  /// log are older) and if its sender has sent frames: a daemon that only observes is no master.
+  /// Takes a status. It counts if its time stamp is within five seconds of `realtime` (messages of
+  /// a replayed log are older) and if its sender has sent frames: a daemon that only observes is no
+  /// master.
   void on_status(const status_t& status, Time realtime);
 
-  /// Returns the reason why this daemon may not be the master. It is empty if there is none.
+  /// Returns the reason why this daemon may not be the master. It is empty if this daemon may be
+  /// the master.
   const std::optional<std::string>& refusal() const noexcept { return refusal_; }
   /// Signs of another master that prove nothing, one sentence each: a foreign SYNC producer, or a
   /// status that counts as a warning.

@@ -16,8 +16,8 @@ bool same_identifier(const TrafficFrame& a, const TrafficFrame& b) noexcept {
   return a.cob_id == b.cob_id && a.remote_request == b.remote_request;
 }
 
-/// Bounds of the frames outside the cycle, which may come at any time. Frames of the cycle count as
-/// streams with jitter.
+/// Computes bounds of the frames outside the cycle, which may come at any time. Frames of the cycle
+/// count as streams with jitter.
 class Others {
  public:
   Others(const BusTraffic& traffic, const CycleBounds& cycle, const BusPlan& plan,
@@ -115,8 +115,8 @@ Bounds bounds(const BusTraffic& traffic, const BusPlan& plan, const BudgetOption
   return std::move(cycle.ends);
 }
 
-/// Bounds while no event-driven output changes. An event-driven output itself gets the bound of the
-/// last output that is sent.
+/// Returns bounds for cycles in which no event-driven output changes. An event-driven output itself
+/// gets the bound of the last output that is sent.
 Bounds steady_bounds(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options) {
   const auto changes = [](const TrafficFrame& frame) {
     return frame.is_output() && frame.on_change;

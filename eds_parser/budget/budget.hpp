@@ -10,8 +10,8 @@ namespace takt {
 /// One kind of frame and its worst-case end on the wire.
 struct BudgetRow {
   TrafficFrame frame;
-  /// Latest end of the frame. For frames of the cycle the time counts from SYNC, for others from
-  /// being queued. Empty if there is no bound.
+  /// Latest end of the frame. For frames of the cycle, the time counts from SYNC, for others from
+  /// the moment at which they are queued. Empty if there is no bound.
   std::optional<Time> worst;
   std::optional<Time> worst_in_burst;         ///< `worst` while every node sends an EMCY
   std::optional<Time> worst_behind_services;  ///< `worst` with service frames in one queue
@@ -26,8 +26,9 @@ struct BudgetRow {
   /// Returns whether this is an output that ends behind the next SYNC, but fits: SYNC may be late
   /// by the tolerance, or by more if all event-driven outputs change at once.
   bool is_behind_sync() const noexcept { return fits() && cycle != Time{0} && *worst > cycle; }
-  /// Returns the time left until its limit or until the next SYNC, whichever comes first; negative
-  /// if it ends later. Returns std::nullopt if it has neither or no bound, and for SYNC itself.
+  /// Returns the time that is left after the end of the frame until its limit or until the next
+  /// SYNC, whichever comes first; negative if the frame ends later. Returns std::nullopt if it has
+  /// neither or no bound, and for SYNC itself.
   std::optional<Time> margin() const noexcept;
 
   /// Returns whether this is an output that delays the next SYNC by more than the tolerance only if
@@ -60,12 +61,12 @@ struct BusBudget {
   bool fits_in_burst() const noexcept;
   /// Returns whether all frames fit, except in a cycle in which all event-driven outputs change.
   bool fits_but_for_changes() const noexcept;
-  /// Returns the frame with the smallest margin, or null if no frame has one.
+  /// Returns the frame with the smallest margin, or null if no frame has a margin.
   const BudgetRow* tightest() const noexcept;
   /// Returns the longest time by which the outputs can delay the next SYNC.
   Time sync_delay() const noexcept;
-  /// Returns the longest time by which service frames, and outputs behind them, can delay the next
-  /// SYNC. Returns std::nullopt if there is no bound.
+  /// Returns the longest time by which service frames, and outputs that follow them, can delay the
+  /// next SYNC. Returns std::nullopt if there is no bound.
   std::optional<Time> sync_delay_behind_services() const noexcept;
 };
 

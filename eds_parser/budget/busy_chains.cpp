@@ -32,7 +32,7 @@ Time BusyChains::from_devices(std::size_t first, std::size_t end, int rounds, Ti
 }
 
 Time BusyChains::behind_next_sync(const Busy& busy, Time waited) const {
-  // The master's own SYNC also waits behind late outputs.
+  // The master's own SYNC also waits for late outputs in the queue.
   if (!busy.input && (!busy.output || plan_.cycle.makes_sync())) return Time{0};
   const Time until = busy.since + waited + bit_ + sync_jitter_;
   Time sum{};

@@ -38,14 +38,14 @@ class BusyChains : protected CycleFrames {
 
   std::optional<Time> end_of(const Busy& busy) const;
 
-  /// Bus time of the frames [first, end) of `frames_` that devices send outside the cycle within
-  /// `within`. It includes only the SDO answers to `rounds` rounds of requests (0 = no limit). A
-  /// round lasts one cycle or longer. A server is late by at most one round, and has no other
-  /// request meanwhile.
+  /// Returns the bus time of the frames [first, end) of `frames_` that devices send outside the
+  /// cycle within `within`. It includes only the SDO answers to `rounds` rounds of requests (0 = no
+  /// limit). A round lasts one cycle or longer. A server is late by at most one round, and has no
+  /// other request during this time.
   Time from_devices(std::size_t first, std::size_t end, int rounds, Time within) const;
 
-  /// Bus time of the frames that come with the outputs and with later SYNCs, and that go before a
-  /// frame that has waited for `waited`.
+  /// Returns the bus time of the frames that come with the outputs and with later SYNCs, and that
+  /// go before a frame that has waited for `waited`.
   Time behind_next_sync(const Busy& busy, Time waited) const;
 
   static std::optional<Time> later(std::optional<Time> a, std::optional<Time> b) {
@@ -56,15 +56,15 @@ class BusyChains : protected CycleFrames {
     return a && b ? std::optional{std::min(*a, *b)} : a ? a : b;
   }
 
-  /// The bus has been busy since the outputs `cycles` cycles ago: with these outputs, with SYNC and
-  /// with all frames of the cycles between. If `services` is set, the period begins with the
-  /// service frames that were queued before those outputs.
+  /// Returns the busy period since the outputs `cycles` cycles ago. The bus is busy with these
+  /// outputs, with SYNC and with all frames of the cycles between. If `services` is set, the period
+  /// begins with the service frames that were queued before those outputs.
   Busy busy_since_outputs(std::size_t at, int cycles, bool services) const;
 
-  /// The bus has been busy since the SYNC `cycles` cycles ago. The period includes the device time.
+  /// Returns the busy period since the SYNC `cycles` cycles ago. It includes the device time.
   Busy busy_since_sync(std::size_t at, int cycles) const;
 
-  /// The bus has been busy since the SYNC `cycles` cycles ago, but with no more service frames than
+  /// Returns the busy period since the SYNC `cycles` cycles ago, with no more service frames than
   /// fitted in before the outputs of that cycle together with their answers.
   Busy busy_until_outputs(std::size_t at, int cycles) const;
 
@@ -97,8 +97,8 @@ class BusyChains : protected CycleFrames {
     return std::max(services_end_ - plan_.cycle.output_deadline, Time{0});
   }
 
-  /// Bus time for which SYNC may have to wait. A service frame that follows the previous SYNC is
-  /// still in the queue only if the period is short enough.
+  /// Returns the bus time for which SYNC may have to wait. A service frame that follows the
+  /// previous SYNC is still in the queue only if the period is short enough.
   Time sync_blocking() const noexcept {
     const Time begun = std::max(sync_blocking_, late_input_);
     const Time relieved = sync_late() + begun + sync_frame() + services_before_sync_;

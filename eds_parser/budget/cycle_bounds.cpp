@@ -69,9 +69,10 @@ class CycleAnalysis : BusyChains {
     return end;
   }
 
-  /// Bus time of the frame that may have begun before the TPDO is ready. It is either a frame of
-  /// lower priority that began while the device computed, or the service frame that the master
-  /// sends right behind SYNC when slow servers or full cycles have left no room for a long time.
+  /// Returns the bus time of the frame that may have begun before the TPDO is ready. It is either a
+  /// frame of lower priority that began while the device computed, or the service frame that the
+  /// master sends right behind SYNC when slow servers or full cycles have left no room for a long
+  /// time.
   Time begun_before_input(std::size_t at, std::size_t cycle) const {
     Time begun{};
     for (std::size_t k = 0; k < at; ++k) {
@@ -128,9 +129,9 @@ class CycleAnalysis : BusyChains {
     return services_end_ <= plan_.cycle.period + plan_.cycle.output_deadline;
   }
 
-  /// Returns the end of an output behind the service frames of its cycle, or the end of these if
-  /// `before` and `own` are 0. The service frames and their answers would end before the outputs if
-  /// devices sent no other frames outside the cycle meanwhile.
+  /// Returns the end of an output that is sent after the service frames of its cycle, or the end of
+  /// these frames if `before` and `own` are 0. The service frames and their answers would end
+  /// before the outputs if devices sent no other frames outside the cycle during this time.
   std::optional<Time> end_in_queue(Time before, Time own) const {
     const std::size_t at = lowest_queued();
     const Time inputs = inputs_around(at);
@@ -177,7 +178,7 @@ class CycleAnalysis : BusyChains {
       if (!bounds_[i]) return false;
       outputs_end_ = std::max(outputs_end_, *bounds_[i]);
     }
-    // Outputs that queue behind those of the cycle before would wait for all frames that have
+    // Outputs that are queued after those of the cycle before would wait for all frames that have
     // priority over the last of these.
     return outputs_end_ <= plan_.cycle.period + plan_.cycle.output_deadline;
   }
@@ -228,8 +229,8 @@ class CycleAnalysis : BusyChains {
     return longest;
   }
 
-  /// Bus time of the frames of devices that may delay an output: those of its cycle with higher
-  /// priority, and the longest one of lower priority that has just begun.
+  /// Returns the bus time of the frames of devices that may delay an output: those of its cycle
+  /// with higher priority, and the longest one of lower priority that has just begun.
   Time inputs_around(std::size_t lowest) const {
     return inputs_before(lowest, any_cycle) + blocking(lowest, [this](const TrafficFrame& other) {
              return comes_by_itself(other) || other.is_input();

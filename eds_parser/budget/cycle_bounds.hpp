@@ -10,7 +10,7 @@ namespace takt {
 /// The EMCYs that the analysis counts.
 enum class Emcys : std::uint8_t {
   none,
-  one_of_each,  ///< every node sends one at the same moment
+  one_of_each,  ///< every node sends one EMCY at the same moment
 };
 
 /// States whether the service frames of the master delay the frames that it sends after them.
@@ -27,7 +27,8 @@ struct OtherTraffic {
 
 struct CycleBounds {
   std::vector<std::optional<Time>> ends;  ///< ends in the order of `traffic.frames`
-  Time outputs_wait{};  ///< in_queue: how long the outputs wait behind service frames
+  /// Time for which the outputs wait behind service frames in the queue (`in_queue`).
+  Time outputs_wait{};
 };
 
 /// Returns the latest end of each frame of a cycle. An end is empty if there is no bound or if the

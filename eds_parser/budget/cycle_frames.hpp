@@ -10,7 +10,7 @@
 
 namespace takt {
 
-/// The frames of a bus as they meet in a cycle. The functions of this class add the bus times of
+/// The frames of a bus that meet in a cycle. The functions of this class add the bus times of
 /// frames that may go before another frame. They do not compute points in time.
 class CycleFrames {
  protected:
@@ -26,7 +26,7 @@ class CycleFrames {
            (frame.kind != Traffic::emcy || other_traffic_.emcys == Emcys::one_of_each);
   }
 
-  /// Bus time of the frames before position `end` that `counts` selects.
+  /// Returns the bus time of the frames before position `end` that `counts` selects.
   template <class Counts>
   Time work_before(std::size_t end, Counts counts) const {
     Time sum{};
@@ -36,7 +36,8 @@ class CycleFrames {
     return sum;
   }
 
-  /// Bus time of the longest frame of lower priority than `at` that may just have begun.
+  /// Returns the bus time of the longest frame of lower priority than `at` that may just have
+  /// begun.
   template <class MayBlock>
   Time blocking(std::size_t at, MayBlock may_block) const {
     Time longest{};
@@ -51,38 +52,39 @@ class CycleFrames {
   bool is_overloaded() const noexcept;
   bool has_turn(const TrafficFrame& frame, std::size_t cycle) const noexcept;
   Time by_themselves(std::size_t first, std::size_t end, Time within) const;
-  /// Bus time of the master's frames outside the cycle that go before `at`. The master sends them
-  /// when it no longer waits for a late TPDO.
+  /// Returns the bus time of the master's frames outside the cycle that are sent before `at`. The
+  /// master sends them when it no longer waits for a late TPDO.
   Time by_master(std::size_t at) const { return work_before(at, &TrafficFrame::is_service); }
   Time inputs_before(std::size_t at, std::size_t cycle) const {
     return work_before(
         at, [&](const TrafficFrame& frame) { return frame.is_input() && has_turn(frame, cycle); });
   }
-  /// Bus time of the outputs that go before a TPDO that is still waiting when they are sent. In the
-  /// TPDO's own cycle an output of lower priority may have begun, too.
+  /// Returns the bus time of the outputs that go before a TPDO that is still waiting when they are
+  /// sent. In the TPDO's own cycle an output of lower priority may have begun, too.
   Time outputs_before(std::size_t at, std::size_t cycles_later) const;
-  /// Bus time of the service frames that the master sends in `cycles` cycles. The master sends one
-  /// only if it and its answer fit in before the outputs. If no cycle has room for that, the master
-  /// sends one in every `cycles_to_relief` cycles.
+  /// Returns the bus time of the service frames that the master sends in `cycles` cycles. The
+  /// master sends one only if it and its answer fit in before the outputs. If no cycle has room for
+  /// that, the master sends one in every `cycles_to_relief` cycles.
   Time services_in(int cycles) const noexcept;
-  /// Bus time of the service frames that the master sends in a cycle in which it waits for late
-  /// TPDOs until its receive window ends.
+  /// Returns the bus time of the service frames that the master sends in a cycle in which it waits
+  /// for late TPDOs until its receive window ends.
   Time services_behind_window() const noexcept;
   /// Returns whether a cycle has room for a request with its answer.
   bool has_room_for_services() const noexcept { return room_for_services() >= longest_service_; }
-  /// Bus time of the SDO answers to all requests that the master sends in `rounds` rounds of
-  /// services; see BusTraffic::service_round.
+  /// Returns the bus time of the SDO answers to all requests that the master sends in `rounds`
+  /// rounds of services; see BusTraffic::service_round.
   Time answers_in(int rounds) const {
     return rounds * work_before(frames_.size(), &TrafficFrame::is_answer);
   }
-  /// Bus time of the SDO answers to requests of an earlier round: at most one from each node.
+  /// Returns the bus time of the SDO answers to requests of an earlier round: at most one from each
+  /// node.
   Time late_answers() const noexcept;
   bool services_in_queue() const noexcept {
     return other_traffic_.services == Services::in_queue && services_work_ > Time{0};
   }
   Time sync_frame() const noexcept { return sync_ ? frames_[*sync_].frame : Time{0}; }
-  /// What to subtract from times so that they count from the arrival of a SYNC that the master
-  /// follows.
+  /// Returns the time to subtract from times so that they count from the arrival of a SYNC that the
+  /// master follows.
   Time origin() const noexcept { return plan_.cycle.makes_sync() ? Time{0} : sync_frame(); }
 
   /// Returns the number of cycles that the analysis examines.

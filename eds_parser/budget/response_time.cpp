@@ -12,7 +12,7 @@ Time::rep ceil_div(Time time, Time by) noexcept {
   return time <= Time{0} ? 0 : (time.count() + by.count() - 1) / by.count();
 }
 
-/// Bus time of all frames of a stream that may be queued within `time`.
+/// Returns the bus time of all frames of a stream that may be queued within `time`.
 Time queued_within(Time time, const FrameStream& stream) noexcept {
   return ceil_div(time + stream.jitter, stream.period) * stream.burst * stream.frame;
 }
@@ -68,7 +68,8 @@ class Analysis {
 
   Time errors_within(Time time) const noexcept { return error_time(time, errors_, bit_, longest_); }
 
-  /// The longest time for which the bus may be busy with this priority and those above it.
+  /// The longest time for which the bus may be busy with frames of this priority and of higher
+  /// priorities.
   std::optional<Time> busy_period() const noexcept {
     Time time = own_.frame;
     for (;;) {

@@ -8,13 +8,13 @@
 
 namespace takt {
 
-/// Frames of one identifier: how often they come at most, and how long each takes on the wire.
+/// Frames of one identifier: their largest rate, and the time of each on the wire.
 struct FrameStream {
   std::uint64_t priority =
       0;  ///< a smaller value goes first, equal values in any order; on CAN this is the identifier
   Time frame{};   ///< longest time of the frame, with the worst stuffing and the interframe space
   Time period{};  ///< shortest distance between two frames; > 0
-  Time jitter{};  ///< how much later than its period a frame may be queued
+  Time jitter{};  ///< time by which a frame may be queued later than its period
   unsigned burst = 1;  ///< number of frames at once in each period
   bool counts = true;  ///< false: this stream delays no other stream
 };
@@ -26,7 +26,8 @@ struct WireErrors {
   Time interval{};
 };
 
-/// Bus time that errors cost within `time`, if the longest repeated frame takes `frame`.
+/// Returns the bus time that errors cost within `time`, if the longest repeated frame takes
+/// `frame`.
 Time error_time(Time time, const WireErrors& errors, Time bit, Time frame) noexcept;
 
 /// Returns for each stream the worst-case time from queueing to the end of the frame. It is empty

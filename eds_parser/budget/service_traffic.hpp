@@ -10,7 +10,7 @@ inline constexpr int cycles_to_relief = 3;
 
 /// The SDO requests, each with its answer, that the master sends in the slack of a cycle.
 struct ServiceShare {
-  unsigned dialogues = 1;  ///< requests with answers in one round
+  unsigned dialogues = 1;  ///< number of requests with answers in one round
   Time round{};            ///< one cycle; a long cycle has several rounds
 };
 

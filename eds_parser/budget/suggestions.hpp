@@ -11,9 +11,9 @@ namespace takt {
 using TryNetwork = std::function<std::optional<BusPlan>(const WhatIf&)>;
 
 /// Returns the changes that make an overloaded network fit, the cheapest first: other identifiers,
-/// longer inhibit times, TPDOs at every second SYNC, a longer period, a higher bit rate. Each was
-/// tried. `changes` are in force already. If no single change is enough, the result holds
-/// combinations of them. It is empty if these are not enough either.
+/// longer inhibit times, TPDOs at every second SYNC, a longer period, a higher bit rate. Each
+/// change was tried. `changes` already apply. If no single change is enough, the result holds
+/// combinations of them. It is empty if combinations are not enough either.
 std::vector<Suggestion> cheapest_changes(const BusPlan& plan, const WhatIf& changes,
                                          const BudgetOptions& options,
                                          const TryNetwork& try_network);

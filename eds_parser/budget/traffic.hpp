@@ -50,7 +50,7 @@ struct TrafficFrame {
   CobId cob_id{};
   bool remote_request = false;
   bool from_master = false;
-  bool in_cycle = false;  ///< SYNC, the TPDOs that follow it at once, and the outputs
+  bool in_cycle = false;  ///< SYNC, a TPDO that follows it at once, or an output
   bool awaited = false;   ///< the master sends nothing else before this frame has arrived
   std::uint8_t bytes = 0;
   std::uint16_t every = 1;              ///< in_cycle: number of SYNCs from one frame to the next
@@ -60,10 +60,10 @@ struct TrafficFrame {
   Time period{};                        ///< shortest time between two frames
   Time jitter{};
   bool period_assumed = false;
-  bool on_change = false;       ///< sent when its values change, not periodically
+  bool on_change = false;       ///< the frame is sent when its values change, not periodically
   std::optional<Time> limit{};  ///< longest time from being queued to its end
   BudgetLimit why = BudgetLimit::none;
-  std::string waits{};   ///< timeout: who waits, for example "arm (0x1016)"
+  std::string waits{};   ///< timeout: the receiver that waits, for example "arm (0x1016)"
   bool answers = false;  ///< an answer, whose limit counts from the moment its request was queued
 
   bool by_itself() const noexcept { return !from_master && !in_cycle; }

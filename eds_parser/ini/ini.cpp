@@ -14,7 +14,7 @@ constexpr std::ptrdiff_t longest_line = 255;  // CiA 306, 4.2
 
 struct IniLine {
   const char* first;
-  const char* last;              ///< after the last character
+  const char* last;              ///< position after the last character
   const char* equals = nullptr;  ///< the first `=`, if any
 };
 

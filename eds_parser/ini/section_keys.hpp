@@ -20,7 +20,7 @@ class SectionKeys {
   /// Returns the value as UTF-8. The result is empty if the key is missing.
   std::string text(std::string_view key) const;
   void flag(bool& out, std::string_view key, ValueReader& values) const;
-  /// Reports the keys that no call has asked for, except for the `reserved` ones.
+  /// Reports the keys that no call has requested, except for the `reserved` ones.
   void report_unknown(std::string_view section, bool (*reserved)(std::string_view)) const;
 
   /// Returns the entry, or nullptr if the key is missing.

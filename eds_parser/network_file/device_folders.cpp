@@ -36,7 +36,7 @@ std::vector<fs::path> files_of(const fs::path& folder, Findings& findings) {
   std::error_code error;
   fs::directory_iterator at{folder, error};
   for (; !error && at != fs::directory_iterator{}; at.increment(error)) {
-    std::error_code ignored;  // A file that has vanished meanwhile is skipped.
+    std::error_code ignored;  // A file that no longer exists is skipped.
     if (at->path().extension() != ".yaml" || !at->is_regular_file(ignored)) continue;
     files.push_back(at->path());
     if (files.size() > max_files) break;

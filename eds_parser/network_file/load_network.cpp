@@ -108,8 +108,8 @@ class Loader {
     return path.find('@') != std::string::npos;
   }
 
-  /// The build of ros2_canopen fills in `@BUS_CONFIG_PATH@`. takt looks for the files beside the
-  /// network file instead.
+  /// Notes the use of `@BUS_CONFIG_PATH@`, which the build of ros2_canopen fills in. takt looks for
+  /// the files beside the network file instead.
   void note_placeholder(const NetworkSpec& spec) {
     if (!spec.dcf_path.given || !is_placeholder(*spec.dcf_path)) return;
     add(Severity::note, spec.dcf_path.pos, "placeholder", "`dcf_path` ", *spec.dcf_path,
@@ -122,8 +122,8 @@ class Loader {
     return end == std::string::npos ? name : name.substr(end + 2);
   }
 
-  /// The paths at which a file of a node may be: beside the network file, then in `dcf_path` of the
-  /// node, then in that of `options`.
+  /// Returns the paths at which a file of a node may be: beside the network file, then in
+  /// `dcf_path` of the node, then in that of `options`.
   std::vector<fs::path> candidates(const NetworkSpec& spec, const NodeSpec& node,
                                    const std::string& written) const {
     const fs::path folder = path_.parent_path();

@@ -11,8 +11,8 @@ namespace takt {
 /// A frame of the cycle in a picture. Times count from SYNC.
 struct CycleBar {
   const BudgetRow* row = nullptr;
-  Time ready{};  ///< earliest time at which it may be on the wire
-  Time begin{};  ///< begin of the frame if it is as late as possible
+  Time ready{};  ///< earliest time at which the frame may be on the wire
+  Time begin{};  ///< begin of the frame if the frame is as late as possible
   Time end{};
 };
 
@@ -26,7 +26,8 @@ struct CycleMark {
 struct CyclePicture {
   std::vector<CycleBar> bars;
   std::vector<CycleMark> marks;
-  Time end{};  ///< end of the picture: the next SYNC, or the end of the latest frame behind it
+  /// End of the picture: the next SYNC, or the end of the latest frame if that is later.
+  Time end{};
 };
 
 /// Returns 1, 2 or 5 times a power of ten, so that an axis up to `end` has at most `most` ticks.

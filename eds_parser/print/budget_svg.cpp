@@ -178,8 +178,8 @@ class Svg {
          *left < Time{0} ? fmt::format("fill=\"{}\"", late_colour) : "");
   }
 
-  /// Draws the marks. Each label is below the one before, because they may be near each other, and
-  /// has a white background where a line crosses it.
+  /// Draws the marks. Each label is below the previous one, because marks may be near each other,
+  /// and has a white background where a line crosses it.
   void marks() {
     double y = bottom_ + 18;
     for (const auto& mark : picture_.marks) {

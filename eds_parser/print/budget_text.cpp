@@ -100,7 +100,7 @@ class BudgetText {
     for (const auto* row : rows) line(*row, row->frame.name, to_cycle(*row));
   }
 
-  /// Prints the other frames. Similar frames share one line, that of the worst.
+  /// Prints the other frames. Similar frames share one line, which shows the worst of them.
   void other_frames() {
     out_ << "\nother frames, in us from queueing to the end of the frame\n";
     line("COB-ID", "frame", "bytes", "every", "on wire", "worst", "margin", "limit", "with EMCYs",
@@ -183,8 +183,8 @@ class BudgetText {
     list([](const BudgetRow& row) { return row.fits_in_burst(); }, &BudgetRow::worst_in_burst);
   }
 
-  /// Warns only, without effect on the verdict: this case needs a late server and, at the same
-  /// moment, all frames that devices send outside the cycle.
+  /// Prints a warning without effect on the verdict, because this case needs a late server and, at
+  /// the same moment, all frames that devices send outside the cycle.
   void warn_of_services() {
     const Time tolerated = plan_.cycle.period / 10;
     const auto delay = budget_.sync_delay_behind_services();

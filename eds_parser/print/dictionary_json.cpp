@@ -11,7 +11,7 @@
 namespace takt {
 namespace {
 
-/// NaN and infinities become strings, because JSON does not have them.
+/// Returns a number as JSON. NaN and infinities become strings, because JSON does not have them.
 Json json_of(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";

@@ -11,7 +11,7 @@
 
 namespace takt {
 
-/// Prints the budget for people: the verdict with the smallest margin and what is late, the load,
+/// Prints the budget for the user: the verdict with the smallest margin and what is late, the load,
 /// the frames of a cycle and the others with their margins.
 void print_budget_text(std::ostream& out, const BusPlan& plan, const BusBudget& budget);
 
@@ -20,7 +20,7 @@ void print_budget_text(std::ostream& out, const BusPlan& plan, const BusBudget& 
 void print_budget_timeline(std::ostream& out, const BusPlan& plan, const BusBudget& budget,
                            std::size_t width = 120);
 
-/// Prints the same picture as an SVG file.
+/// Prints the picture of one cycle as an SVG file.
 void print_budget_svg(std::ostream& out, const BusPlan& plan, const BusBudget& budget);
 
 /// Prints the changes that would make the network fit, one line each.

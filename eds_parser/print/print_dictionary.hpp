@@ -11,7 +11,7 @@ namespace takt {
 /// written object by object, so that a large dictionary does not need much memory.
 void print_json(std::ostream& out, const ObjectDictionary& dictionary, const Findings& findings);
 
-/// Prints the dictionary for people: device, PDO tables, objects.
+/// Prints the dictionary for the user: device, PDO tables, objects.
 void print_text(std::ostream& out, const ObjectDictionary& dictionary);
 
 }  // namespace takt

@@ -36,15 +36,15 @@ enum class BootAction : std::uint8_t {
   disable_pdo,       ///< download COB-ID `object` = last value read from it | bit 31
   write,             ///< download `value` to `object`
   enable_pdo,        ///< download COB-ID `value`, bit 30 as last read from `object`
-  verify,            ///< same as expect, used to read back after writing
+  verify,            ///< as `expect`; used to read back after writing
   write_if_differs,  ///< upload `object`, download `value` only if it differs
   await_heartbeat,   ///< wait `timeout` for a heartbeat (any state)
   await_guarding,    ///< begin node guarding; wait `timeout` for the first answer
   await_alive,       ///< keep-alive: wait `timeout` for a heartbeat (`guarded`: a guarding answer);
                      ///< if the node reports OPERATIONAL, jump to `target` and do not change it
   await_value,       ///< upload `object` until it is `value` under `mask`, for at most `timeout`
-  download_program,  ///< same as write for a large value; its progress is reported
-  write_if_changed,  ///< same as write, but only if this boot has written anything
+  download_program,  ///< as `write`, for a large value; its progress is reported
+  write_if_changed,  ///< as `write`, but only if this boot has written anything
   read_serial,       ///< upload `object` to recognise the device later; it may be missing
   read_firmware,     ///< upload `object` to compare it with NodePlan::firmware; it may be missing
   read_limit,        ///< upload `object`, a limit of a drive (see DeviceLimit) or its quick stop
@@ -66,7 +66,7 @@ struct BootStep {
   std::uint16_t target = 0;
   char unread_letter = 0;    ///< compare, expect: status if `object` can't be read; 0 = `letter`
   char running_letter = 0;   ///< compare: status if it differs (node left OPERATIONAL); 0 = go on
-  bool guarded = false;      ///< await_alive: the master asks by node guarding
+  bool guarded = false;      ///< await_alive: the master uses node guarding
   bool may_restart = false;  ///< the device may restart in this step
   /// The object may be missing (abort codes 0602 0000, 0609 0011) when `value` is all zero. An
   /// abort code that devices return for a redundant write then counts as success.

@@ -28,7 +28,7 @@ struct EmcyText {
 
 /// Node guarding of a device that has no heartbeat. CiA 301, 7.2.8.3.2.1.
 struct GuardPlan {
-  Time period{};             ///< between two guarding requests; 0 = not guarded
+  Time period{};             ///< time between two guarding requests; 0 = not guarded
   std::uint8_t retries = 3;  ///< number of silent periods after which the node is lost
   Time life_time() const noexcept { return period * retries; }
 };
@@ -39,7 +39,7 @@ struct HeartbeatConsumer {
   Time longest{};  ///< longest silence of the producer that the device accepts
 };
 
-/// What the master does, besides reporting, when a node that was ready falls silent.
+/// The reaction of the master, besides the report, when a node that was ready falls silent.
 enum class LossReaction : std::uint8_t {
   report,      ///< nothing more; the node is booted again when it is back
   stop_node,   ///< NMT stop to the node; it stays stopped until it is reset or started on request
@@ -47,7 +47,7 @@ enum class LossReaction : std::uint8_t {
   quick_stop,  ///< the drives of its group, or of the bus if it has none, stop and are disabled
 };
 
-/// What the loss of a mandatory node does to the other nodes. 0x1F80 bits 4 and 6, CiA 302-2.
+/// The effect of the loss of a mandatory node on the other nodes. 0x1F80 bits 4 and 6, CiA 302-2.
 enum class MandatoryLoss : std::uint8_t { only_it, reset_all, stop_all };
 
 /// Start-up of the network: 0x1F80, 0x1F89, 0x102A. CiA 302-2.
@@ -61,9 +61,10 @@ struct StartUpPlan {
 
 /// A statement that applies only to a range of firmware versions of a device.
 struct FirmwareRule {
-  std::optional<Firmware> from{};   ///< first version that it applies to, if limited
-  std::optional<Firmware> below{};  ///< first version that it no longer applies to, if limited
-  std::string text{};               ///< "these objects are missing: 1403"
+  std::optional<Firmware> from{};  ///< first version to which the rule applies, if limited
+  /// First version to which the rule no longer applies, if limited.
+  std::optional<Firmware> below{};
+  std::string text{};  ///< "these objects are missing: 1403"
 
   bool holds(const Firmware& version) const noexcept {
     return (!from || version >= *from) && (!below || version < *below);
@@ -100,7 +101,8 @@ struct FeedForwardPlan {
   double torque_per_velocity = 0.0;
 };
 
-/// One CiA 402 axis of a device, as the ordered stop sees it. Values are raw units of the device.
+/// One CiA 402 axis of a device, with the data for its ordered stop. Values are raw units of the
+/// device.
 struct AxisPlan {
   std::uint8_t number = 0;  ///< counts from 0; the axis's objects are 0x800 x number higher
   /// Window of 0x606C; at lower speeds the axis counts as standing still.
@@ -109,15 +111,15 @@ struct AxisPlan {
   std::int64_t position_window = 10;
   /// Time of a quick stop from the velocity limit of the axis; 0 = not known.
   Time stopping_time{};
-  std::int16_t quick_stop_option = 2;  ///< 0x605A; the boot reads what the device has
+  std::int16_t quick_stop_option = 2;  ///< 0x605A; the boot reads the value of the device
   std::uint16_t ramp_object = 0;       ///< 0x6085 or 0x6084; 0 = not known
   RawUnit velocity_unit{};             ///< unit of 0x606C
   RawUnit position_unit{};             ///< unit of differences of 0x6064
-  std::optional<HomingPlan> homing{};  ///< empty: the network file says nothing about homing
+  std::optional<HomingPlan> homing{};  ///< empty: the network file has no `homing` for the axis
   std::optional<FeedForwardPlan> feed_forward{};  ///< empty: motions do not command 0x60B2
 };
 
-/// One device as the master sees it.
+/// One device from the view of the master.
 struct NodePlan {
   std::string name;  ///< name in the network file: "shoulder"
   NodeId id;
@@ -127,36 +129,39 @@ struct NodePlan {
   bool mandatory = false;  ///< the failure of the node ends taktd with exit code 4
   bool cia402 = false;     ///< axis features: ordered stop, quick stop fallback
   BootPlan boot_plan{};
-  std::optional<LssPlan> lss{};              ///< how it gets its node-ID by LSS if it has none
-  Time heartbeat_timeout{};                  ///< longest silence; 0 = not watched
-  GuardPlan guard{};                         ///< only for a node without heartbeat
-  Time heartbeat_period{};                   ///< producer time of the device; 0 = not known
+  std::optional<LssPlan> lss{};  ///< how the node gets its node-ID by LSS if it has none
+  Time heartbeat_timeout{};      ///< longest silence; 0 = not watched
+  GuardPlan guard{};             ///< guarding; only for a node without heartbeat
+  Time heartbeat_period{};       ///< producer time of the device; 0 = not known
   std::vector<HeartbeatConsumer> watches{};  ///< heartbeat consumers of the device after the boot
-  bool consumes_master = true;               ///< `heartbeat_consumer`: it may watch the master
-  Time life_guarding{};                      ///< longest pause of guarding it accepts; 0 = no limit
-  std::optional<CobId> emcy_cob_id{};        ///< empty = 0x080 + node-ID
-  bool start_later = false;  ///< StartUpPlan::start_all starts it, not its boot plan
+  bool consumes_master = true;  ///< `heartbeat_consumer`: the device may watch the master
+  Time life_guarding{};         ///< longest pause of guarding that the device accepts; 0 = no limit
+  std::optional<CobId> emcy_cob_id{};  ///< empty = 0x080 + node-ID
+  /// The node is started by StartUpPlan::start_all, not by its boot plan.
+  bool start_later = false;
   LossReaction on_loss = LossReaction::report;
   std::uint8_t group = 0;  ///< index into BusPlan::groups + 1; 0 = no group
   Time sdo_timeout{};      ///< timeout of SDO requests; boot steps have their own limits
   SdoAccess sdo{};
   Time reboot_delay{};             ///< pause before a failed boot is tried again; doubles each time
-  Time longest_reboot_delay{};     ///< upper limit of this pause
+  Time longest_reboot_delay{};     ///< longest pause before a failed boot is tried again
   std::string device_data{};       ///< entry of the device data that applies: "Lenze 8400 HighLine"
   std::string device_data_file{};  ///< "lenze8400.yaml"
-  std::vector<std::string> device_notes{};  ///< notes of that entry, one line each
-  std::vector<EmcyText> emcy_texts{};       ///< error codes of this device family
+  /// Notes of the entry of the device data, one line each.
+  std::vector<std::string> device_notes{};
+  std::vector<EmcyText> emcy_texts{};  ///< error codes of this device family
   std::optional<FirmwarePlan> firmware{};
-  std::string on_sync_loss{};  ///< reaction of such a device to SYNC loss; empty = not known
+  /// Reaction of devices of this family to SYNC loss; empty = not known.
+  std::string on_sync_loss{};
   std::vector<AxisPlan> axes{};
 
-  /// Returns how long the master waits for the answer to a request for this object.
+  /// Returns the longest wait of the master for the answer to a request for this object.
   Time sdo_timeout_of(ObjectKey object) const noexcept {
     return sdo.timeout_of(object, sdo_timeout > Time{} ? sdo_timeout : std::chrono::seconds{1});
   }
 };
 
-/// What the master does, besides reporting, when the SYNC of another device stops.
+/// The reaction of the master, besides the report, when the SYNC of another device stops.
 enum class SyncLoss : std::uint8_t {
   hold,      ///< no outputs are sent, so the devices keep their last values
   fallback,  ///< commanded outputs take their fallback, as when their commands expire
@@ -187,7 +192,7 @@ struct CyclePlan {
   Time sync_window{};        ///< synchronous window (0x1007) of the devices; 0 = none
   std::uint16_t service_frames = 4;  ///< greatest number of SDO and NMT frames in a cycle
 
-  /// By how much the SYNC of another device may be early or late in each period.
+  /// Returns the time by which the SYNC of another device may be early or late in each period.
   Time followed_tolerance() const noexcept { return period / 20; }
 
   bool makes_sync() const noexcept { return sync && !sync_followed; }
@@ -199,8 +204,8 @@ struct TimePlan {
   CobId cob_id = CobId::base(0x100);
 };
 
-/// Everything that the master needs to know about a bus. The plan is compiled and printable, and it
-/// does not change while the master runs.
+/// All data of a bus that the master needs. The plan is compiled and printable, and it does not
+/// change while the master runs.
 struct BusPlan {
   std::string name;                   ///< "lift"; LCM channels use it in capitals
   std::string interface{};            ///< "can0"; empty = simulated bus

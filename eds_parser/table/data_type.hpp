@@ -46,7 +46,8 @@ constexpr unsigned bit_width(DataType type) noexcept {
   return index < std::size(bits) ? bits[index] : 0;
 }
 
-/// Number of bytes in an SDO transfer (a BOOLEAN takes one byte); 0 if the width is not fixed.
+/// Returns the number of bytes in an SDO transfer (a BOOLEAN takes one byte); 0 if the width is not
+/// fixed.
 constexpr unsigned byte_width(DataType type) noexcept { return (bit_width(type) + 7) / 8; }
 
 constexpr bool is_signed(DataType type) noexcept {

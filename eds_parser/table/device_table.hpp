@@ -39,7 +39,7 @@ struct DeviceTable {
   std::uint8_t dummy_usage = 0;  ///< bit n set: data type n may be mapped as a dummy
   std::string model;             ///< "drive402", "io401", "lenze8400", "plain" ...
   std::vector<std::string> quirks;  ///< "late_bootup", ...
-  std::string firmware{};           ///< "15.02.00"; empty = the newest that the model knows
+  std::string firmware{};           ///< "15.02.00"; empty = the newest version of the model
   /// The mechanics behind the axes of a `drive402`. Empty: each motor is a simple lag.
   std::optional<MechanicsTable> mechanics{};
 };

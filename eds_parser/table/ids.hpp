@@ -81,7 +81,7 @@ constexpr std::optional<unsigned> axis_of(ObjectKey object) noexcept {
 
 /// Formats a value as `0x6041`, with at least `digits` digits.
 std::string hex(std::uint32_t value, int digits = 4);
-/// Formats a value of up to 64 bits in the same way.
+/// Formats a value of up to 64 bits as hex() does.
 std::string hex64(std::uint64_t value, int digits = 16);
 /// Formats an object as `6041:00`.
 std::string to_string(ObjectKey key);

@@ -11,7 +11,7 @@
 
 namespace takt {
 
-/// What the master does with an output when its command has exceeded its time to live.
+/// The reaction of the master when the command of an output has exceeded its time to live.
 enum class Fallback : std::uint8_t {
   hold,   ///< keep the last commanded value
   value,  ///< send Signal::fallback_value (zero, a safe value, the quick stop controlword)
@@ -29,7 +29,7 @@ struct Signal {
   DataType type = DataType::unknown;
   std::uint8_t bits = 0;
   bool output = false;    ///< true: mapped into an RPDO, so that the master sends it
-  std::uint16_t row = 0;  ///< row of its PDO in PdoTable::tpdos or ::rpdos
+  std::uint16_t row = 0;  ///< row of the PDO in PdoTable::tpdos or ::rpdos
 
   double scale = 1.0;  ///< SI value = raw * scale + offset
   double offset = 0.0;

@@ -14,7 +14,7 @@ struct MotorParameters {
   double rated_torque = 1.27;   ///< N m
   double peak_torque = 3.81;    ///< N m
   double max_speed = 628.0;     ///< rad/s; the motor has no torque at this speed
-  double breakaway = 1;         ///< dry friction at rest, times that in motion
+  double breakaway = 1;         ///< dry friction at rest, as a multiple of that in motion
   double friction = 0.02;       ///< N m, dry
   double viscosity = 2e-5;      ///< N m s/rad
   double current_lag = 2.5e-4;  ///< s, time constant of the current controller
@@ -22,7 +22,7 @@ struct MotorParameters {
 
 struct LoadParameters {
   double inertia = 9e-5;              ///< kg m2
-  double breakaway = 1;               ///< dry friction at rest, times that in motion
+  double breakaway = 1;               ///< dry friction at rest, as a multiple of that in motion
   double friction = 0.02;             ///< N m, dry
   double viscosity = 2e-5;            ///< N m s/rad
   double torque = 0;                  ///< N m, constant, for example weight

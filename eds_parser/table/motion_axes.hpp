@@ -12,7 +12,7 @@ namespace takt {
 /// target position.
 struct Turn {
   double length = 0.0;  ///< 0: the axis is not rotary, or its range keeps it from turning
-  double lowest = 0.0;  ///< where a turn begins
+  double lowest = 0.0;  ///< position at which a turn begins
 
   /// Returns the position inside the turn at which the axis is in the same place as at `counts`.
   double inside(double counts) const noexcept {

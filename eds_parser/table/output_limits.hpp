@@ -104,7 +104,7 @@ struct DeviceLimit {
   std::uint16_t line = 0;  ///< position in LimitsPlan::lines
 };
 
-/// The object that holds the upper end of a range.
+/// Returns the object that holds the upper end of a range.
 constexpr ObjectKey upper_object(const DeviceLimit& limit) noexcept {
   return {limit.object.index, static_cast<std::uint8_t>(limit.object.sub + 1)};
 }

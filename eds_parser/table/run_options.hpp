@@ -20,7 +20,7 @@ struct RealtimeOptions {
   RtMode mode = RtMode::attempt;
   int priority = 80;                           ///< SCHED_FIFO, 1..99
   std::optional<int> cpu;                      ///< CPU of the bus thread; empty = any
-  Time spin = std::chrono::microseconds{100};  ///< how long before SYNC the thread is awake
+  Time spin = std::chrono::microseconds{100};  ///< time before SYNC from which the thread is awake
   Time late_limit{};  ///< enforce: a SYNC later than this ends taktd with exit code 5; 0 = no limit
 };
 

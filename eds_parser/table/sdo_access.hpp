@@ -24,7 +24,7 @@ constexpr SdoChannel default_sdo_channel(NodeId server) noexcept {
 
 /// States whether the master uses block transfers for large values.
 enum class SdoBlockUse : std::uint8_t {
-  automatic,  ///< if the device supports them
+  automatic,  ///< block transfers if the device supports them
   off,
 };
 

@@ -31,7 +31,7 @@ enum class SpeedSequence : std::uint8_t {
 /// The moment at which a drive obeys the command "fault reset".
 enum class FaultReset : std::uint8_t {
   edge,   ///< at the change from another command to this one
-  level,  ///< while the command is there
+  level,  ///< while the command is present
 };
 
 /// The values of the control word of a speed axis, in the bits of `mask`.
@@ -55,8 +55,8 @@ struct SpeedStates {
   WordPattern fault{};
 };
 
-/// An axis that obeys a speed and has no position: an inverter, or a CiA 402 drive in mode vl. Its
-/// words are those of the device data, or of `speed_axis` in the network file.
+/// An axis that follows a set speed and has no position: an inverter, or a CiA 402 drive in mode
+/// vl. Its words are those of the device data, or of `speed_axis` in the network file.
 struct SpeedAxisPlan {
   std::uint8_t node_index = 0;  ///< position in BusPlan::nodes
   SpeedSequence sequence = SpeedSequence::words;

@@ -12,8 +12,7 @@ namespace takt::waits {
 using namespace std::chrono_literals;
 
 // SDO
-/// Attempts of a boot step; a download is sent once.
-inline constexpr std::uint8_t upload_attempts = 3;
+inline constexpr std::uint8_t upload_attempts = 3;  ///< for a boot step; a download is sent once
 inline constexpr Time probe_try = 500ms;
 inline constexpr Time probe_pause = 50ms;
 inline constexpr Time poll_pause = 100ms;  ///< CiA 302-3, flash status
@@ -70,9 +69,10 @@ constexpr StopLimits stop_limits(Time timeout, Time period) noexcept {
           .nmt = timeout - std::min(timeout / 20, 2 * period)};
 }
 inline constexpr Time stop_default = 5s;
-inline constexpr Time stop_longest = 30s;  ///< upper limit if derived from drives
-/// The time-out of a whole ordered stop in which the quick stop takes `stopping`. It includes a
-/// margin of a quarter for what the ramp does not cover: jerk, following error, detection.
+inline constexpr Time stop_longest = 30s;  ///< upper limit of a time that is derived from drives
+/// Returns the time-out of a whole ordered stop in which the quick stop takes `stopping`. It
+/// includes a margin of a quarter for what the ramp does not cover: jerk, following error,
+/// detection.
 constexpr Time stop_timeout_for(Time stopping) noexcept {
   return std::min(stop_longest, std::max(stop_default, stopping * 5 / 4 * 10 / 8));
 }

@@ -21,7 +21,8 @@ struct RecordingHead {
   std::string reason{};       ///< reason of the recording
   bool observe = false;       ///< true if the master only listened
   bool from_start = false;    ///< true if the recording begins with the start of the master
-  std::string follows{};      ///< recording that ends where this one begins; empty if none
+  /// Recording that ends at the beginning of this one; empty if there is none.
+  std::string follows{};
 };
 
 /// An event in the form in which the file holds it.

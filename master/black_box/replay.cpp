@@ -72,7 +72,7 @@ class Replay {
     }
   }
 
-  /// Returns an empty text if the decision is as recorded.
+  /// Compares a decision with the recording. Returns an empty text if they are equal.
   std::string compare(const Decision& decision) {
     if (outcome_.decisions == recording_.decisions.size()) return surplus_text(decision);
     const Decision& recorded = recording_.decisions[outcome_.decisions];

@@ -27,7 +27,7 @@ struct NodeStatus {
   char boot_letter = 0;
   std::uint16_t boot_step = 0;  ///< step of the boot plan, counted from 0
   std::uint8_t error_register = 0;
-  bool exchanging = false;      ///< see NodeSession::exchanges_pdos()
+  bool exchanging = false;      ///< the node exchanges PDOs, see NodeSession::exchanges_pdos()
   std::uint16_t last_emcy = 0;  ///< error code of the newest EMCY
   std::uint32_t emcy_count = 0;
   std::uint32_t boot_count = 0;      ///< number of successful boots

@@ -37,7 +37,7 @@ std::string about_channel(const BusPlan& plan, const NodePlan& node, const BootF
 }
 
 /// Returns the last reset before the failed step if the node has answered in this boot before this
-/// reset but not after it. Otherwise returns nullptr.
+/// reset, but not after this reset. Otherwise returns nullptr.
 const BootStep* reset_of_a_node_that_was_there(const NodePlan& node, const BootFailure& failure) {
   const auto& steps = node.boot_plan.steps;
   const BootStep* reset = nullptr;
@@ -120,7 +120,7 @@ std::string against_mismatch(const NodePlan& node, const BootStep& step,
          " than the network file expects: correct the device or the network file";
 }
 
-/// Returns true if the device has accepted a block download and then became silent. CiA 301,
+/// Returns true if the device has accepted a block download and has then become silent. CiA 301,
 /// 7.2.4.3.9.
 bool accepted_block(const BootFailure& failure) noexcept {
   return failure.received_size != 0 && (failure.received[0] & 0xE3) == 0xA0;
@@ -170,8 +170,8 @@ bool was_late(const NodePlan& node, const BootFailure& failure) noexcept {
   return failure.late > node.sdo_timeout && node.sdo_timeout > Time{};
 }
 
-/// Returns true if late answers explain the failure. They do not if the device has sent nothing for
-/// longer than its latest answer has taken, because the device is then silent.
+/// Returns true if late answers explain the failure. Late answers do not explain it if the device
+/// has sent nothing for longer than its latest answer has taken, because the device is then silent.
 bool is_late(const NodePlan& node, const BootFailure& failure) noexcept {
   return was_late(node, failure) && failure.quiet <= failure.late;
 }

@@ -220,7 +220,7 @@ std::string against_refusal(const NodePlan& node, const BootStep& step,
 
 std::string against_abort(const NodePlan& node, const BootStep& step, const BootFailure& failure) {
   const std::string text = against_refusal(node, step, failure);
-  // If the device is in PRE-OPERATIONAL, its NMT state is not the cause.
+  // The NMT state is not the cause if the device is in PRE-OPERATIONAL.
   if (!failure.preop_again || failure.node_state == NmtState::preoperational) return text;
   const std::string self_start = against_self_start(failure);
   return failure.node_state == NmtState::operational ? self_start : self_start + ". Else: " + text;

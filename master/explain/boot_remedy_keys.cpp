@@ -12,7 +12,7 @@ namespace {
 struct Setting {
   std::uint16_t index;
   std::string_view key;      ///< key of the network file
-  std::string_view without;  ///< what the user can write to do without the setting
+  std::string_view without;  ///< what the user can write to boot without the setting
 };
 
 constexpr std::array settings{

@@ -18,8 +18,8 @@ std::string read_limit_text(const BusPlan& plan, const Event& event);
 
 /// Describes EventKind::axis_not_stopped: "was disabled at 75 mm/s".
 std::string axis_stop_text(const BusPlan& plan, const Event& event);
-/// Returns the same text with the name of the node: "z was disabled at 75 mm/s", "x: no answer for
-/// 1.2 s".
+/// Returns the text of axis_stop_text() with the name of the node: "z was disabled at 75 mm/s", "x:
+/// no answer for 1.2 s".
 std::string named_axis_stop_text(const BusPlan& plan, const Event& event);
 /// Describes EventKind::loss_reaction.
 std::string reaction_text(const Event& event);

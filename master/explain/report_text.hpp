@@ -19,17 +19,17 @@ inline std::string bytes_text(std::span<const std::uint8_t> bytes) {
   return fmt::format("{:02X}", fmt::join(bytes, " "));
 }
 
-/// A frame as text: "605  40 18 10 01 00 00 00 00".
+/// Returns a frame as text: "605  40 18 10 01 00 00 00 00".
 inline std::string frame_text(CobId id, std::span<const std::uint8_t> bytes) {
   return fmt::format("{:03X}  {}", id.id(), bytes_text(bytes));
 }
 
-/// An abort code as CiA 301 prints it: "0604 0041".
+/// Returns an abort code as CiA 301 prints it: "0604 0041".
 inline std::string abort_digits(std::uint32_t code) {
   return fmt::format("{:04X} {:04X}", code >> 16, code & 0xFFFF);
 }
 
-/// A time as text: "2.5 s", "300 ms", "40 us".
+/// Returns a time as text: "2.5 s", "300 ms", "40 us".
 inline std::string time_text(Time time) {
   const std::int64_t us = std::chrono::duration_cast<std::chrono::microseconds>(time).count();
   const auto text = [us](std::int64_t unit, std::int64_t tenth, std::string_view name) {
@@ -46,7 +46,7 @@ inline std::string interface_text(const BusPlan& plan) {
   return plan.interface.empty() ? "can0" : plan.interface;
 }
 
-/// A node as text: "node 5 'shoulder'".
+/// Returns a node as text: "node 5 'shoulder'".
 inline std::string node_text(const NodePlan& node) {
   return fmt::format("node {} '{}'", node.id.value(), node.name);
 }

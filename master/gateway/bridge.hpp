@@ -199,7 +199,7 @@ class Bridge {
   PdoOutages outages_;
   NoticeLimit limit_;
   std::string stop_text_;  ///< one line for each axis that the newest stop did not confirm
-  Time stop_reported_{};   ///< end of that stop
+  Time stop_reported_{};   ///< end of the newest stop that was reported
   std::uint64_t damaged_count_ = 0;
   RateLimit damaged_{std::chrono::seconds{10}};
   std::vector<std::byte> buffer_;
@@ -221,7 +221,7 @@ class Bridge {
   std::uint64_t gaps_ = 0;
   std::uint64_t long_gaps_ = 0;
   bool skip_images_ = false;  // images that waited during a gap are skipped
-  /// Commands count from this cycle on: that of the first image whose SYNC came after the newest
+  /// The first cycle whose commands count: that of the first image whose SYNC came after the newest
   /// gap.
   std::uint64_t first_cycle_ = 0;
   std::uint64_t images_ = 0;

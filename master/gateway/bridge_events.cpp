@@ -6,7 +6,8 @@
 #include "master/gateway/bridge.hpp"
 #include "master/lcm/printable_text.hpp"
 
-// What the bridge says to people: events of the bus thread and notices of its own.
+// The notices of the bridge for the user: events of the bus thread and notices of the bridge
+// itself.
 
 namespace takt {
 namespace {
@@ -69,7 +70,7 @@ void Bridge::report_lost_events() {
                    subject(master_.plan(), 0), more));
 }
 
-/// Adds what only the gateway knows: the limit that the last command had, and its sender.
+/// Adds the data that only the gateway has: the limit that the last command had, and its sender.
 Notice Bridge::fallback_notice(Event event) const {
   if (const auto limit = commands_.newest_limit(event.value)) event.bytes = pack_limit(*limit);
   Notice notice = to_notice(master_.plan(), event);

@@ -12,7 +12,7 @@ class FrontGap {
  public:
   explicit FrontGap(Time period) noexcept;
 
-  /// Notes that the thread runs at `now`. Returns true if it should have run long before.
+  /// Notes that the thread runs at `now`. Returns true if the thread should have run long before.
   bool ran(Time now) noexcept;
   /// Notes that the thread may sleep until `due`.
   void sleeps_until(Time due) noexcept { due_ = due; }
@@ -21,7 +21,7 @@ class FrontGap {
 
   /// Returns the length of the newest gap, in which the front thread did not run.
   Time length() const noexcept { return length_; }
-  /// End of the newest gap; 0 if there was none.
+  /// Returns the end of the newest gap; 0 if there was none.
   Time end() const noexcept { return end_; }
   /// Returns true if commands that arrive now may have waited during the gap: until the transports
   /// were found empty, but at most for 1 s. The thread of a transport also needs a moment to hand

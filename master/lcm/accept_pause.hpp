@@ -19,7 +19,7 @@ class AcceptPause {
   /// user with the reason, at most once in `sentence_pause`. The text is empty if there is nothing
   /// to report.
   std::expected<FileDescriptor, std::string> accept(int listener, Time now);
-  /// Returns true while the listening socket must be left alone.
+  /// Returns true while the listening socket must not be polled.
   bool active(Time now) const noexcept { return now < until_; }
 
  private:

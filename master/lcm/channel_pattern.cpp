@@ -25,7 +25,7 @@ void for_each(const Set& set, F visit) {
 }  // namespace
 
 /// Builds a Glushkov automaton while it reads the pattern. Each character of the pattern that
-/// stands for a character of the name becomes one position.
+/// matches a character of the name becomes one position.
 class PatternParser {
  public:
   explicit PatternParser(ChannelPattern& out) : out_{out}, left_{out.text_} {}

@@ -28,7 +28,8 @@ class ChannelPattern {
  private:
   friend class PatternParser;
   using Set = std::array<std::uint64_t, longest / 64>;  // positions of the pattern
-  /// A place in the pattern that takes one character, with the places that may take the next one.
+  /// A position in the pattern that matches one character, with the positions that may match the
+  /// next character.
   struct Position {
     std::bitset<256> takes;
     Set next{};

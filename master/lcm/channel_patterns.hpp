@@ -17,12 +17,12 @@ class ChannelPatterns {
   static constexpr std::size_t most_patterns = 256;
   static constexpr std::size_t most_characters = 8192;  ///< total of all patterns
 
-  /// The error says why this pattern is refused.
+  /// Adds a pattern. The error says why the pattern is refused.
   std::expected<void, std::string> add(std::string_view pattern);
   void remove(std::string_view pattern);
   /// Returns true if a pattern matches. The result is cached per channel.
   bool match(std::string_view channel) const;
-  /// Total length of all patterns.
+  /// Returns the total length of all patterns.
   std::size_t characters() const noexcept { return characters_; }
 
  private:

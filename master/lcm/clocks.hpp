@@ -8,7 +8,7 @@ namespace takt {
 class Clocks {
  public:
   virtual ~Clocks() = default;
-  /// Monotonic time, the time base of takt.
+  /// Returns the monotonic time, the time base of takt.
   virtual Time now() const noexcept = 0;
   /// Returns the wall clock time minus now().
   virtual Time wall_offset() const noexcept = 0;

@@ -56,7 +56,8 @@ class ShapeWalk {
     return size;
   }
 
-  // Each round takes at least one byte, so a huge count ends with the message.
+  // Checks a part `count` times. Each time takes at least one byte, so a huge count ends at the end
+  // of the message.
   bool repeat(std::string_view shape, std::uint32_t count) noexcept {
     if (const auto size = size_of(shape)) return take(*size * count);
     for (std::uint32_t i = 0; i < count; ++i) {

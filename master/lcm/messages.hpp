@@ -38,7 +38,7 @@ inline constexpr std::int16_t message_schema = 2;
 /// name.
 inline constexpr std::size_t message_bytes = 1300;
 
-/// Longest time between the arrivals of one message by two ways.
+/// Longest time between the arrivals of one message by two paths.
 inline constexpr std::chrono::milliseconds echo_limit{50};
 
 using Bytes = std::span<const std::byte>;
@@ -47,13 +47,13 @@ using Bytes = std::span<const std::byte>;
 enum class DecodeFault : std::uint8_t {
   schema_1,       ///< the fingerprint is that of this type in schema 1
   other_version,  ///< another fingerprint: the publisher uses other .lcm files
-  malformed,      ///< sizes inside the message are inconsistent
-  out_of_range,   ///< a number that no raw value can represent
+  malformed,      ///< sizes in the message are inconsistent
+  out_of_range,   ///< the message has a number that no raw value can represent
 };
 
 std::string_view text(DecodeFault fault) noexcept;
 
-/// Text of the daemon for an application whose messages have another schema.
+/// Returns the text of the daemon for an application whose messages have another schema.
 std::string schema_refusal(std::int16_t schema);
 /// Returns the text of a program that receives messages of a daemon with another schema.
 std::string daemon_schema_text(std::int16_t schema);
@@ -66,7 +66,7 @@ inline constexpr std::uint64_t fingerprint_of_schema_1 =
     : std::same_as<T, status_t> ? 0xB1E043970713C28C
                                 : 0;
 
-/// Layout of the bytes of a type, see has_shape.
+/// Returns the layout of the bytes of a type, see has_shape.
 template <class T>
 consteval std::string_view message_layout() {
   if (std::same_as<T, command_t>) return "lhllslibn(i)(l)";

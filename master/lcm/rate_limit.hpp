@@ -8,7 +8,7 @@
 
 namespace takt {
 
-/// Lets the same text pass once and then at most once per `pause`, and counts how often it was
+/// Permits the same text once and then at most once per `pause`, and counts how often it was
 /// withheld. Remembers a bounded number of texts.
 class RateLimit {
  public:

@@ -10,8 +10,8 @@ struct BusName {
   Kind kind = Kind::simulated;
   std::string name{};  ///< interface or path
 
-  /// An empty text or `sim` is a simulated bus, `unix:PATH` is a unix bus, and anything else is the
-  /// name of a CAN interface.
+  /// Reads the name of a bus. An empty text or `sim` is a simulated bus, `unix:PATH` is a unix bus,
+  /// and anything else is the name of a CAN interface.
   static BusName parse(std::string_view text) {
     constexpr std::string_view prefix = "unix:";
     if (text.empty() || text == "sim") return {};

@@ -11,7 +11,7 @@ inline Time time_on(clockid_t clock) noexcept {
   clock_gettime(clock, &t);
   return std::chrono::seconds{t.tv_sec} + Time{t.tv_nsec};
 }
-/// CLOCK_MONOTONIC, the time base of takt.
+/// Returns CLOCK_MONOTONIC, the time base of takt.
 inline Time monotonic_now() noexcept { return time_on(CLOCK_MONOTONIC); }
 inline Time realtime_now() noexcept { return time_on(CLOCK_REALTIME); }
 

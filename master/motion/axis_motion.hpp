@@ -11,7 +11,7 @@ namespace takt::motion {
 /// What a motion must reach in addition to the velocity and the acceleration of its target.
 enum class Goal : unsigned char {
   position,  ///< a target position
-  velocity,  ///< no position: the motion ends at the position where it has the target velocity
+  velocity,  ///< no position: the motion ends at the position where it reaches the target velocity
 };
 
 /// All possible motions of one axis from one state to another within its limits. They differ in

@@ -66,7 +66,7 @@ std::optional<Cruise> find_cruise(const Transfer& transfer, double duration, dou
     const double hold = duration - begin.duration() - end.duration();
     return Trial{velocity, hold, begin.distance + end.distance + velocity * hold - distance};
   };
-  // An axis that stands at its target keeps its exact position. The search below would add
+  // An axis that is at rest at its target keeps its exact position. The search below would add
   // rounding.
   if (lowest <= 0.0 && highest >= 0.0) {
     const Trial still = trial(0.0);

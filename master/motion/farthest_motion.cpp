@@ -57,8 +57,8 @@ FarthestMotion::Fall FarthestMotion::fall(double duration) const noexcept {
   const double end = transfer_.end_acceleration;
   const double highest = transfer_.max_acceleration;
   const double lowest = transfer_.min_acceleration;
-  // If no acceleration is held, the difference of both accelerations follows from the duration, and
-  // their sum from the velocities.
+  // If no acceleration is held, the difference of the two accelerations follows from the duration,
+  // and their sum from the velocities.
   const double twice = duration + start - end;
   double difference = std::max(twice / 2, 0.0);
   const double least = 2 * start - difference;
@@ -66,7 +66,8 @@ FarthestMotion::Fall FarthestMotion::fall(double duration) const noexcept {
   const double sum = std::clamp(difference > 0.0 ? gain_ / difference : least, least, most);
   Fall fall{.from = (sum + difference) / 2, .to = (sum - difference) / 2};
   if (fall.from <= highest && fall.to >= lowest) return fall;
-  // Otherwise at least one of both accelerations is held at its limit for the rest of the duration.
+  // Otherwise at least one of the two accelerations is held at its limit for the rest of the
+  // duration.
   const auto left = [&](double from, double to) { return std::max(twice - 2 * (from - to), 0.0); };
   fall.from = lowest + std::sqrt(std::max(gain_ - lowest * twice, 0.0));
   if (fall.to < lowest && fall.from <= highest) {

@@ -8,7 +8,7 @@ namespace takt::motion {
 namespace {
 
 /// Times between which a polynomial only rises or only falls: both ends of the interval, and its
-/// turns.
+/// extrema.
 class Turns {
  public:
   void add(double time) noexcept { times_[size_++] = time; }

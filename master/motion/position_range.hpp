@@ -12,7 +12,7 @@ struct PositionRange {
   double max = std::numeric_limits<double>::infinity();
 };
 
-/// Returns the range, extended to `position`: an axis that stands outside its range may come back.
+/// Returns the range, extended to `position`: an axis outside its range may come back.
 PositionRange widened(const PositionRange& range, double position) noexcept;
 
 /// Returns the least and the greatest position of a motion that starts at `from`.

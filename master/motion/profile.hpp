@@ -55,7 +55,7 @@ class Profile {
     return std::span{segments_}.first(size_);
   }
 
-  /// Duration of the whole motion in s.
+  /// Returns the duration of the whole motion in s.
   constexpr double duration() const noexcept {
     double sum = 0.0;
     for (const Segment& segment : segments()) sum += segment.duration;

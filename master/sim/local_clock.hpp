@@ -22,7 +22,7 @@ class LocalClock {
  private:
   static constexpr Time::rep million = 1'000'000;
 
-  // Few clocks drift, so these are no part of the functions that ask a clock.
+  // These functions are not inlined, because few clocks drift.
   [[gnu::noinline]] Time drifted(Time world) const noexcept {
     return base_ + offset_ + (world - base_) + part(world - base_, million);
   }

@@ -52,7 +52,8 @@ BlockFollower::Part BlockFollower::segment(const Frame& frame) {
   // seen.
   if (gap_ && is_block_end(frame) && all_zero(std::span{frame.data}.subspan(3))) return end(frame);
   const SdoBlockSegment part = decode_block_segment(frame);
-  if (part.number == 1 && !sub_block_.empty()) lose_track();  // confirmation not seen
+  // The confirmation of the sub-block was not seen.
+  if (part.number == 1 && !sub_block_.empty()) lose_track();
   if (part.last) last_number_ = part.number;
   if (part.number == sub_block_.size() + 1) sub_block_.push_back(part);
   return Part::segment;

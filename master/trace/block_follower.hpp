@@ -48,7 +48,7 @@ class BlockFollower {
   std::size_t to_repeat() const noexcept { return to_repeat_; }
   /// Returns true if both sides use the CRC.
   bool uses_crc() const noexcept { return crc_used_; }
-  /// CRC of the segments that were seen.
+  /// Returns the CRC of the segments that were seen.
   std::uint16_t crc() const noexcept { return crc_; }
   /// Returns true if some segments are not in the recording.
   bool has_gap() const noexcept { return gap_; }

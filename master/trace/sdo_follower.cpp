@@ -10,7 +10,7 @@ namespace {
 using Kind = SeenTransfer::Kind;
 using Extent = SeenTransfer::Extent;
 
-/// Within a block transfer, a segment never has the number 0.
+/// Returns true if the frame is an abort. A segment of a block transfer never has the number 0.
 bool is_abort(const Frame& frame) noexcept { return frame.data[0] == 0x80; }
 
 }  // namespace
@@ -149,7 +149,8 @@ void SdoFollower::check_toggle(std::optional<bool>& last, const Frame& frame) no
   newest_.repeats_toggle = std::exchange(last, toggle).value_or(true) == toggle;
 }
 
-/// A segment whose toggle bit repeats came twice, or the one before it was not recorded.
+/// Takes a segment. If its toggle bit repeats, it came twice, or the segment before it was not
+/// recorded.
 std::optional<SeenTransfer> SdoFollower::take_segment(const Frame& frame, Kind kind) {
   if (!is_in_segments(kind)) return stray();
   check_toggle(kind == Kind::write ? asked_toggle_ : answered_toggle_, frame);

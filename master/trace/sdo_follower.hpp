@@ -41,7 +41,7 @@ class SdoFollower {
 
   /// Returns the newest transfer. It may have ended.
   const SeenTransfer& transfer() const noexcept { return transfer_; }
-  /// What the newest frame is in a block transfer, or std::nullopt.
+  /// Returns the part of a block transfer that the newest frame is, or std::nullopt.
   std::optional<BlockFollower::Part> block_part() const noexcept { return newest_.part; }
   /// Returns the newest block transfer.
   const BlockFollower& block() const noexcept { return block_; }

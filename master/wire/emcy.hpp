@@ -16,7 +16,7 @@ struct Emcy {
   std::array<std::uint8_t, 5> manufacturer{};
 };
 
-/// COB-ID of the EMCY of a node in the predefined connection set.
+/// Returns the COB-ID of the EMCY of a node in the predefined connection set.
 constexpr CobId emcy_cob_id(NodeId node) noexcept { return CobId::base(0x080U + node.value()); }
 
 constexpr Frame encode(const Emcy& emcy) noexcept {

@@ -15,7 +15,7 @@ struct Heartbeat {
   bool toggle = false;                 ///< bit 7; only guarding answers use it
 };
 
-/// COB-ID of heartbeat, guarding and boot-up messages of a node.
+/// Returns the COB-ID of heartbeat, guarding and boot-up messages of a node.
 constexpr CobId heartbeat_cob_id(NodeId node) noexcept {
   return CobId::base(0x700U + node.value());
 }

@@ -80,7 +80,8 @@ struct Answer {
   }
 };
 
-/// Number of bytes of an answer that have a meaning. Some devices send no more than these.
+/// Returns the number of bytes of an answer that have a meaning. Some devices send no more than
+/// these.
 constexpr std::size_t answer_bytes(std::uint8_t code) noexcept {
   const auto inquire = static_cast<std::uint8_t>(Service::inquire);
   if (code >= inquire && code < inquire + 4) return 5;

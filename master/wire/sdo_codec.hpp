@@ -12,14 +12,14 @@
 
 namespace takt {
 
-/// COB-ID of the frames of a client on the default channel of a server. CiA 301, 7.2.4.3 has the
-/// expedited and segmented transfers that this file codes. All frames are sent with eight bytes,
-/// and unused bytes are sent as zero. Unused bytes of received frames are ignored and may be
-/// missing.
+/// Returns the COB-ID of the frames of a client on the default channel of a server. CiA 301,
+/// 7.2.4.3 has the expedited and segmented transfers that this file codes. All frames are sent with
+/// eight bytes, and unused bytes are sent as zero. Unused bytes of received frames are ignored and
+/// may be missing.
 constexpr CobId sdo_request_cob_id(NodeId server) noexcept {
   return CobId::base(0x600U + server.value());
 }
-/// COB-ID of the frames of a server on its default channel.
+/// Returns the COB-ID of the frames of a server on its default channel.
 constexpr CobId sdo_answer_cob_id(NodeId server) noexcept {
   return CobId::base(0x580U + server.value());
 }
@@ -61,11 +61,11 @@ enum class SdoAnswer : std::uint8_t {
   reserved = 7,
 };
 
-/// Client command specifier of a frame.
+/// Returns the client command specifier of a frame.
 constexpr SdoRequest sdo_request(const Frame& frame) noexcept {
   return static_cast<SdoRequest>(frame.data[0] >> 5);
 }
-/// Server command specifier of a frame.
+/// Returns the server command specifier of a frame.
 constexpr SdoAnswer sdo_answer(const Frame& frame) noexcept {
   return static_cast<SdoAnswer>(frame.data[0] >> 5);
 }
@@ -219,11 +219,11 @@ constexpr SdoSegment decode_segment(const Frame& frame) noexcept {
   return part;
 }
 
-/// Toggle bit of any segment frame, request or answer.
+/// Returns the toggle bit of any segment frame, request or answer.
 constexpr bool sdo_toggle(const Frame& frame) noexcept { return (frame.data[0] & 0x10) != 0; }
 
-/// Number of bytes of a server's frame that have a meaning, except for segments of a block upload.
-/// Some devices send no more than these.
+/// Returns the number of bytes of a server's frame that have a meaning, except for segments of a
+/// block upload. Some devices send no more than these.
 constexpr std::size_t sdo_answer_bytes(const Frame& frame) noexcept {
   const unsigned subcommand = frame.data[0] & 3U;
   switch (sdo_answer(frame)) {

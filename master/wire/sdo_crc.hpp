@@ -10,7 +10,7 @@ namespace takt {
 
 namespace sdo_detail {
 
-/// Table of the polynomial x^16 + x^12 + x^5 + 1, most significant bit first.
+/// Returns the table of the polynomial x^16 + x^12 + x^5 + 1, most significant bit first.
 constexpr std::array<std::uint16_t, 256> make_crc_table() noexcept {
   std::array<std::uint16_t, 256> table{};
   for (unsigned byte = 0; byte < table.size(); ++byte) {
@@ -24,8 +24,8 @@ inline constexpr auto crc_table = make_crc_table();
 
 }  // namespace sdo_detail
 
-/// CRC of SDO block transfers. Start with `crc` = 0; to continue over several pieces, pass the
-/// result of the piece before. CiA 301, 7.2.4.3.16.
+/// Returns the CRC of SDO block transfers. Start with `crc` = 0; to continue over several pieces,
+/// pass the result of the piece before. CiA 301, 7.2.4.3.16.
 template <WireByte B, std::size_t N>
 constexpr std::uint16_t sdo_crc(std::span<B, N> bytes, std::uint16_t crc = 0) noexcept {
   for (const B byte : bytes) {

@@ -40,7 +40,7 @@ class WireTime {
   Time worst_dialogue() const noexcept { return bit_ * (2 * 135); }
 
  private:
-  /// A remote frame names a length but carries no data.
+  /// Returns the number of data bits. A remote frame has a length but carries no data.
   static constexpr std::int64_t data_bits(const Frame& frame) noexcept {
     return frame.rtr ? 0 : 8 * std::int64_t{frame.length};
   }

@@ -83,7 +83,7 @@ void AxisGroup::State::take(std::string_view channel, std::span<const std::byte>
   }
 }
 
-/// Other programs ask on the same channel.
+/// Other programs also send requests, so a reply may be for another program.
 void AxisGroup::State::take_reply(std::span<const std::byte> data) {
   auto reply = decode<reply_t>(data);
   const bool own = reply && reply->schema == message_schema && reply->sender == sender;
@@ -151,7 +151,7 @@ void AxisGroup::State::take_motion(std::span<const std::byte> data) {
   }
 }
 
-/// Returns nullptr if nothing was reported.
+/// Returns nullptr if taktd has reported nothing about the axis.
 const AxisGroup::State::Motion* AxisGroup::State::motion_of(const AxisSignals& signals) const {
   const std::int32_t controlword = input.signals()[*signals.controlword].index;
   const auto found = motions.find({signals.node, number_of_axis(controlword)});

@@ -21,11 +21,11 @@
 
 namespace takt {
 
-/// What an AxisGroup knows of its bus. It takes messages in axis_group_input.cpp.
+/// The knowledge of an AxisGroup about its bus. It takes messages in axis_group_input.cpp.
 class AxisGroup::State {
  public:
   using Clock = ProgramClock;
-  /// What taktd has reported about an axis, and in which cycle.
+  /// The newest report of taktd about an axis, and the cycle of the report.
   struct Motion {
     axis_motion_t axis;
     std::int64_t cycle;
@@ -52,7 +52,8 @@ class AxisGroup::State {
   template <class Message>
   bool seal_and_publish(const std::string& channel, const Message& message,
                         std::chrono::nanoseconds now);
-  /// The same for a message about motions, from the newest image.
+  /// Sends a message about motions that is computed from the newest image, in the name of this
+  /// group.
   template <class Message>
   bool send_goals(const std::string& channel, Message& message);
   const Motion* motion_of(const AxisSignals& signals) const;
@@ -90,7 +91,7 @@ class AxisGroup::State {
   bool new_layout = false;
   bool reported_stale = false;
   bool reported_schema = false;
-  bool commands = false;  // something was sent since the last release
+  bool commands = false;  // the group has sent a message since the last release
   Clock::time_point arrival{};
   std::optional<EnvelopeSeal> seal;  // empty if there is no key
   std::vector<event_t> events;

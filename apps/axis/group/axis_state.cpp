@@ -167,9 +167,9 @@ void AxisControl::State::put_position(Index index) {
   if (is_cyclic && is_shown && axis.drive.enabled()) axis.sends_position = false;
 }
 
-/// Returns true if a drive that is not enabled would jump if it were: its target position is far
-/// from its actual one. taktd lets the target follow from the first command on, unless another
-/// program has commanded one before.
+/// Returns true if a drive that is not enabled would jump when it is enabled, because its target
+/// position is far from its actual one. taktd lets the target follow from the first command on,
+/// unless another program has commanded one before.
 bool AxisControl::State::lags(Index index) const {
   const Axis& axis = axes[static_cast<std::size_t>(index)];
   if (axis.drive.enabled() || axis.stale || !axis.signals.position) return false;

@@ -14,7 +14,7 @@
 
 namespace takt {
 
-/// What an AxisControl knows and does. Vectors have one element for each axis.
+/// The state and the functions of an AxisControl. Vectors have one element for each axis.
 struct AxisControl::State {
   struct Axis {
     AxisSignals signals;
@@ -32,7 +32,7 @@ struct AxisControl::State {
     bool homes = false;           // bit 4 of the controlword is set in homing mode
   };
 
-  /// Returns the mode in which an axis with these signals does what `wanted` asks for.
+  /// Returns the mode in which an axis with these signals fulfils `wanted`.
   static DriveMode mode_for(const AxisSignals& signals, DriveMode wanted) noexcept {
     const bool points = signals.interpolates && wanted == DriveMode::cyclic_position;
     return points ? DriveMode::interpolated_position : wanted;

@@ -10,7 +10,7 @@ namespace {
 /// Most signals of a layout. It bounds the memory that a layout can make this program allocate.
 constexpr std::int32_t most_signals = 65536;
 constexpr std::int16_t most_parts = 4096;
-/// This number of unexpected images that follow each other is taken as the true cycle of the bus.
+/// This number of unexpected images that follow each other determines the true cycle of the bus.
 constexpr int most_strange = 3;
 constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::int64_t quiet_periods = 20;
@@ -109,8 +109,8 @@ bool ImageInput::is_next(std::int64_t cycle) const noexcept {
   return new_cycle_ < 0 || cycles_between(new_cycle_, cycle) <= std::max(a_second, least_ahead);
 }
 
-/// Returns true if an image that does not follow the newest one is the third of a row of such
-/// images that follow each other.
+/// Call this for an image that does not follow the newest one. Returns true if it is the third of
+/// such images in sequence that follow each other.
 bool ImageInput::is_confirmed(std::int64_t cycle) noexcept {
   if (strange_images_ != 0 && cycle == strange_cycle_) return false;  // same image, another part
   const bool follows = strange_images_ != 0 && cycle > strange_cycle_ &&

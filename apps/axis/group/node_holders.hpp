@@ -15,7 +15,7 @@ class NodeHolders {
   explicit NodeHolders(std::string_view sender) : sender_{sender} {}
 
   void take(const status_t& part);
-  /// Returns the holder of a node-ID. Before the first status_t, nobody holds a node.
+  /// Returns the holder of a node-ID. Before the first status_t, no program holds a node.
   const NodeHolder& operator[](std::int16_t node) const noexcept;
   /// Forgets all holders, because taktd has restarted.
   void clear();

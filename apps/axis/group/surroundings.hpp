@@ -7,8 +7,8 @@
 
 namespace takt {
 
-/// What the axis library takes from the machine on which its program runs. By default this is the
-/// real machine. A simulation gives a thread other surroundings, see UseSurroundings.
+/// The services of the machine on which the program runs that the axis library uses. By default
+/// this is the real machine. A simulation gives a thread other surroundings, see UseSurroundings.
 class Surroundings {
  public:
   virtual ~Surroundings() = default;

@@ -9,8 +9,8 @@ namespace {
 
 /// Shortest time between two messages with new points in seconds, as long as enough points wait.
 constexpr double shortest_pause = 0.02;
-/// Time after which the newest message is repeated. It is not, shortly before the points end: the
-/// stream would be over when the message arrives.
+/// Time after which the newest message is repeated. Shortly before the points end, it is not
+/// repeated, because the stream would be over when the message arrives.
 constexpr double repetition_pause = 0.05;
 constexpr double last_repetition = 0.1;
 constexpr std::int64_t last_repetition_cycles = 10;

@@ -8,9 +8,9 @@
 
 namespace takt {
 
-/// The points of a stream on their way to taktd: which of them to send in this cycle. It knows the
-/// time of the stream from the reports of taktd. Each message repeats the points that are not
-/// reached yet, so that a message that was lost does no harm.
+/// Keeps the points of a stream for taktd, and determines which of them to send in each cycle. It
+/// knows the time of the stream from the reports of taktd. Each message repeats the points that are
+/// not reached yet, so that a message that was lost does no harm.
 ///
 /// The stream begins when the points reach `lead` ahead, or with finish().
 class StreamBuffer {
@@ -26,7 +26,7 @@ class StreamBuffer {
   StreamBuffer(const std::vector<double>& positions, double period);
 
   /// Appends a point. Returns what is wrong with it, or an empty text. A point at time 0 replaces
-  /// that where the stream begins.
+  /// the point at which the stream begins.
   std::string add(motion_point_t point);
   /// No further points come for the time being, so the stream begins with those that are there.
   void finish() noexcept { starts_ = true; }
@@ -57,7 +57,7 @@ class StreamBuffer {
   double period_;
   bool starts_ = false;
   std::deque<motion_point_t> points_;  // points from the newest one that is reached on
-  std::int64_t first_ = 0;             // number of the first one of them
+  std::int64_t first_ = 0;             // number of the first of these points
   std::int64_t next_ = 0;              // number of the first point that was never sent
   std::int64_t sent_cycle_ = 0;        // cycle of the newest message
   double passed_ = 0.0;                // time of the stream in the cycle of the newest report

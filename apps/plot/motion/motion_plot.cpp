@@ -13,7 +13,7 @@
 namespace takt {
 namespace {
 
-/// Hands everything on, and keeps the motions that arrive.
+/// Passes on all messages, and keeps the motions that arrive.
 class ListeningTransport final : public Transport {
  public:
   ListeningTransport(std::unique_ptr<Transport> lcm, MotionTrace& trace)

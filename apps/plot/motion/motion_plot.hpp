@@ -23,8 +23,8 @@ class MotionPlot {
   /// Creates the file, so that a wrong name is found before an axis moves. On failure, returns a
   /// sentence for the user.
   std::expected<void, std::string> create() const;
-  /// Returns a transport that hands on what this one receives, and keeps the motions. This object
-  /// must outlive it.
+  /// Returns a transport that passes on the messages that `lcm` receives. This object keeps the
+  /// motions in them, and must outlive the transport.
   std::unique_ptr<Transport> listen(std::unique_ptr<Transport> lcm);
   /// Writes the picture of these axes. On failure, returns a sentence for the user.
   std::expected<void, std::string> write(AxisGroup& group,

@@ -28,7 +28,7 @@ double multiplier_of(const NodePlan& node) {
          static_cast<double>(node.heartbeat_period.count());
 }
 
-/// Use of an entry of 0x1016, as the master sees it.
+/// Use of an entry of 0x1016, from the view of the master.
 enum class Entry : std::uint8_t { of_master, watches_nobody, of_another };
 
 class Adviser {

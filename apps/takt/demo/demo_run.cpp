@@ -130,7 +130,8 @@ void DemoRun::show_where_to_look() {
       files_.network.string()));
 }
 
-/// Ends takt-move, so that the axes come to rest, and then taktd, which stops the bus.
+/// Ends both programs in order: takt-move first, so that the axes come to rest, and then taktd,
+/// which stops the bus.
 int DemoRun::end() {
   if (Interrupt::asked())
     output_.say("\nThe demo ends: the axes come to rest, then taktd stops.\n");

@@ -32,7 +32,7 @@ std::vector<Remark> judge_link(const CanLink& link, std::optional<std::uint32_t>
 /// Checks kernel, clock and frequency governor. Reads the files of the kernel below `root` ("/").
 std::vector<Remark> check_machine(const std::filesystem::path& root);
 
-/// Judges the result of a thread that asked for SCHED_FIFO and locked memory.
+/// Judges the result of a thread that has requested SCHED_FIFO and locked memory.
 std::vector<Remark> judge_realtime(const RtReport& report);
 
 /// Checks multicast route and socket buffers for LCM at `url`. Reads the size of the buffers below

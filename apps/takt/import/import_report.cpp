@@ -215,8 +215,8 @@ std::string why_used(const Row& row) {
   return row.key.why.empty() ? std::string{meaning_of(row)} : row.key.why;
 }
 
-/// Judges the keys of `defaults`. A node takes such a key as a whole, or not at all if the node has
-/// the same key itself.
+/// Judges the keys of `defaults`. Such a key applies to a node as a whole, or not at all if the
+/// node has the same key.
 void judge_defaults(const YamlNode& root, std::vector<Row>& rows) {
   const YamlNode* defaults = root.find("defaults");
   const std::vector<const YamlPair*> nodes = nodes_of(root);

@@ -11,12 +11,13 @@ namespace takt::logging {
 /// node has this name.
 std::string cycle_field(const std::vector<LoggedSignal>& signals);
 
-/// JSON schema of an image: an object for each node, with objects and units as descriptions.
+/// Returns the JSON schema of an image: an object for each node, with objects and units as
+/// descriptions.
 nlohmann::json image_schema(const std::vector<LoggedSignal>& signals);
 /// JSON schema of an event: the fields of foxglove.Log, which viewers show in their panels of
 /// events. `file` is the kind of the event, `line` the cycle.
 nlohmann::json event_schema();
-/// JSON schema of a frame.
+/// Returns the JSON schema of a frame.
 nlohmann::json frame_schema();
 
 }  // namespace takt::logging

@@ -38,7 +38,7 @@ struct SdoOptions : SdoRouteOptions {
 constexpr const char* value_examples = "6041, 1018:1 or statusword";
 constexpr const char* file_examples = "1F50:1";
 
-/// Refuses a word that can be no object before the daemon or the bus is asked.
+/// Refuses a word that can't be an object before the daemon or the bus is asked.
 void check_object(const SdoOptions& options, const char* examples) {
   if (parse_object(options.object) || is_object_name(options.object)) return;
   throw Failure{"'" + options.object + "' is not an object like " + examples, 2};

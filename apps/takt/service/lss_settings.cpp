@@ -30,8 +30,8 @@ std::vector<LssResult> configure(const LssOptions& options, LssAccess& access,
   return results;
 }
 
-/// Configures a setting, and lets the devices store it if the user wants that. Returns the address
-/// of the device. Returns std::nullopt if the address is not known.
+/// Configures a setting, and lets the devices store it if the user has requested that. Returns the
+/// address of the device. Returns std::nullopt if the address is not known.
 std::optional<LssAddress> set(const LssOptions& options, LssAccess& access, LssCommand setting) {
   std::vector<LssCommand> commands{setting};
   if (options.store) commands.push_back({.op = LssOp::store});

@@ -18,7 +18,7 @@ using SdoValue = std::vector<std::byte>;
 /// The device that a command means, and the way to it.
 struct SdoRouteOptions {
   LiveOptions live;
-  std::string bus;  ///< empty means through the daemon
+  std::string bus;  ///< interface for direct access; empty means access through the daemon
   std::string node;
   int timeout_ms = 0;  ///< 0 means the time-out of the node
   DeviceFileOptions device_files;

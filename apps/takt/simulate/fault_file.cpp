@@ -41,7 +41,7 @@ std::optional<std::uint64_t> integer(const std::string& text) {
   return number->negative ? ~number->magnitude + 1 : number->magnitude;
 }
 
-/// Reads one list entry after the other and collects the errors.
+/// Reads the entries of the lists and collects the errors.
 class Reader : public EntryReader {
  public:
   Reader(const std::string& file, const BusPlan& plan, std::size_t applications)
@@ -163,7 +163,7 @@ class Reader : public EntryReader {
     if (!fault.object) refuse(item, "an object like 6041:00");
   }
 
-  /// Reads a value of an object: a number, or else a text.
+  /// Reads a value of an object: a number if the text is one, otherwise the text.
   static void read_value(sim::Fault& fault, const std::string& text) {
     if (const auto number = integer(text)) {
       fault.value = little_endian(static_cast<std::int64_t>(*number), 8);

@@ -26,7 +26,7 @@ constexpr std::array<std::string_view, 1> stream_keys{"points"};
 constexpr std::array<std::string_view, 7> gear_keys{
     "leader", "signal", "ratio", "phase", "modulo", "filter_time", "max_phase_error"};
 
-/// The keys of a kind besides the common ones and the bounds. The first is required.
+/// Returns the keys of a kind besides the common ones and the bounds. The first is required.
 Keys own_keys(MotionKind kind) noexcept {
   using enum MotionKind;
   if (kind == move) return move_keys;
@@ -106,7 +106,7 @@ void MotionListReader::read_entry(const YAML::Node& entry) {
   script->entries.push_back(std::move(motion));
 }
 
-/// The first entry of a program names its axes, or means all of them.
+/// The first entry of a program names its axes. Without names, the program has all axes.
 MotionScript* MotionListReader::program_of(const YAML::Node& entry) {
   const YAML::Node named = entry["program"];
   const auto program = named ? named.as<std::string>("") : std::string{unnamed_program};
@@ -162,7 +162,7 @@ bool MotionListReader::is_speed_axis(const std::string& axis) const {
   return std::ranges::find(with_speeds_, axis) != with_speeds_.end();
 }
 
-/// A program does its entries in their order.
+/// A program executes its entries in their order.
 void MotionListReader::check_time(const YAML::Node& entry, const MotionEntry& motion,
                                   const MotionScript& script) {
   if (!motion.at) {

@@ -29,7 +29,7 @@ class MotionListReader {
   void read_gear(Gear& gear, const EntryItem& item, std::size_t axes);
   /// Reads one number, or one for each axis.
   Eigen::VectorXd read_numbers(const EntryItem& item, std::size_t axes);
-  /// Reads one number for each axis. A single number counts for all.
+  /// Reads one number for each axis. A single number applies to all axes.
   Eigen::VectorXd read_each(const EntryItem& item, std::size_t axes);
   void read_points(MotionEntry& motion, const EntryItem& item, std::size_t axes);
   void read_point(PathPoint& point, const EntryItem& item, std::size_t axes);
@@ -37,7 +37,7 @@ class MotionListReader {
   EntryReader& reader_;
   std::vector<std::string> with_positions_;  // names of the axes of the bus
   std::vector<std::string> with_speeds_;
-  std::vector<std::string> known_;  // both
+  std::vector<std::string> known_;  // names of both kinds
   MotionScripts scripts_;
 };
 

@@ -17,10 +17,10 @@ class OutcomeLedger {
   OutcomeLedger(const BusPlan& plan, const WireStatistics& wire, std::uint64_t seed);
 
   void announce(const Event& event);
-  /// Keeps the worst TPDO times. To be called before the stop, because its NMT commands delay the
-  /// last TPDOs.
+  /// Keeps the worst TPDO times. Call this before the stop, because its NMT commands delay the last
+  /// TPDOs.
   void keep_worst_tpdos();
-  /// EMCYs from this call on count as sent after the end of the master.
+  /// From this call on, EMCYs count as sent after the end of the master.
   void mark_end_of_master() noexcept { emcy_before_ = wire_.emcy_frames(); }
   /// Call this once, at the end of the run. `stopped` is true if the ordered stop was completed.
   SimulationOutcome finish(sim::World& world, const StatusSnapshot& snapshot, bool stopped);

@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// A time in microseconds.
+/// Returns a time in microseconds.
 constexpr double us(Time time) noexcept { return static_cast<double>(time.count()) / 1e3; }
 
 void print_json(std::ostream& out, const SimulationOutcome& outcome);

@@ -26,7 +26,7 @@ class SineMotion final : public Controller {
   std::span<const Value> next(const ImageView& image) noexcept;
   void update(const ImageView& image, OutputWriter& outputs) noexcept override;
   std::size_t axes() const noexcept { return axes_.size(); }
-  /// Greatest number of axes that have moved at the same time.
+  /// Returns the greatest number of axes that have moved at the same time.
   std::size_t most_moving() const noexcept { return most_moving_; }
 
  private:

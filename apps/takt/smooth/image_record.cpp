@@ -55,7 +55,7 @@ ImageRecord::ImageRecord(std::string source, const std::vector<signal_t>& signal
 void ImageRecord::take(const image_t& image) {
   if (newest_cycle_ < 0) first_cycle_ = image.cycle;
   if (image.cycle < newest_cycle_ || image.cycle - first_cycle_ > most_cycles) return;
-  // The period is exact here, so that only the values are judged.
+  // The times are those of an exact period, because only the values are judged.
   const Time sync = period_ * (image.cycle - first_cycle_);
   if (image.cycle > newest_cycle_) out_.syncs.push_back(sync);
   newest_cycle_ = image.cycle;

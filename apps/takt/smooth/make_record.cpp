@@ -62,14 +62,14 @@ std::string name_of(const PdoMap& map, const MapPdo& pdo, unsigned axis) {
   return name;
 }
 
-/// Returns the mode for which a set-point is used.
+/// Returns true if a set-point is used in this mode.
 bool is_used_in(const AxisRecord& axis, std::int64_t mode) {
   const unsigned role = axis.set_point.index - axis.axis * 0x800U;
   if (role == 0x60FF) return mode == 9;
   return role == 0x60C1 ? mode == 7 : mode == 8 || mode == 7;
 }
 
-/// Returns how long, in samples, the axis was in a mode that uses this set-point.
+/// Returns the number of samples in which the axis was in a mode that uses this set-point.
 std::size_t use_of(const AxisRecord& axis) {
   const auto& modes = axis.modes.empty() ? axis.asked_modes : axis.modes;
   const auto used = [&](const Sample& sample) { return is_used_in(axis, sample.value); };

@@ -13,8 +13,8 @@ std::vector<AxisRecord> axes_of(const PdoMap& map);
 /// Keeps for each axis only the set-point of the mode in which the axis was for the longest time.
 void keep_used_set_points(std::vector<AxisRecord>& axes);
 
-/// Returns the list that takes the samples of a signal of an axis, or null if the signal does not
-/// matter. `output` is true for a signal of an RPDO.
+/// Returns the list that takes the samples of a signal of an axis, or null if the signal is not
+/// judged. `output` is true for a signal of an RPDO.
 std::vector<Sample>* samples_of(AxisRecord& axis, ObjectKey object, bool output);
 
 /// Extracts the signals of all axes from the frames.

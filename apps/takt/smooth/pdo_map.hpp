@@ -28,7 +28,7 @@ struct MapPdo {
   std::vector<MapField> fields{};
 };
 
-/// What is known of the settings of a device.
+/// The known settings of a device.
 struct MapNode {
   std::string name{};
   bool boot_seen = false;  ///< all writes of its boot are known
@@ -36,7 +36,7 @@ struct MapNode {
   std::vector<ObjectKey> refused{};  ///< objects whose write the device has refused
 };
 
-/// The places of the signals of a bus.
+/// The positions of the signals in the frames of a bus.
 struct PdoMap {
   std::map<CobId, MapPdo> pdos{};
   std::map<std::uint8_t, MapNode> nodes{};

@@ -6,7 +6,7 @@
 
 namespace takt::smooth {
 
-/// Returns the result for people: a sentence, a table of figures, and the findings with their
+/// Returns the result for the user: a sentence, a table of figures, and the findings with their
 /// remedies.
 std::string verdict_text(const Verdict& verdict);
 

@@ -9,7 +9,7 @@
 
 namespace takt::smooth {
 
-/// A recording with the times of its frames, and what it shows of the settings of the devices.
+/// A recording with the times of its frames, and the settings of the devices that it shows.
 struct Trace {
   learn::LearnedBus bus;
   std::vector<StampedFrame> frames;  ///< without error frames; times count from the first frame

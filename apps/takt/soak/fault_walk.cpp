@@ -149,7 +149,8 @@ class Walk {
   Time end_;
   int slowness_;
   Time mean_pause_ = 300ms;
-  std::vector<Time> other_until_;  // until when a node is exchanged, by node-ID
+  // Time until which another device replaces the node, indexed by node-ID.
+  std::vector<Time> other_until_;
   sim::Faults faults_;
 };
 

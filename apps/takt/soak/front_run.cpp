@@ -29,7 +29,7 @@ constexpr Time longest_pause = 21ms;  // longest result of pause_before_image, p
 constexpr Time usual_jitter = 320us;  // jitter of the master's SYNC
 constexpr std::size_t most_applications = 3;
 constexpr std::array<Time, 3> front_latenesses{0us, 60us, 300us};
-constexpr Time longest_still = 5s;  // between two motions of a program that is alive
+constexpr Time longest_still = 5s;  // longest time between two motions of a program that is alive
 
 /// Returns how the programs of this run command their axes.
 Commanding commanding_of(const SoakOptions& options) {
@@ -231,8 +231,8 @@ class FrontWalk {
   }
 
   /// Checks that the front thread receives an image soon after its publication, unless the front
-  /// thread was stalled. If images have stayed away, it polls less and less often and finds the
-  /// next ones late; see pause_before_image. While no node exchanges PDOs, images are published
+  /// thread was stalled. If no image has come for some time, it polls less and less often and finds
+  /// the next ones late; see pause_before_image. While no node exchanges PDOs, images are published
   /// before their predicted time. So is the first image after a change of the SYNC phase.
   void judge_wait(const ImageView& image, Time now) {
     ++images_;

@@ -98,7 +98,7 @@ takt::MotionBounds HomingProgram::bounds() const {
           .acceleration = Eigen::VectorXd::Constant(1, acceleration)};
 }
 
-/// One number for each axis, from -largest to largest.
+/// Returns one number for each axis, from -largest to largest.
 Eigen::VectorXd HomingProgram::numbers(double largest) {
   Eigen::VectorXd all(axes_->size());
   for (double& one : all) one = largest * (1e-6 * random_.below(2'000'001) - 1.0);

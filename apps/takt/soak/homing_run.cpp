@@ -24,13 +24,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time without_faults = 3s;  // before the first fault
+constexpr Time without_faults = 3s;  // time before the first fault
 constexpr Time mean_pause = 1500ms;
 constexpr std::size_t most_programs = 2;
 constexpr Time daemon_pause = 300ms;  // between the death and the restart of the daemon
 constexpr std::size_t listener_room = 1000;
 
-/// What goes wrong on the bus.
+/// Returns the faults on the bus.
 sim::Faults homing_faults(const BusPlan& plan, const SoakOptions& options) {
   sim::Random random = sim::Random{options.seed}.fork(31);
   constexpr std::array kinds{sim::FaultKind::power_off, sim::FaultKind::reset,
@@ -140,7 +140,7 @@ class HomingWalk {
     return plan;
   }
 
-  /// Each program has every second axis, or a single one has all.
+  /// Makes two programs that share the axes alternately, or a single program that has all axes.
   void make_programs() {
     const std::vector<std::string> names = motion_axis_names(plan_);
     const std::size_t count = options_.seed % 2 == 0 ? 1 : std::min(most_programs, names.size());

@@ -92,7 +92,7 @@ void RandomProgramFaults::stall_front(Time now) {
   cast_.daemon.stall(now + stall);
 }
 
-/// Stalls both threads of taktd, as SIGSTOP does. Chance decides which of them continues first, and
+/// Stalls both threads of taktd, as SIGSTOP does. It is random which of them continues first, and
 /// an application may die meanwhile.
 void RandomProgramFaults::stall_process(Time now) {
   const Time stall = span();

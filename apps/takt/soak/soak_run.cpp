@@ -21,8 +21,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time calm = 1s;                         // before the first fault
-constexpr Time time_to_recover = 60s;             // after the last one
+constexpr Time calm = 1s;                         // time before the first fault
+constexpr Time time_to_recover = 60s;             // time after the last fault
 constexpr std::size_t memory_slack = 256 * 1024;  // bytes for open requests and event texts
 constexpr std::array<Time, 4> latenesses{0us, 60us, 300us, 2ms};
 

@@ -30,7 +30,8 @@ struct SoakOptions {
   std::string candump{};  ///< file for all frames; empty means no file
   MotionRuns motions = MotionRuns::some;
   bool verbose = false;  ///< prints faults and events to stderr
-  /// Called after each cycle and before the judges look. The judges must find what it breaks.
+  /// A hook that is called after each cycle, before the judges check the cycle. The judges must
+  /// find the defects that the hook causes.
   std::function<void(Exchange&, sim::World&)> defect{};
   FrontDefect front{};
 };

@@ -50,8 +50,8 @@ class Requests {
     if (!first_) first_ = std::move(*planned);
   }
 
-  /// A wrong line is reported with its number. Its answer has the same sentence, so that the
-  /// answers have the order of the requests.
+  /// Reports a wrong line with its number. The answer to the line has the same sentence, so that
+  /// the answers have the order of the requests.
   void refuse(const std::string& why, int code) {
     if (code == exit_wrong_use) complain(name_ + ":" + std::to_string(number_) + ": " + why, code);
     std::cout << trajectory_error_json(why) << '\n';

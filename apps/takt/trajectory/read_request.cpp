@@ -155,7 +155,7 @@ class Reader {
     return true;
   }
 
-  /// A task whose lower limits are not given yet.
+  /// Returns a task without limits; the caller sets them.
   static motion::AxisTask unlimited() {
     motion::AxisTask task;
     task.limits.min_velocity = task.limits.min_acceleration = std::nan("");

@@ -12,7 +12,7 @@ class logger;
 
 namespace takt {
 
-/// Writes sentences for people to stderr, with the time of day. If stderr leads to the journal of
+/// Writes sentences for the user to stderr, with the time of day. If stderr leads to the journal of
 /// systemd (JOURNAL_STREAM), each line has its priority instead, as in "<4>", because the journal
 /// has the time: sd-daemon(3). No caller waits if stderr accepts no data. The log counts the lines
 /// that are lost and reports their number with the next line.

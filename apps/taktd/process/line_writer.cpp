@@ -67,7 +67,8 @@ enum class Takes : std::uint8_t { more, nothing_now, nothing_ever };
 
 /// Writes what the file accepts until `end` and counts the bytes in `done`.
 Takes write_until(int fd, std::string_view text, Time end, std::size_t& done) noexcept {
-  constexpr std::size_t at_once = 512;  // a pipe that is ready accepts so many bytes as a whole
+  // A pipe that is ready accepts this number of bytes as a whole.
+  constexpr std::size_t at_once = 512;
   while (done < text.size()) {
     const Time left = std::max(end - monotonic_now(), Time{0});
     const auto ms = std::chrono::ceil<std::chrono::milliseconds>(left).count();
@@ -85,8 +86,8 @@ Takes write_until(int fd, std::string_view text, Time end, std::size_t& done) no
   return Takes::more;
 }
 
-/// Removes the last `bytes` of a regular file if nobody has appended to it since. Returns false if
-/// they are still there.
+/// Removes the last `bytes` of a regular file if no program has appended to it since. Returns false
+/// if they could not be removed.
 bool take_back(int fd, std::size_t bytes) noexcept {
   struct stat file{};
   const auto end = ::lseek(fd, 0, SEEK_CUR);
@@ -177,7 +178,7 @@ LineWriter::~LineWriter() {
 }
 
 /// Starts the thread with the first line and not in the constructor, so that the thread inherits
-/// the signal mask that the caller has by then.
+/// the signal mask that the caller has at that time.
 void LineWriter::ensure_thread() {
   if (has_thread_) return;
   const Time now = monotonic_now();

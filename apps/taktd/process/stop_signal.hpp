@@ -13,7 +13,7 @@ class StopSignal {
  public:
   StopSignal();
 
-  /// Number of stop signals that have arrived so far.
+  /// Returns the number of stop signals that have arrived so far.
   static int count() noexcept;
   /// Returns true if SIGUSR1 has arrived since the last call.
   static bool take_recording_request() noexcept;

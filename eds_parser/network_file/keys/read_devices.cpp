@@ -37,7 +37,7 @@ constexpr std::string_view no_match[] = {"none"};
 constexpr std::string_view boot_reset_words[] = {"communication", "node", "none"};
 constexpr KeyValue object_index = whole(0x1000, 0xFFFF);
 
-/// The row `reason` of a section or of an entry.
+/// Makes the row `reason` of a section or of an entry.
 template <class T>
 constexpr Key<T> reason_key() {
   return key<&T::fact, &DeviceFact::reason>("reason", "none",

@@ -6,7 +6,7 @@ namespace {
 constexpr IntegerRange feed_forward_axes{1, 8,
                                          "(axes of a device)"};  // CiA 402: objects at + 0x800
 
-/// A mass or a friction is not negative. The sign of the torque is that of its unit.
+/// Checks that a mass or a friction is not negative. The sign of the torque is that of its unit.
 template <auto Member>
 void not_negative(const KeyInput& in, AxisFeedForwardSpec& feed_forward) {
   set(in, feed_forward.*Member);

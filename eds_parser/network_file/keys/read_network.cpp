@@ -131,7 +131,7 @@ class NetworkReader {
   const std::vector<std::string_view> names_ = section_names();
   std::set<std::pair<SourcePos, std::string_view>> reported_;
   bool found_node_ = false;
-  bool slipped_ = false;  ///< `nodes` is misspelled, and that is already reported
+  bool slipped_ = false;  ///< `nodes` is misspelled, and the error was already reported
 };
 
 }  // namespace

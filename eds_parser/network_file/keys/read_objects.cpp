@@ -34,7 +34,7 @@ bool read_plain(const YamlNode& node, SdoSpec& sdo, NetworkReport& report) {
 }
 
 /// Reads the value of an object. A value in quotes is a text if the object is a string, even if it
-/// looks like a number. For other objects the number in the quotes counts.
+/// looks like a number. For other objects, the number in the quotes is used.
 void read_object_value(const KeyInput& in, SdoSpec& sdo) {
   sdo.value_pos = in.node.pos;
   if (!in.node.quoted) {

@@ -5,7 +5,7 @@
 namespace takt {
 
 // The tables of keys of a network file, one function or row for each section. All readers report
-// errors and go on.
+// errors and continue.
 
 inline constexpr KeyOrigin bus_yml = KeyOrigin::bus_yml;
 
@@ -89,7 +89,7 @@ void with(const KeyInput& in, typename KeyTarget<decltype(Member)>::Type& target
   Read(in, target.*Member);
 }
 
-/// The rows `index` and `sub_index` of an entry for one object.
+/// Makes the rows `index` and `sub_index` of an entry for one object.
 template <class T>
 constexpr Key<T> index_key() {
   return required(key<&T::object, &ObjectKey::index>("index", whole(1, 0xFFFF), "",

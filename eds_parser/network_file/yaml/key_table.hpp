@@ -110,7 +110,7 @@ constexpr KeyValue number_above(double low) {
 constexpr KeyValue word_of(std::span<const std::string_view> words) {
   return {.type = KeyType::word, .words = words};
 }
-/// A whole number, or one of the words.
+/// Makes a value that is a whole number, or one of the words.
 constexpr KeyValue whole_or(std::span<const std::string_view> words, IntegerRange range) {
   return {.type = KeyType::integer, .range = range, .words = words};
 }
@@ -331,7 +331,7 @@ constexpr auto map_key(std::string_view name, std::string_view otherwise, std::s
 }
 
 /// Reads a list of maps of `Keys` and appends the entries without errors to `out`. `Check` compares
-/// an entry that has no error of its own with the entries before it, and reports errors.
+/// an entry without errors with the entries before it, and reports errors.
 template <const auto& Keys, auto Check = nullptr, class T>
 void read_list(const KeyInput& in, std::vector<T>& out) {
   if (!in.is_list()) return;

@@ -63,8 +63,8 @@ class MapReader {
   void ignore(std::string_view keys, std::string_view why);
   /// Reports every key that was not taken as an error with a suggestion.
   void finish();
-  /// Same as finish(), for a map that another program also reads. A key is an error only if it is
-  /// similar to one that takt reads, otherwise a warning. `why` ends the sentence.
+  /// Ends the map as finish() does, for a map that another program also reads. A key is an error
+  /// only if it is similar to one that takt reads, otherwise a warning. `why` ends the sentence.
   void finish_shared(std::string_view why);
 
   NetworkReport& report() noexcept { return report_; }

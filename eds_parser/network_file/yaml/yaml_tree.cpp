@@ -22,7 +22,7 @@ SourcePos position(const YAML::Mark& mark) {
   return {static_cast<std::uint32_t>(mark.line + 1), static_cast<std::uint32_t>(mark.column + 1)};
 }
 
-/// Thrown to leave yaml-cpp's parser. The cause is already in the findings.
+/// An exception that is thrown to leave yaml-cpp's parser. The cause is already in the findings.
 struct Stop {};
 
 }  // namespace

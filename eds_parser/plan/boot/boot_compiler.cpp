@@ -190,7 +190,7 @@ class BootCompiler : BootPart {
   }
 
   /// Reads the quick stop option code of each axis, because only the device knows the present
-  /// value. The ordered stop judges the standstill of a drive that coasts by another rule.
+  /// value. The ordered stop judges the standstill of a drive that coasts by a different rule.
   void quick_stop_options() {
     if (!context.node.cia402) return;
     for (unsigned axis = 0; axis < most_axes; ++axis) {

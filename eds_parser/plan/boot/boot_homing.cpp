@@ -83,7 +83,7 @@ class HomingSteps : BootPart {
     return sub->parameter_value ? integer_of(sub->parameter_value) : integer_of(sub->default_value);
   }
 
-  /// Writes a value in its unit.
+  /// Writes a value that the network file gives in a unit.
   void write(ObjectKey object, const std::string& key, const Sourced<double>& value) {
     if (!value.given) return;
     const double raw = std::round(raw_of(object, *value));

@@ -66,8 +66,8 @@ void append_homing(const BootPart& part);
 void append_values(const BootPart& part);
 
 /// Warns of every number that the boot writes and that lies outside the limits of the device file.
-/// The purpose of the step then mentions the limits as well. A value that the file itself has as
-/// default passes.
+/// The purpose of the step then mentions the limits as well. A value that is the default in the
+/// file causes no warning.
 void judge_limits(const NodePdos& node, BootPlan& plan, NetworkReport& report);
 
 }  // namespace takt

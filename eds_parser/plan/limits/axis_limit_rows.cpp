@@ -6,13 +6,13 @@
 #include "eds_parser/plan/limits/axis_limits.hpp"
 #include "eds_parser/table/pdo_table.hpp"
 
-// These functions enter what the bus thread needs, besides the limits themselves, to check the
+// These functions enter the data that the bus thread needs, besides the limits, to check the
 // set-points of an axis.
 
 namespace takt {
 namespace {
 
-/// Largest relative error of a `modulo` that a person has rounded, for example to 6.2832.
+/// Largest relative error of a `modulo` that was rounded by hand, for example to 6.2832.
 constexpr double rounded_digits = 1e-4;
 
 }  // namespace
@@ -37,7 +37,7 @@ double AxisLimits::modulus(const Sourced<double>& modulo, SignalIndex signal) co
 }
 
 /// Returns the lowest position of a turn: that of the drive, else of the range of commands, else 0.
-/// INTEGER32 holds the whole turn.
+/// The whole turn fits into an INTEGER32.
 double AxisLimits::lowest(const OutputLimit& row) const {
   if (row.modulus <= 0.0) return 0.0;
   const auto of_drive = configured_object(node_, object(0x607B, 1));
@@ -103,7 +103,8 @@ void AxisLimits::describe_row(OutputLimit& row, AxisQuantity quantity) const {
   if (!row.mode) row.fixed_mode = configured_object(node_, object(0x6060));
 }
 
-/// Enters the actual value from which a set-point may start. Both must have the same unit.
+/// Enters the actual value from which a set-point may start. The set-point and the actual value
+/// must have the same unit.
 void AxisLimits::describe_start(std::optional<SignalIndex> target,
                                 std::optional<SignalIndex> actual) {
   OutputLimit* const row = row_of(target);

@@ -30,8 +30,8 @@ std::string cut_to(std::string text, std::size_t size) {
   return text.substr(0, end) + '~';
 }
 
-/// Appends a text in lines of at most `width` columns. The first one is indented by 2, the others
-/// by 6.
+/// Appends a text in lines of at most `width` columns. The first line is indented by 2 columns, the
+/// others by 6.
 void add_wrapped(Rows& rows, std::string_view text, std::size_t width) {
   std::string line = "  ";
   bool begins = true;
@@ -65,7 +65,8 @@ bool has_speed_axis(const BusPlan& plan, std::size_t node) {
          plan.speed_axes.end();
 }
 
-/// Returns the number of axes of a node: those with positions, or one that obeys a speed.
+/// Returns the number of axes of a node: those with positions, or one if the node follows a set
+/// speed.
 std::size_t axes_of(const BusPlan& plan, std::size_t node) {
   return has_speed_axis(plan, node) ? 1 : plan.nodes[node].axes.size();
 }
@@ -121,7 +122,7 @@ std::string counted(const Findings& findings) {
                      plural(counts[1], "warning"), plural(counts[0], "note"));
 }
 
-/// Gives each section in turn a line until nobody wants one or none is left.
+/// Gives each section in turn a line until no section needs more or no line is left.
 std::array<std::size_t, 3> shares(const std::array<std::size_t, 3>& wanted, std::size_t lines) {
   std::array<std::size_t, 3> given{};
   bool gave = true;

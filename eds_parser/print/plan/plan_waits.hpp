@@ -6,14 +6,14 @@
 
 namespace takt {
 
-/// One kind of wait of the master, and how long it lasts at most.
+/// One kind of wait of the master, with its longest time.
 struct PlanWait {
   std::string wait;  ///< name of the wait in JSON: "lss_store"
   Time limit{};
   std::string what;  ///< what the master waits for, in words
 };
 
-/// Returns every wait that the plan does not show with its node, PDO or boot step.
+/// Returns all waits that the plan does not show at a node, PDO or boot step.
 std::vector<PlanWait> plan_waits(const BusPlan& plan);
 
 }  // namespace takt

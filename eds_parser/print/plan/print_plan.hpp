@@ -17,7 +17,7 @@ struct PlanPrint {
   LcmOptions lcm;
 };
 
-/// Prints the plan for people: bus, cycle with its time budget, nodes with their PDOs, image, LCM
+/// Prints the plan for the user: bus, cycle with its time budget, nodes with their PDOs, image, LCM
 /// channels, and boot plans step by step with the bytes of every frame.
 void print_plan_text(std::ostream& out, const BusPlan& plan, const PlanPrint& what);
 

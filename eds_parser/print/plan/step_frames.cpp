@@ -98,8 +98,8 @@ class Frames {
     if (switched_.contains(object)) cob_id_ = object;
   }
 
-  /// The written value depends on the value that was read last. An earlier step may have
-  /// read it already.
+  /// Returns the frames of a write whose value depends on the value that was read last. An earlier
+  /// step may have read it.
   StepFrames after_reading(ObjectKey object, std::string write) {
     if (cob_id_ == object) return {.first = std::move(write)};
     cob_id_ = object;

@@ -83,7 +83,7 @@ class AxisMemory {
   ServiceWord word_ = ServiceWord::harmless;
   bool operational_ = false;
   std::uint8_t quiet_ = 0;    ///< Cycles without an enabling word, at most standing_cycles.
-  std::uint32_t frames_ = 0;  ///< see has_new_frames()
+  std::uint32_t frames_ = 0;  ///< value at the previous call of has_new_frames()
   QuickStop quick_stop_ = QuickStop::unread;
 };
 

@@ -118,10 +118,11 @@ class Standstill {
   std::optional<Time> position_at_;
   std::optional<Time> velocity_at_;  ///< The time of the newest 0x606C.
   Time from_{};  ///< The beginning of the time in which the newest value was measured.
-  std::uint32_t samples_ = 0;  ///< Successive values within the window, with the anchor.
-  Time since_{};               ///< start of the current rest
-  Time pause_{};               ///< The longest pause between two values of the current rest.
-  Time last_{};                ///< The time of the newest value.
+  /// Number of successive values within the window, including the anchor.
+  std::uint32_t samples_ = 0;
+  Time since_{};  ///< start of the current rest
+  Time pause_{};  ///< The longest pause between two values of the current rest.
+  Time last_{};   ///< The time of the newest value.
   bool measured_ = false;
   bool resting_ = false;
   bool by_position_ = false;
@@ -231,10 +232,10 @@ class AxisStop {
   AxisState state_ = AxisState::unseen;
   AxisPrior prior_ = AxisPrior::exposed;
   std::uint32_t refusal_ = 0;  ///< The abort code of the newest refused read; 0 means none.
-  bool commanded_ = false;     ///< see note_command()
+  bool commanded_ = false;     ///< note_command() was called
   bool powered_ = true;
   bool disabled_seen_ = false;         ///< The axis was seen disabled during this stop.
-  bool unproven_ = false;              ///< see AxisVerdict::unproven
+  bool unproven_ = false;              ///< the verdict is AxisVerdict::unproven
   Motion motion_ = Motion::unknown;    ///< The motion while the axis was enabled.
   std::int64_t velocity_enabled_ = 0;  ///< The newest velocity that was noted with `motion_`.
   Time entered_{};

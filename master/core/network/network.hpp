@@ -127,15 +127,15 @@ class Network {
   /// Handles the loss of the SYNC of another device by an NMT stop of every other node, see
   /// SyncLoss::stop.
   void on_sync_loss() noexcept;
-  /// Handles the return of this SYNC: the nodes are started again.
+  /// Handles the return of the SYNC of another device: starts the nodes again.
   void on_sync_back() noexcept;
 
   /// Notes that the bus thread did not run for this time. The time does not count as silence of a
   /// node.
   void on_absence(Time away) noexcept;
 
-  /// NMT part of the ordered stop: answers all pending requests and sends the last command to the
-  /// nodes. Nodes with `keep_alive` go to PRE-OPERATIONAL in any case.
+  /// Begins the NMT part of the ordered stop: answers all pending requests and sends the last
+  /// command to the nodes. Nodes with `keep_alive` go to PRE-OPERATIONAL in any case.
   void begin_stop(Time now, NmtCommand last = NmtCommand::enter_preoperational) noexcept;
   /// Returns the node whose NMT stop or enter pre-operational command waits for axes_at_rest(). 0
   /// stands for a command to all nodes, or for an NMT stop of the master itself, which ends SYNC.

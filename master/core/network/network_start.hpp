@@ -24,8 +24,8 @@ class NetworkStart {
   Time deadline() const noexcept { return ready_ ? never : late_at_; }
   /// Returns the number of mandatory nodes that are not ready.
   std::size_t missing(std::span<const NodeStatus> nodes) const noexcept;
-  /// Returns true if the readiness of the network is worth an event, because nodes are mandatory or
-  /// are started together.
+  /// Returns true if the readiness of the network is reported by an event, because nodes are
+  /// mandatory or are started together.
   bool matters() const noexcept;
 
   template <class Archive>

@@ -79,7 +79,7 @@ class OrderedStop {
   void take_absence(std::size_t axis) noexcept { stops_[axis].absent(); }
   /// Advances the stop. Call this once a cycle, before the outputs are packed.
   void step(Time now, const StopView& view) noexcept;
-  /// Cancels the stop.
+  /// Cancels the stop; the stage is `running` again.
   void call_off() noexcept { stage_ = StopStage::running; }
 
   StopStage stage() const noexcept { return stage_; }

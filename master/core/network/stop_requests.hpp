@@ -69,7 +69,7 @@ class StopRequests {
     std::int64_t writing = -1;  // controlword that is being written by SDO; -1 means none
     std::int64_t written = -1;  // controlword that the device has accepted by SDO; -1 means none
     Time due{};
-    Time asked{};        // when the newest request was made
+    Time asked{};        // time at which the newest request was made
     Time write_again{};  // earliest next write, after the device has refused a controlword
   };
   /// One write that disarms a device. Without an object, the job is the NMT command enter
@@ -101,7 +101,7 @@ class StopRequests {
   std::vector<Poll> polls_;
   std::vector<Job> jobs_;
   std::vector<std::uint8_t> failed_;  // by node: the node accepted no write, or does not exist
-  std::vector<bool> refused_boots_;   // by node, see note_boot()
+  std::vector<bool> refused_boots_;   // by node: the note of note_boot()
   std::size_t next_job_ = 0;
   std::size_t answered_ = 0;  // answered jobs
   std::size_t turn_ = 0;      // axis that is served next

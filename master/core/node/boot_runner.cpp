@@ -242,7 +242,8 @@ bool BootRunner::begin_transfer(Time now, SdoClient& client) noexcept {
 
 /// Returns true if the command PRE-OPERATIONAL must come before the transfer. Parameters are
 /// written in this state, but a device that starts by itself leaves it without a command. A device
-/// in STOPPED answers no SDO at all. A node that is or may be OPERATIONAL is not written to.
+/// in STOPPED answers no SDO at all. The boot does not write to a node that is or may be
+/// OPERATIONAL.
 bool BootRunner::needs_preop() const noexcept {
   const bool leaves_state =
       course_ == BootCourse::keeping_operational || course_ == BootCourse::probing_silent_node;

@@ -210,7 +210,7 @@ class NodeSession {
   bool push_nmt(NmtCommand command, Time now, Outbox& out) noexcept;
   void send_own_command(Time now, Outbox& out) noexcept;
   void send_boot_command(Time now, Outbox& out) noexcept;
-  // What the node reports.
+  // Takes what the node reports.
   void advance(Time now) noexcept;
   void on_bootup(Time now) noexcept;
   bool take_guarding_answer(const Heartbeat& sign, Time now) noexcept;
@@ -254,7 +254,7 @@ class NodeSession {
   std::uint32_t emcys_at_boot_ = 0;
   std::optional<std::uint32_t> serial_number_;  // serial number of the device that was booted last
   std::uint32_t progress_reported_ = 0;         // tenths of the program that were reported
-  bool loss_to_report_ = false;                 // see take_loss()
+  bool loss_to_report_ = false;                 // a loss that take_loss() has not returned yet
   NetworkPhase network_ = NetworkPhase::starting;
 };
 

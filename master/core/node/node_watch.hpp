@@ -26,7 +26,8 @@ class NodeWatch {
   Sign on_heartbeat(NmtState state, Time now, NodeStatus& status) noexcept;
   /// Stops the supervision, because the node was reset or silence is expected for another reason.
   void disarm() noexcept { deadline_ = never; }
-  /// Does not count the time for which the master itself did not run as silence of the node.
+  /// Extends the deadline by the time for which the master itself did not run, because this time is
+  /// no silence of the node.
   void extend_deadlines(Time away) noexcept {
     if (deadline_ != never) deadline_ += away;
   }

@@ -11,12 +11,12 @@ namespace takt {
 /// that transfer.
 struct PreviousTransfer {
   enum class End : std::uint8_t {
-    regular,             ///< No frame of it is outstanding.
+    regular,             ///< No frame of the transfer is outstanding.
     block,               ///< A block transfer has succeeded. If CAN repeats its last frame, the
                          ///< server refuses the repetition.
-    violated,            ///< The master has aborted it because of a wrong answer.
+    violated,            ///< The master has aborted the transfer because of a wrong answer.
     violated_in_block,   ///< As `violated`, in a block upload: its segments may still come.
-    abandoned,           ///< The master has aborted it; its answer may still come.
+    abandoned,           ///< The master has aborted the transfer; its answer may still come.
     abandoned_in_block,  ///< As `abandoned`, in a block upload: its segments may still come.
   };
   End end = End::regular;

@@ -231,7 +231,7 @@ class SdoClient {
   SdoResult settled_;  ///< the result after State::settling
   PreviousTransfer previous_;
   LateAnswers late_;
-  Time heard_at_{};                    ///< when the newest frame of the server came
+  Time heard_at_{};                    ///< time at which the newest frame of the server came
   std::optional<ObjectKey> answered_;  ///< object of an answer that did not fit the request
   SdoTrace trace_;
 };

@@ -175,7 +175,8 @@ void SdoClient::on_done() noexcept {
 void SdoClient::on_abort(const Frame& frame, Time now) noexcept {
   if (is_abort_of_previous(frame)) return;
   const std::uint32_t code = sdo_abort_code(frame);
-  // This is the late refusal of the block transfer and not of the request that was sent since.
+  // This abort is the late refusal of the block transfer, and not of the request that was sent
+  // after it.
   if (state_ == State::without_block && code == abort_code::command_unknown) {
     state_ = State::running;
     return learn_no_block(code);

@@ -13,10 +13,10 @@
 
 namespace takt::ascii {
 
-/// `[seq] ERROR: code (why)`.
+/// Returns `[seq] ERROR: code (why)`.
 std::string error_line(std::uint32_t sequence, AsciiError error, std::string_view why);
 std::string abort_line(std::uint32_t sequence, std::uint32_t code);
-/// Error code for a reply that failed and has no abort code.
+/// Returns the error code for a reply that failed and has no abort code.
 AsciiError error_of(const Reply& reply);
 
 std::vector<LssResult> lss_results(const Reply& reply);
@@ -24,7 +24,7 @@ std::string address_text(const LssResult& result);
 /// Returns the answer to an LSS service that succeeded.
 std::string lss_answer(const AsciiCommand& command, const Reply& reply);
 
-// Texts of events for clients; empty if clients are not informed of the event.
+// Returns the texts of events for clients; empty if clients are not informed of the event.
 std::string node_event(const Event& event);
 std::string bus_event(EventKind kind);
 bool is_bootup(const Event& event) noexcept;

@@ -64,7 +64,7 @@ class Commands {
  public:
   Commands(const BusPlan& plan, CommandsOptions options, SetOutput set_output, NoticeSink announce);
 
-  /// Returns true if at least one output was staged.
+  /// Takes a message. Returns true if at least one output was staged.
   bool take(const command_t& command, const CommandContext& context);
 
   /// Checks the session, the sender and the cycle of a message that is no command of outputs, such
@@ -77,9 +77,8 @@ class Commands {
   /// Gives these nodes for `cycles` to the sender of the message, if admits_lease() permits it.
   bool lease(const command_t& header, std::span<const std::size_t> nodes, std::uint32_t cycles,
              const CommandContext& context);
-  /// Gives those of these nodes that the sender can get to the sender of a sign of life, and
-  /// reports no refusal. A sign of life does not prevent a release by the same sender from taking
-  /// effect.
+  /// Gives the sender of a sign of life those of these nodes that it can get, and reports no
+  /// refusal. A sign of life does not prevent a release by the same sender from taking effect.
   void renew(const command_t& header, std::span<const std::size_t> nodes, std::uint32_t cycles,
              const CommandContext& context);
   /// Returns true if a message that is no command of outputs may stop the axes of the node: it is

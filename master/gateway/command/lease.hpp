@@ -32,7 +32,7 @@ struct CommandAge {
 /// A command without any limit stays valid once it is accepted, but must arrive within `most`.
 Freshness freshness(const CommandAge& age) noexcept;
 
-/// A program that sends commands. Its instance identifies it; the name is for people.
+/// A program that sends commands. The instance identifies the program; the name is for the user.
 struct Sender {
   std::int64_t instance = 0;
   std::string_view name;
@@ -75,7 +75,7 @@ class LeaseTable {
   /// nothing. Returns false if a later command has overtaken the release, or if the release is a
   /// copy of the last one.
   bool release(std::size_t node, std::uint64_t now, std::uint64_t computed_from) noexcept;
-  /// Returns the name of the sender that holds the node; empty if nobody does.
+  /// Returns the name of the sender that holds the node; empty if no sender does.
   std::string_view holder(std::size_t node, std::uint64_t now) const noexcept;
   /// Returns the name of the sender that holds the node or held it last; empty if there was none.
   std::string_view last_holder(std::size_t node) const noexcept;

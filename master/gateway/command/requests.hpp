@@ -35,7 +35,7 @@ class Requests {
   static std::optional<std::string> oversize(const request_t& message);
 
   /// Returns true if the very same message came a moment ago by another way (udpm and the hub).
-  /// Must be called once per message, before anything else is done with it.
+  /// Call this once per message, before anything else is done with it.
   bool is_echo(const request_t& message, Time now);
   /// Returns an answer that is available at once, or std::nullopt if the answer comes later.
   std::optional<reply_t> take(const request_t& message, Time now);

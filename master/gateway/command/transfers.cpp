@@ -12,7 +12,7 @@
 namespace takt {
 namespace {
 
-/// Requests made here have this bit in their ids; those of Requests do not.
+/// The ids of the requests of Transfers have this bit. The ids of the requests of Requests do not.
 constexpr std::uint64_t transfer_mark = std::uint64_t{1} << 63;
 constexpr Time progress_period = std::chrono::milliseconds{500};
 /// Bytes by which one step enlarges the buffer of an upload before the request is submitted.

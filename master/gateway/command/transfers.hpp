@@ -27,7 +27,8 @@ class Transfers {
   struct Sinks {
     /// Hands a request to the bus thread; returns false if it has no room.
     std::function<bool(const Request&)> submit;
-    std::function<void(const transfer_state_t&)> state;  ///< sends it to the program that asked
+    /// Sends the state to the program that asked.
+    std::function<void(const transfer_state_t&)> state;
   };
   /// `buffers` have to outlive every request.
   Transfers(const BusPlan& plan, RequestsOptions options, std::span<SdoTransfer> buffers,
@@ -52,7 +53,7 @@ class Transfers {
     std::string sender{};
     std::int64_t id = 0;
     Request request;
-    std::size_t total = 0;  // bytes that the sender announced or asked for
+    std::size_t total = 0;  // number of bytes that the sender announced or requested
     std::size_t received = 0;
     std::size_t part_begin = 0;  // bytes of the file that the sender waits for
     std::size_t part_end = 0;

@@ -34,7 +34,7 @@ class BusView {
   /// Returns all PDOs of one round; empty before the first complete round.
   const std::optional<pdo_status_t>& pdos() const noexcept { return pdos_; }
   const std::optional<sync_status_t>& sync() const noexcept { return sync_; }
-  /// Returns what the motions of all axes do; empty while the daemon runs none.
+  /// Returns the state of the motions of all axes; empty while the daemon runs no motions.
   const std::optional<motion_t>& motions() const noexcept { return motions_; }
   /// Returns the speed axes, whose positions are those of signals().
   std::span<const speed_axis_t> speed_axes() const noexcept;
@@ -42,7 +42,7 @@ class BusView {
 
   /// Signals of the layout; empty until all parts have arrived.
   const std::vector<signal_t>& signals() const noexcept { return signals_; }
-  /// Values in the order of signals(); empty before the first complete image.
+  /// Returns the values in the order of signals(); empty before the first complete image.
   const std::vector<std::int64_t>& values() const noexcept { return values_; }
   bool stale(std::size_t signal) const noexcept { return stale_[signal]; }
   const Units& units() const noexcept { return units_; }

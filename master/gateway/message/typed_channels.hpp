@@ -22,7 +22,8 @@ class TypedChannels {
  public:
   TypedChannels(const BusPlan& plan, std::int64_t session);
 
-  /// Publishes the state of every node that has inputs, if anybody receives it. Allocates nothing.
+  /// Publishes the state of every node that has inputs, if a subscriber receives it. Allocates
+  /// nothing.
   void publish(const ImageView& image, Time wall_minus_monotonic, Transport& transport);
 
   /// Converts a message of a command channel to a command_t and leaves out outputs that are NaN.

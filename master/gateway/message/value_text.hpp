@@ -17,7 +17,7 @@ std::optional<DataType> parse_data_type(std::string_view text);
 
 /// Returns true if the number of bytes fits the type. Strings and domains may have any number.
 bool fits(DataType type, std::span<const std::byte> bytes) noexcept;
-/// Text for the user if `bytes` do not fit the type that was given as `name`.
+/// Returns the text for the user if `bytes` do not fit the type that was given as `name`.
 std::string misfit_text(std::string_view name, DataType type, std::span<const std::byte> bytes);
 
 /// Formats the bytes of an SDO value: numbers in decimal, strings as they are, anything else in

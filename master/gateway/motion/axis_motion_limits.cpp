@@ -111,7 +111,8 @@ void AxisMotionLimits::add(const BusPlan& plan, const LimitLine& line) {
   }
 }
 
-/// LimitLine::scale and LimitLine::offset convert the value of the drive to the unit of the limit.
+/// Takes the limit that was read from a drive. LimitLine::scale and LimitLine::offset convert it to
+/// the unit of the limit.
 void AxisMotionLimits::learn(const BusPlan& plan, std::size_t place, std::int64_t read) {
   if (place >= plan.limits.lines.size()) return;
   LimitLine line = plan.limits.lines[place];

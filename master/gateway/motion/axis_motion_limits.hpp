@@ -35,7 +35,7 @@ class AxisMotionLimits {
   /// limits it. The error says why the command is refused.
   std::expected<double, std::string> following_error(std::size_t axis,
                                                      const motion_goal_t& goal) const;
-  /// Returns the range of positions of the axis. The range has no ends if the axis is rotary and
+  /// Returns the range of positions of the axis. The range is unlimited if the axis is rotary and
   /// its range is not shorter than its turn.
   const motion::PositionRange& range(std::size_t axis) const noexcept { return axes_[axis].range; }
   /// Returns the length of a turn of such a rotary axis, in its unit; 0 for any other axis.

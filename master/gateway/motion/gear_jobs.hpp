@@ -12,7 +12,7 @@
 
 namespace takt {
 
-/// What the front thread knows of the axes of a bus.
+/// The knowledge of the front thread about the axes of a bus.
 struct KnownAxes {
   const BusPlan& plan;
   const std::vector<MotionAxis>& axes;  ///< motion_axes() of the plan

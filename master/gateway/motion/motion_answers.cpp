@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-/// Returns the severity of a stop: one that somebody has requested is a note.
+/// Returns the severity of a stop: a stop that was requested is a note.
 Weight weight_of(motion::StopCause cause) noexcept {
   using enum motion::StopCause;
   const bool requested = cause == application || cause == ordered_stop || cause == nmt_command;

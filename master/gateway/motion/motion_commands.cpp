@@ -53,8 +53,8 @@ void MotionCommands::refuse(const motion_command_t& command, const MotionRefusal
   answers_.refuse(motion_name(command), {}, refusal, context);
 }
 
-/// Tells the bus thread that the sender is alive. A jog goes on only while its sender names its
-/// axes, so the message names them too.
+/// Reports to the bus thread that the sender is alive. A jog goes on only while its sender names
+/// its axes, so the message names them too.
 void MotionCommands::tell_heard(const motion_command_t& command, std::span<const std::size_t> named,
                                 std::uint8_t sender) {
   const auto cycle = static_cast<motion::CycleNumber>(command.cycle);
@@ -100,8 +100,8 @@ std::optional<std::vector<std::size_t>> MotionCommands::axes_of(const motion_com
   return found;
 }
 
-/// Returns the nodes of the axes. A sign of life without goals concerns all nodes that the sender
-/// holds and that are ready.
+/// Returns the nodes of the axes. A message of the kind "alive" without axes concerns all nodes
+/// that the sender holds and that are ready.
 std::vector<std::size_t> MotionCommands::nodes_of(const motion_command_t& command,
                                                   std::span<const std::size_t> axes,
                                                   const CommandContext& context) const {
@@ -237,8 +237,8 @@ bool MotionCommands::has_timeout(const motion_command_t& command, const CommandC
   return false;
 }
 
-/// Returns what the sender gets if it may have the nodes of the axes. Otherwise reports the refusal
-/// and returns std::nullopt.
+/// Returns the claim of the sender if it may have the nodes of the axes. Otherwise reports the
+/// refusal and returns std::nullopt.
 std::optional<MotionCommands::Claim> MotionCommands::claim_of(const motion_command_t& command,
                                                               std::span<const std::size_t> axes,
                                                               const CommandContext& context) {
@@ -260,8 +260,8 @@ std::optional<MotionCommands::Claim> MotionCommands::claim_of(const motion_comma
   return claim;
 }
 
-/// Gives the nodes to the sender, and tells the bus thread that the sender is alive. A motion that
-/// is refused takes no node, and is no sign of life.
+/// Gives the nodes to the sender, and reports to the bus thread that the sender is alive. A motion
+/// that is refused takes no node, and is no sign of life.
 void MotionCommands::hold(const motion_command_t& command, std::span<const std::size_t> axes,
                           const Claim& claim, const CommandContext& context) {
   const command_t header = header_of(command);

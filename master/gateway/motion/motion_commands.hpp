@@ -29,22 +29,22 @@ class MotionCommands {
  public:
   MotionCommands(const BusPlan& plan, Commands& commands, SubmitMotion submit, NoticeSink announce);
 
-  /// Must be called in each round. If an axis has to be homed, the bus thread reads the axes from
-  /// the beginning, because another program may home the axis.
+  /// Call this in each round. If an axis has to be homed, the bus thread reads the axes from the
+  /// beginning, because another program may home the axis.
   void begin() {
     if (std::ranges::any_of(axes_, &MotionAxis::needs_homing)) watch();
   }
   /// Takes a message. From the first message of this session on, the bus thread reads the axes: the
-  /// target position of an axis that nobody has moved follows its actual position while its drive
-  /// is not enabled.
+  /// target position of an axis that no program has moved follows its actual position while its
+  /// drive is not enabled.
   void take(const motion_command_t& command, const CommandContext& context);
   void take(const motion_gear_t& gear, const CommandContext& context);
   void take(const motion_stream_t& stream, const CommandContext& context);
   /// Takes the newest reports, and plans the jobs that wait for them.
   void observe(const MotionSnapshot& snapshot, const CommandContext& context);
   /// Does the work that waits for time and not for reports: stops that the bus thread could not
-  /// take, jobs that did not begin in time, and senders that have lost a node. Must also be called
-  /// right after a release, because a later sign of life of the sender would take the node again.
+  /// take, jobs that did not begin in time, and senders that have lost a node. Call this also right
+  /// after a release, because a later sign of life of the sender would take the node again.
   void serve(const CommandContext& context);
   /// Takes a limit that was read from a drive, see AxisMotionLimits::learn().
   void learn(std::size_t line, std::int64_t value) { limits_.learn(plan_, line, value); }
@@ -62,7 +62,7 @@ class MotionCommands {
   }
 
  private:
-  /// What the sender of a message gets.
+  /// The nodes that the sender of a message gets, and for how long.
   struct Claim {
     std::vector<std::size_t> nodes{};
     std::uint32_t cycles = 0;  ///< number of cycles for which the sender holds the nodes

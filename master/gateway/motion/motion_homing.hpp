@@ -19,7 +19,8 @@ class MotionHoming {
   MotionHoming(const std::vector<MotionAxis>& axes, MotionAnswers& answers)
       : axes_{axes}, answers_{answers}, states_(axes.size(), motion::HomingState::none) {}
 
-  /// Returns why axes must not go to absolute positions now; std::nullopt if they may.
+  /// Returns the reason why the axes must not move to absolute positions now; std::nullopt if they
+  /// may.
   std::optional<MotionRefusal> objection(std::span<const std::size_t> axes) const;
   /// Takes the newest reports.
   void observe(const MotionSnapshot& snapshot, const CommandContext& context);

@@ -92,8 +92,8 @@ bool MotionJobs::plan(MotionJob& job, const CommandContext& context) {
   return false;
 }
 
-/// Ends the gears of the axes. A motion can only be planned from a state that is known in advance,
-/// so the gears must end before the motion begins.
+/// Ends the gears of the axes before the motion begins, because a motion can only be planned from a
+/// state that is known in advance.
 void MotionJobs::release_gears(const MotionJob& job) {
   for (const motion::AxisGoal& goal : job.goals) {
     submit_({.kind = motion::MessageKind::release, .axis = goal.axis});

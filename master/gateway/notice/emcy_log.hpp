@@ -56,8 +56,8 @@ class EmcyLog {
 std::vector<std::uint8_t> pack(std::span<const EmcyRecord> records);
 std::vector<EmcyRecord> unpack_emcys(std::span<const std::uint8_t> bytes);
 
-/// Texts of the device data for these error codes, in the form of the reply text: one line `0x1000
-/// words` per code. Codes without a text are left out.
+/// Returns the texts of the device data for these error codes, in the form of the reply text: one
+/// line `0x1000 words` per code. Codes without a text are left out.
 std::string pack_texts(std::span<const EmcyRecord> records, std::span<const EmcyText> texts);
 std::map<std::uint16_t, std::string> unpack_texts(std::string_view lines);
 

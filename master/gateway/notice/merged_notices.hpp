@@ -19,8 +19,8 @@ inline constexpr Time same_cause = std::chrono::milliseconds{100};
 /// the same text for several nodes or axes. Front thread.
 class MergedNotices {
  public:
-  /// Takes a notice, and keeps it for the next ones. Returns the one that was kept before if this
-  /// one has another cause.
+  /// Takes a notice, and keeps it to merge it with the next ones. Returns the notice that was kept
+  /// before if the new one has another cause.
   std::optional<Notice> add(const Notice& notice);
   /// Returns the notice that is kept, if there is one.
   std::optional<Notice> take();

@@ -27,7 +27,7 @@ class PdoOutages {
   std::optional<Notice> on_event(const Event& event);
   /// Returns the sums that are due at `now`.
   std::vector<Notice> take_due(Time now);
-  /// Returns everything that is not yet reported, at the end.
+  /// Returns all notices that are not yet reported. Call this at the end.
   std::vector<Notice> take_rest(Time now);
 
  private:

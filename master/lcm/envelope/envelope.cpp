@@ -14,7 +14,7 @@ namespace {
 constexpr std::int16_t envelope_schema = 1;
 using Mac = std::array<std::uint8_t, mac_bytes>;
 
-/// MAC over all bytes of an encoded envelope except the MAC itself, which comes last.
+/// Returns the MAC over all bytes of an encoded envelope except the MAC itself, which comes last.
 Mac mac_of(Bytes encoded, const EnvelopeKey& key) noexcept {
   Mac mac{};
   ::crypto_generichash(mac.data(), mac.size(), octets(encoded).data(), encoded.size() - mac_bytes,
@@ -82,8 +82,8 @@ std::expected<envelope_t, EnvelopeFault> EnvelopeGuard::open(Bytes bytes, Time w
   return std::move(*envelope);
 }
 
-/// Checks and stores the counter of the sender. If the table is full, senders are forgotten whose
-/// envelopes have all become too old anyway.
+/// Checks and stores the counter of the sender. If the table is full, senders whose envelopes have
+/// all become too old are forgotten.
 std::expected<void, EnvelopeFault> EnvelopeGuard::check_sender(const envelope_t& envelope,
                                                                Time made, Time wall) {
   const auto found = std::ranges::find_if(senders_, [&](const Sender& sender) {

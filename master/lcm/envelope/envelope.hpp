@@ -44,16 +44,16 @@ enum class EnvelopeFault : std::uint8_t {
   unknown_key,
   forged,           ///< the MAC does not match: forged, altered, or made with another secret
   other_session,    ///< the envelope is from a replayed log, or the daemon has restarted
-  too_old,          ///< older than the limit by the clock
-  from_the_future,  ///< newer than the limit by the clock
+  too_old,          ///< the envelope is older than the limit by the clock
+  from_the_future,  ///< the envelope is newer than the limit by the clock
   repeated,         ///< this sender has already used this counter or a higher one
   too_many_senders,
 };
 std::string_view text(EnvelopeFault fault) noexcept;
 
-/// Opens envelopes, on the side of the receiver. An envelope passes if a holder of a key made it
-/// for this session within the last second, and each one passes only once and in order. Remembers
-/// at most `most_senders` senders. One thread.
+/// Opens envelopes, on the side of the receiver. An envelope is accepted if a holder of a key made
+/// it for this session within the last second, and each envelope is accepted only once and in
+/// order. Remembers at most `most_senders` senders. One thread.
 class EnvelopeGuard {
  public:
   static constexpr Time longest_age = std::chrono::seconds{1};
@@ -72,7 +72,7 @@ class EnvelopeGuard {
     std::string key;
     std::int64_t instance = 0;
     std::int64_t counter = 0;
-    Time newest{};  // clock time of its newest envelope
+    Time newest{};  // clock time of the newest envelope of the sender
   };
 
   std::expected<void, EnvelopeFault> check_sender(const envelope_t& envelope, Time made, Time wall);

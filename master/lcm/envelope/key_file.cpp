@@ -23,7 +23,7 @@ constexpr std::size_t longest_name = 32;
 /// The reason why a file could not be read.
 struct ReadFailure {
   std::string sentence;
-  bool passing = false;  ///< another attempt may succeed although the file stays as it is
+  bool passing = false;  ///< another attempt may succeed although the file does not change
 };
 
 std::unexpected<ReadFailure> unreadable(const std::string& path, int error) {
@@ -61,7 +61,7 @@ bool read_secret(std::string_view hex, EnvelopeKey& key) noexcept {
                           nullptr, nullptr) == 0;
 }
 
-/// Checks the owner, the mode and the size. The error says what to do about it.
+/// Checks the owner, the mode and the size. The error says how to correct the file.
 std::expected<void, std::string> check_permissions(const std::string& path,
                                                    const struct stat& status) {
   if (!S_ISREG(status.st_mode)) return failed(path, "it is not a regular file");

@@ -44,7 +44,7 @@ class WatchedKeyFile {
   std::string path_;
   std::vector<EnvelopeKey> keys_;
   struct stat seen_{};
-  bool retries_ = false;  ///< the file could not be read for a reason that may pass
+  bool retries_ = false;  ///< the reading has failed for a temporary reason, and is tried again
 };
 
 }  // namespace takt

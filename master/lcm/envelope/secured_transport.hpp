@@ -62,7 +62,7 @@ class SecuredTransport final : public Transport {
     Octets mac;
     Time when{};
   };
-  std::deque<Opened> opened_;  // opened within the last 50 ms
+  std::deque<Opened> opened_;  // envelopes that were opened within the last 50 ms
 };
 
 }  // namespace takt

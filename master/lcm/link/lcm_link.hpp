@@ -20,8 +20,8 @@ class TcpqBroker;
 
 /// The connection of the daemon to LCM: by LCM's multicast, by the tcpq:// hub that the URL names,
 /// or by a hub of its own if the machine allows nothing else. The link retries a connection that
-/// fails and never blocks, because the front thread must go on. If another program holds the port
-/// of the daemon's hub, nothing is known about that program. The daemon therefore becomes the
+/// fails and never blocks, because the front thread must not stop. If another program holds the
+/// port of the daemon's hub, nothing is known about that program. The daemon therefore becomes the
 /// client of a foreign hub only if a URL names it. Front thread.
 class LcmLink final : public Transport {
  public:
@@ -29,7 +29,7 @@ class LcmLink final : public Transport {
 
   /// The hub that the daemon uses if the URL begins with tcpq://.
   enum class Hub : std::uint8_t {
-    own,             ///< only its own hub
+    own,             ///< only the hub of the daemon
     named,           ///< the hub that the command line or the network file names
     by_environment,  ///< the hub that LCM_DEFAULT_URL names; a warning reports this
   };
@@ -45,7 +45,7 @@ class LcmLink final : public Transport {
   bool drained() const override;
   void watch(std::vector<pollfd>& descriptors) const override;
   bool good() const override { return true; }
-  /// The URL that other programs must set; empty while there is no connection.
+  /// Returns the URL that other programs must set; empty while there is no connection.
   std::string url() const override;
 
  private:

@@ -63,9 +63,9 @@ class TcpqBroker final : public Transport {
     tcpq::Connection connection;
     ChannelPatterns patterns{};
     Time since{};            // time of the connection
-    Time heard{};            // time of its newest message
-    Time read{};             // last time at which it read, or had nothing to read
-    std::uint64_t taken{};   // bytes that the kernel had taken by then
+    Time heard{};            // time of the newest message of the client
+    Time read{};             // last time at which the client read, or had nothing to read
+    std::uint64_t taken{};   // number of bytes that the kernel had taken at that time
     bool has_asked = false;  // the client has subscribed or published
   };
 
@@ -89,9 +89,9 @@ class TcpqBroker final : public Transport {
   Options options_;
   std::vector<std::unique_ptr<Client>> clients_;  // oldest first
   std::size_t turn_ = 0;                          // index of the client served first
-  Time displaced_ = -displacing_pause;  // when a connection that had subscribed or published was
-                                        // last closed for a new one
-  bool drained_ = true;                 // the newest round has read everything from all clients
+  // Time at which a connection that had subscribed or published was last closed for a new one.
+  Time displaced_ = -displacing_pause;
+  bool drained_ = true;  // the newest round has read everything from all clients
   ChannelPatterns own_;
   RateLimit reported_{std::chrono::seconds{10}};
   AcceptPause accept_pause_;

@@ -21,7 +21,8 @@ void set_option(int fd, int level, int option, int value) noexcept {
 Connection::Connection(FileDescriptor socket, std::uint32_t own_magic, std::uint32_t other_magic)
     : socket_{std::move(socket)}, parser_{other_magic} {
   set_option(fd(), IPPROTO_TCP, TCP_NODELAY, 1);
-  // A reader that resumes after a stop should find seconds, not minutes, of old messages.
+  // The buffer is small, so that a reader that continues after a stop finds seconds, not minutes,
+  // of old messages.
   set_option(fd(), SOL_SOCKET, SO_SNDBUF, 128 * 1024);
   append_opening(unsent_, own_magic);
 }

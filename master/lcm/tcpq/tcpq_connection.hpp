@@ -14,7 +14,7 @@ namespace takt::tcpq {
 /// One TCP connection with bounded buffers. No call waits.
 class Connection {
  public:
-  /// Most unsent bytes. A message that does not fit is lost as a whole.
+  /// Largest number of unsent bytes. A message that does not fit is lost as a whole.
   static constexpr std::size_t unsent_limit = 1 << 20;
 
   Connection(FileDescriptor socket, std::uint32_t own_magic, std::uint32_t other_magic);

@@ -43,7 +43,7 @@ class Parser {
   void feed(std::span<const std::byte> bytes);
   /// Returns the next whole message. It points into the parser and is valid until the next call.
   std::optional<Message> next();
-  /// Returns true if the other side does not speak this protocol or sent a message above the size
+  /// Returns true if the other side does not use this protocol or sent a message above the size
   /// limit.
   bool broken() const noexcept { return broken_; }
   bool opened() const noexcept { return opened_; }

@@ -38,7 +38,7 @@ std::string real_path(const std::string& path) {
   return error ? absolute.string() : real.string();
 }
 
-/// FNV-1a hash, for paths that are longer than the name of a socket may be.
+/// Returns an FNV-1a hash, for paths that are longer than the name of a socket may be.
 std::string hash(const std::string& text) {
   std::uint64_t value = 0xCBF2'9CE4'8422'2325;
   for (const char letter : text) {

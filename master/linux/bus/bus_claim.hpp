@@ -9,7 +9,7 @@ namespace takt {
 
 /// The right to be the master of a bus. Within a network namespace, one process has it as long as
 /// this object lives. The object holds an abstract unix socket, which the kernel releases however
-/// the process ends. A simulated bus belongs to one process anyway and is never refused.
+/// the process ends. A simulated bus belongs to one process and is never refused.
 class BusClaim {
  public:
   /// The error names the process that is the master.

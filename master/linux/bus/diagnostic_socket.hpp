@@ -17,7 +17,8 @@ struct HeardTraffic {
   std::uint64_t frames = 0;
   /// Number of bits with the stuff bits of average data; load = bits / (t * bit rate).
   std::uint64_t bits = 0;
-  std::uint64_t lost = 0;          ///< frames that this socket was too slow to receive
+  /// Number of frames that this socket lost because it was read too slowly.
+  std::uint64_t lost = 0;
   std::uint64_t error_frames = 0;  ///< error frames of all classes, including single bus errors
 };
 
@@ -28,16 +29,16 @@ class DiagnosticSocket {
  public:
   using OnFrame = std::function<void(const StampedFrame&)>;
 
-  /// `bus` has the form described at open_bus. The port of the bus thread counts into `sent`, which
-  /// must outlive this object.
+  /// `bus` has the form that open_bus() accepts. The port of the bus thread counts into `sent`,
+  /// which must outlive this object.
   static std::expected<DiagnosticSocket, BusError> open(std::string_view bus, const BusPlan& plan,
                                                         const SentFrames& sent);
   DiagnosticSocket(DiagnosticSocket&&) noexcept;
   DiagnosticSocket& operator=(DiagnosticSocket&&) noexcept;
   ~DiagnosticSocket();
 
-  /// For poll(2); -1 while the interface is gone. The descriptor changes when the interface comes
-  /// back.
+  /// Returns the descriptor for poll(2), or -1 while the interface is missing. The descriptor
+  /// changes when the interface comes back.
   int fd() const noexcept;
   /// Takes the waiting frames (at most 4096) without blocking. If the interface is gone, looks for
   /// it once per second.

@@ -28,7 +28,7 @@ class FrameChannel {
   bool send(const Frame& frame) noexcept { return send(std::span{&frame, 1}).sent == 1; }
   SendResult send(std::span<const Frame> frames) noexcept;
 
-  /// Takes the next frame and waits at most `timeout` for it (0 does not wait). Returns false if no
+  /// Takes the next frame and waits at most `timeout` for it (0 means no wait). Returns false if no
   /// frame came.
   bool receive(StampedFrame& frame, Time timeout) noexcept;
 

@@ -32,8 +32,8 @@ class IntruderWatch {
   explicit IntruderWatch(const BusPlan& plan);
 
   void on_frame(const StampedFrame& frame, Origin origin);
-  /// Must be called when all waiting frames were given. Compares their counts with what the bus
-  /// thread has sent.
+  /// Call this when all waiting frames were given. Compares their counts with what the bus thread
+  /// has sent.
   void on_drained(const SentFrames& sent, Time now);
   bool take(Event& event);
 

@@ -22,7 +22,7 @@ class AxisMotions {
   /// the order may have been planned late. Returns a refusal, or Outcome::none if the order waits
   /// for its first cycle.
   Outcome take(const MotionOrder& order) noexcept;
-  /// Notes that the sender was alive in this cycle, which is not later than the present one.
+  /// Notes that the sender was alive in this cycle, which is the present one or an earlier one.
   void sender_heard(std::uint8_t sender, CycleNumber cycle) noexcept;
   /// Appends points to the stream that the axis follows or is about to follow. If one does not fit,
   /// the stream ends before it.
@@ -53,8 +53,8 @@ class AxisMotions {
     return runners_[axis].leader_signals(cycle);
   }
 
-  /// Runs one cycle. `inputs` has one element for each axis. So has the result, which is valid
-  /// until the next call.
+  /// Runs one cycle. `inputs` has one element for each axis. The result has one element for each
+  /// axis, too, and is valid until the next call.
   std::span<const AxisReport> run(CycleNumber cycle, std::span<const AxisInput> inputs) noexcept;
   /// Ends the motion of the axis at once, because its last set-point did not reach the drive. The
   /// other axes of its group stop along their limits. The axis is not kept alive any longer.

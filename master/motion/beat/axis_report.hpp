@@ -10,7 +10,7 @@
 
 namespace takt::motion {
 
-/// The condition of a drive in a cycle, as far as motions are concerned.
+/// The condition of a drive in a cycle, as far as it concerns motions.
 enum class AxisCondition : std::uint8_t {
   enabled,   ///< the drive follows position set-points (CiA 402: Operation enabled)
   disabled,  ///< the drive follows no set-points and has no fault
@@ -24,7 +24,7 @@ enum class AxisCondition : std::uint8_t {
   inactive,
 };
 
-/// What is known of the home position of an axis.
+/// The knowledge about the home position of an axis.
 enum class HomingState : std::uint8_t {
   none,  ///< no homing run has succeeded since the node began to exchange PDOs, or the last run was
          ///< broken off
@@ -83,7 +83,7 @@ enum class StopCause : std::uint8_t {
 /// The first stop of a group since the motion of the axis began: its cause, and the causing axis.
 struct Stop {
   StopCause cause = StopCause::none;
-  std::uint8_t axis = 0;  ///< 0 if the cause concerns no single axis
+  std::uint8_t axis = 0;  ///< axis that has caused the stop; 0 if the cause concerns no single axis
 
   template <class Archive>
   void keep(Archive& state) noexcept {
@@ -95,9 +95,9 @@ enum class Outcome : std::uint8_t {
   none,
   done,      ///< the axis is at rest at the end of the motion
   stopped,   ///< a stop has ended the order, see Stop
-  replaced,  ///< a later order has replaced it
+  replaced,  ///< a later order has replaced this order
   // The following outcomes are refusals: the order did not begin.
-  unsound,          ///< see is_sound()
+  unsound,          ///< the order does not pass is_sound()
   second_in_cycle,  ///< the axis has received another order in the same cycle
   too_late,         ///< the first cycle of the order had passed
   other_start,      ///< the order does not begin in the commanded state of the axis
@@ -138,7 +138,7 @@ class EndedOrders {
   std::size_t size_ = 0;
 };
 
-/// What an axis does in a cycle.
+/// The state and the motion of an axis in a cycle.
 struct AxisReport {
   AxisState state = AxisState::unpowered;
   HomingState homing = HomingState::none;
@@ -146,9 +146,10 @@ struct AxisReport {
   State actual;
   double following_error = 0.0;  ///< last commanded position minus actual position
   std::uint32_t running = 0;     ///< id of the motion of this cycle, 0 for none
-  CycleNumber cycles_left = 0;   ///< cycles until the end of the profile that runs
-  CycleNumber began = 0;         ///< first cycle of the motion, as if no beat had been missed since
-  CycleNumber delay = 0;         ///< periods by which this beat has delayed the motion
+  CycleNumber cycles_left = 0;   ///< number of cycles until the end of the profile that runs
+  /// First cycle that the motion would have if no beat had been missed since.
+  CycleNumber began = 0;
+  CycleNumber delay = 0;  ///< periods by which this beat has delayed the motion
   /// The sender of the newest motion is alive, or the axis moves: the drive has to stay enabled.
   bool kept_alive = false;
   GearPhase gear = GearPhase::none;  ///< phase of the gear that the axis follows

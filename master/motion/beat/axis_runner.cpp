@@ -54,8 +54,8 @@ bool is_same(const State& a, const State& b, const Limits& limits) noexcept {
          has_same_motion(a, b, limits);
 }
 
-/// Returns true if the profile ends as `ending` says. A stream ends with points that are not known
-/// yet, and a gear ends with a stop, so both have nothing to check.
+/// Returns true if the profile ends as `ending` says. There is nothing to check for a stream, which
+/// ends with points that are not known yet, and for a gear, which ends with a stop.
 bool ends_as_it_says(const MotionOrder& order) noexcept {
   if (order.ending == Ending::points || order.ending == Ending::gear) return true;
   const State end = order.profile.end(order.from);

@@ -107,7 +107,7 @@ class AxisRunner {
   StopCause follow(const LeaderState& leader, const LeaderSample& sample) noexcept;
   /// Runs one cycle. The report contains the commanded state.
   const AxisReport& run(CycleNumber cycle) noexcept;
-  /// Forgets which orders have ended. Called before the orders of the next cycle are taken.
+  /// Forgets the orders that have ended. Call this before the orders of the next cycle are taken.
   void forget_ended() noexcept { report_.ended.clear(); }
 
   std::uint8_t group() const noexcept { return group_; }

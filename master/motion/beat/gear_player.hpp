@@ -28,8 +28,8 @@ class GearPlayer {
   void begin(const GearTask& task, const Limits& limits) noexcept;
   const GearTask& task() const noexcept { return task_; }
   /// Returns the state of the axis `period` seconds after `from`. `elapsed` is the time since the
-  /// last step in s: more than `period` if a SYNC was missing. A measured leader has moved on in
-  /// all of this time, while the axis and a commanded leader have waited.
+  /// last step in s: more than `period` if a SYNC was missing. During this time, a measured leader
+  /// has continued its motion, while the axis and a commanded leader have waited.
   State step(const State& from, const LeaderState& leader, const LeaderSample& sample,
              double elapsed, double period) noexcept;
   /// Ends the gear: the axis no longer follows its leader.
@@ -45,7 +45,7 @@ class GearPlayer {
   bool has_lost_leader() const noexcept { return lost_; }
   /// Returns true if the phase error is above its limit.
   bool is_off() const noexcept;
-  /// Returns true if no motion has taken over in time after a release.
+  /// Returns true if no motion has begun in time after a release.
   bool is_forgotten() const noexcept { return released_ > most_released; }
 
   template <class Archive>

@@ -33,9 +33,11 @@ class GearServo {
   /// position, velocity and acceleration of the target. `target_jerk` is the jerk of the target.
   State step_to_position(const State& from, const State& target, double target_jerk,
                          double period) const noexcept;
-  /// Like step_to_position(), but on the way to the velocity and acceleration of the target alone.
+  /// Returns the next state as step_to_position() does, but on the way to the velocity and
+  /// acceleration of the target alone.
   State step_to_velocity(const State& from, const State& target, double period) const noexcept;
-  /// Like step_to_position(), but on the way to the acceleration 0 at the velocity that results.
+  /// Returns the next state as step_to_position() does, but on the way to the acceleration 0 at the
+  /// velocity that results.
   State step_to_cruise(const State& from, double period) const noexcept;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace takt::motion {
 
-/// What a gear follows.
+/// The object that a gear follows.
 enum class LeaderKind : std::uint8_t {
   commanded,  ///< the commanded position of another axis, in the same cycle
   measured,   ///< a position in the image of the bus
@@ -15,8 +15,7 @@ enum class LeaderKind : std::uint8_t {
 
 /// The way in which the phase of a gear is determined.
 enum class PhaseMatch : std::uint8_t {
-  here,  ///< the velocities are matched first; the phase is the one that the axis has at that
-         ///< moment
+  here,  ///< the velocities are matched first; the phase is the phase of the axis at that moment
   at,    ///< position = ratio * position of the leader + offset
 };
 
@@ -24,9 +23,10 @@ enum class PhaseMatch : std::uint8_t {
 struct GearTask {
   LeaderKind kind = LeaderKind::commanded;
   PhaseMatch match = PhaseMatch::here;
-  std::uint8_t leader_axis = 0xFF;  ///< the leader; if `measured`, the axis whose fault loses it
-  std::uint16_t signal = 0;         ///< `measured`: number of the signal in the image
-  std::uint8_t bits = 32;           ///< width of this signal
+  /// The leader; if `measured`, the axis whose fault means the loss of the leader.
+  std::uint8_t leader_axis = 0xFF;
+  std::uint16_t signal = 0;  ///< `measured`: number of the signal in the image
+  std::uint8_t bits = 32;    ///< width of this signal
   /// `measured`: number of counts after which the signal wraps; 0 means that it wraps only at its
   /// width. `commanded`: length of a turn of a rotary leader, which begins at `zero`; 0 means that
   /// the leader is not rotary.
@@ -39,7 +39,8 @@ struct GearTask {
   double offset = 0.0;       ///< offset of the positions; only for PhaseMatch::at
   double turn = 0.0;         ///< PhaseMatch::at: length of a turn of a rotary axis, or 0
   double lock_window = 0.0;  ///< phase error up to which the axis counts as locked
-  double max_phase_error = std::numeric_limits<double>::infinity();  ///< once the axis was locked
+  /// Largest phase error once the axis was locked.
+  double max_phase_error = std::numeric_limits<double>::infinity();
   PositionRange range{};  ///< range in which a stop must be possible at any time
 
   template <class Archive>

@@ -23,7 +23,7 @@ class HomingWatch {
   explicit HomingWatch(std::uint32_t patience) noexcept : patience_{patience} {}
 
   /// Takes the signs of a beat. The home position counts as lost when the node exchanges no PDOs
-  /// any longer, because nobody knows what the device does then: it may have been switched off.
+  /// any longer, because the device may have been switched off.
   HomingState step(const HomingSigns& signs) noexcept {
     if (!signs.heard) {
       phase_ = Phase::none;

@@ -12,7 +12,7 @@ namespace takt::motion {
 /// it has no delay and no error of position; at an acceleration a, it lags by 6 a filter_time^2.
 class LeaderEstimate {
  public:
-  /// The shortest filter time, in cycles: a shorter one counts as this one.
+  /// The shortest filter time, in cycles. A shorter filter time is replaced by this one.
   static constexpr double shortest_filter = 5.0;
   /// A leader is lost after this number of cycles in a row without a new position.
   static constexpr std::uint8_t most_missing = 3;
@@ -21,7 +21,8 @@ class LeaderEstimate {
   void begin() noexcept { *this = {}; }
   /// Takes the sample of this cycle, `time` seconds after the last one.
   void take(const LeaderSample& sample, const GearTask& task, double time, double period) noexcept;
-  /// Returns true if the velocity is known. It is measured for one filter time first.
+  /// Returns true if the velocity is known. Before that, the velocity is measured for one filter
+  /// time.
   bool is_ready() const noexcept { return ready_; }
   bool is_lost() const noexcept { return lost_ || missing_ >= most_missing; }
   /// Returns the state `task.lead` seconds after the sample, in the unit of the leader.

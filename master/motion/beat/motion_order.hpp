@@ -29,7 +29,7 @@ enum class Ending : std::uint8_t {
 
 /// The newest message of a sender: the cycle whose image the sender had seen.
 struct LifeSign {
-  std::uint8_t sender = max_axes;  ///< max_axes means nobody
+  std::uint8_t sender = max_axes;  ///< max_axes means no sender
   CycleNumber cycle = 0;
 
   template <class Archive>

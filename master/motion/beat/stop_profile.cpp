@@ -8,8 +8,8 @@
 
 namespace takt::motion {
 
-/// The axis is mirrored so that it has to brake: the acceleration falls to a peak, stays there
-/// while the peak is the limit, and rises to 0.
+/// Returns the profile of a stop. The axis is mirrored so that it has to brake: the acceleration
+/// falls to a peak, stays there while the peak is the limit, and rises to 0.
 Profile stop_profile(const State& from, const Limits& limits) noexcept {
   const double jerk = limits.jerk;
   const double coasting =
@@ -35,8 +35,8 @@ Profile stop_profile(const State& from, const Limits& limits) noexcept {
 
 namespace {
 
-/// Returns the number of cycles for which an axis can go on with this velocity, if a stop from
-/// `state` covers the positions `stop`.
+/// Returns the number of cycles for which an axis can keep this velocity, if a stop from `state`
+/// covers the positions `stop`.
 double cycles_of_cruise(const State& state, const PositionRange& stop, const PositionRange& range,
                         double period) noexcept {
   if (state.velocity == 0.0) return std::numeric_limits<double>::infinity();

@@ -24,9 +24,9 @@ class StreamPlayer {
   std::uint32_t order() const noexcept { return order_; }
   /// Appends a point. Returns false if it is not later than the last one, if one of its numbers is
   /// not finite, or if there is no room. The stream then ends before this point and takes no later
-  /// point, because nobody has checked the curve over the gap.
+  /// point, because the curve over the gap was not checked.
   bool add(const StreamPoint& point) noexcept;
-  /// Returns the state at a time; after the last point, the state at that point.
+  /// Returns the state at a time. After the last point, returns the state at that point.
   State at(double time) noexcept;
   /// Returns the last point.
   const StreamPoint& last() const noexcept { return last_; }
@@ -49,7 +49,7 @@ class StreamPlayer {
   std::uint32_t order_ = 0;  ///< 0 before the first stream
   StreamPoint passed_;       ///< the newest point that was passed
   StreamPoint last_;
-  StreamSegment segment_;  ///< from the point that was passed to the first that waits
+  StreamSegment segment_;  ///< segment from the point that was passed to the first point that waits
   std::array<StreamPoint, capacity> points_{};
   std::size_t first_ = 0;  ///< first of the points that wait, in a ring
   std::size_t size_ = 0;

@@ -18,7 +18,7 @@ State state_of(const MotionOrder& order, double time) {
   return player.at(time);
 }
 
-/// Returns true if the first point of a stream is where the axis stands.
+/// Returns true if the first point of a stream is at the position of the axis.
 bool is_start(const State& from, const AxisGoal& goal) noexcept {
   constexpr double tolerance = MotionPlanner::start_tolerance;
   const Limits& limits = goal.limits;

@@ -16,7 +16,7 @@ namespace takt::motion {
 /// The goal of one axis, as an application commands it.
 struct AxisGoal {
   std::uint8_t axis = 0;
-  /// Move: the target position. Jog: only the velocity counts. Stream: the state in which it
+  /// Move: the target position. Jog: only the velocity is used. Stream: the state in which it
   /// begins.
   State to;
   Limits limits;
@@ -75,7 +75,7 @@ enum class PlanFault : std::uint8_t {
   moving,       ///< the axis must be at rest before it follows a stream
   ring,         ///< the leader of the gear follows this axis, perhaps through other axes
   other_start,  ///< the stream does not begin at rest at the position of the axis
-  impossible,   ///< see `defect`
+  impossible,   ///< the motion is impossible; `defect` gives the reason
   too_long,     ///< the motion, or the start of a jog, takes too many cycles
 };
 
@@ -104,7 +104,7 @@ class MotionPlanner {
   void observe(CycleNumber cycle, std::span<const AxisReport> reports);
   CycleNumber cycle() const noexcept { return cycle_; }
   /// Returns the order of the axis with this id. Returns nullptr if the order is unknown, or older
-  /// than the one that runs. The result is valid until the next call of observe() or plan().
+  /// than the order that runs. The result is valid until the next call of observe() or plan().
   const TaggedOrder* order(std::size_t axis, std::uint32_t id) const noexcept {
     return axes_[axis].find(id);
   }

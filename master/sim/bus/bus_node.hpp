@@ -59,7 +59,7 @@ class BusNode {
   std::size_t drop_expired(Time now) noexcept {
     return first_expiry_ < now ? erase_expired(now) : 0;
   }
-  /// No queued frame expires earlier.
+  /// Returns a time before which no queued frame expires.
   Time first_expiry() const noexcept { return first_expiry_; }
   /// Returns true if several frames compete by priority, so that the order of their arrival does
   /// not decide.
@@ -72,10 +72,8 @@ class BusNode {
   }
   const QueuedFrame& at(std::size_t position) const noexcept { return queue_[position]; }
   std::size_t queued() const noexcept { return queue_.size(); }
-  // Few nodes have several frames at once, so the two following functions are no part of their
-  // callers.
-  /// Of the queued frames, returns the earliest time at which one is ready. Requires that there is
-  /// one.
+  // Returns the earliest time at which a queued frame is ready. Requires that there is one. This
+  // function and the next one are not inlined, because few nodes have several frames at once.
   [[gnu::noinline]] Time first_ready() const noexcept;
   /// Returns the lowest rank of the queued frames. Requires that there is one.
   [[gnu::noinline]] std::uint32_t lowest_rank() const noexcept;
@@ -112,7 +110,7 @@ class BusNode {
   std::size_t erase_expired(Time now) noexcept;
 
   FrameQueue queue_;           ///< has room for `capacity` frames and one that was put back
-  Time first_expiry_ = never;  ///< see first_expiry()
+  Time first_expiry_ = never;  ///< no queued frame expires before this time
   std::uint32_t receive_errors_ = 0;
   std::uint64_t receive_errors_at_ = 0;
 };

@@ -34,7 +34,7 @@ class FaultSchedule {
   Faults faults_;
   std::vector<Edge> edges_;  ///< sorted by time, then by order of addition
   std::size_t next_ = 0;
-  Time next_at_ = never;  ///< time of edges_[next_], which each step of the world asks for
+  Time next_at_ = never;  ///< time of edges_[next_], which the world reads in each step
 };
 
 }  // namespace takt::sim

@@ -72,8 +72,8 @@ class BitRow {
   /// `bytes` is the number of calls of add() that follow.
   explicit BitRow(std::size_t bytes) noexcept : following_{bytes} {}
 
-  /// Appends `count` bits, 1..8. If there are fewer than 8, they must be the first ones: leading
-  /// zeros do not change the CRC.
+  /// Appends `count` bits, 1..8. Fewer than 8 bits are permitted only in the first call, because
+  /// leading zeros do not change the CRC.
   template <int count = 8>
   void add(std::uint32_t bits) noexcept {
     crc_ ^= crc_table[--following_][bits];

@@ -10,7 +10,7 @@
 
 namespace takt::sim {
 
-/// What a node offers to the bus.
+/// The frame that a node offers to the bus.
 struct Offer {
   Time from = never;       ///< the node offers nothing earlier
   std::uint32_t rank = 0;  ///< no frame of the node has a lower rank
@@ -19,8 +19,8 @@ struct Offer {
 };
 
 /// The offers of all nodes that have queued frames, by ascending rank. The first offer usually wins
-/// the arbitration and leaves; new offers usually have a higher rank than those that wait. Neither
-/// moves other offers. Nothing allocates memory after reserve().
+/// the arbitration and leaves; new offers usually have a higher rank than those that wait. In both
+/// cases, no other offer moves. Nothing allocates memory after reserve().
 class OfferList {
  public:
   /// Makes room for the offers of this number of nodes.

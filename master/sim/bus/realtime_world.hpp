@@ -24,7 +24,7 @@ class RealtimeWorld {
   void start();
   /// Ends the thread within about 10 ms. The destructor does the same.
   void stop() noexcept;
-  /// True if the channel is gone (interface removed, peer closed) and the thread has ended.
+  /// Returns true if the channel is gone (interface removed, peer closed) and the thread has ended.
   bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
 
  private:

@@ -37,10 +37,10 @@ class RemotePort {
   BusNodeIndex node() const noexcept { return node_; }
   const RemotePortOptions& options() const noexcept { return options_; }
 
-  /// Returns the time at which a sleep until `until` really ends: adds jitter and stalls.
+  /// Returns the time at which a sleep until `until` ends, with jitter and stalls.
   Time wake_time(Time until, Time jitter) noexcept;
 
-  // The world calls the following functions.
+  // The following functions are for calls of the world.
   void on_wire(const WireFrame& wire) noexcept;
   void stall(Time from, Time until) noexcept {
     stalled_from_ = from;

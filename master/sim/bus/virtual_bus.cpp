@@ -47,7 +47,7 @@ bool VirtualBus::queue(BusNodeIndex from, const Frame& frame, Time ready, Time e
     return false;
   }
   first_expiry_ = std::min(first_expiry_, expires);
-  // Behind another frame, a frame of a fifo queue changes nothing in what the node offers.
+  // In a fifo queue, a frame behind another frame does not change what the node offers.
   if (node.queued() == 1) {
     offers_.add(offer_of(from));
   } else if (node.options.order == QueueOrder::priority) {
@@ -206,7 +206,8 @@ void VirtualBus::begin(Time now) noexcept {
   busy_ = true;
 }
 
-/// Two nodes send the same identifier. Equal frames go unnoticed, others destroy each other.
+/// Handles two nodes that send the same identifier. Equal frames have no effect on each other;
+/// different frames destroy each other.
 void VirtualBus::meet_rival(Time now) noexcept {
   if (nodes_[rival_].offered(now).frame == current_.frame) {
     take(rival_, now);
@@ -219,7 +220,7 @@ void VirtualBus::meet_rival(Time now) noexcept {
 std::uint32_t VirtualBus::bits_until_error(std::uint32_t frame_length) noexcept {
   const std::uint32_t error_frame = error_flag_bits + error_delimiter_bits;
   if (wire_.result == WireResult::unacknowledged) return frame_length - 8 + error_frame;
-  const std::uint32_t first = rival_ != nobody ? 19 : 1;  // after the identifier
+  const std::uint32_t first = rival_ != nobody ? 19 : 1;  // first bit after the identifier
   const std::uint32_t echoes = random_.below(error_flag_bits + 1);
   return first + random_.below(frame_length - first) + echoes + error_frame;
 }

@@ -47,7 +47,7 @@ class VirtualBus {
   Time next_event() const noexcept { return next_; }
   /// Does the work that is due at next_event(). Returns true if a frame has left the wire.
   bool step(Time now) noexcept;
-  /// The frame that has left the wire; valid until the next step.
+  /// Returns the frame that has left the wire; valid until the next step.
   const WireFrame& wire() const noexcept { return wire_; }
 
   Time bit_time(std::uint32_t bits) const noexcept {
@@ -55,7 +55,7 @@ class VirtualBus {
     return Time{static_cast<Time::rep>(bits * bit_ns_ + rest)};
   }
   std::uint32_t bitrate() const noexcept { return bitrate_; }
-  /// The new bit rate applies from the next frame on.
+  /// Sets the bit rate, which applies from the next frame on.
   void set_bitrate(std::uint32_t bitrate) noexcept;
   const BusCounters& counters() const noexcept { return counters_; }
 
@@ -87,7 +87,7 @@ class VirtualBus {
   [[gnu::cold, gnu::noinline]] void meet_rival(Time now) noexcept;
   [[gnu::cold, gnu::noinline]] std::uint32_t bits_until_error(std::uint32_t frame_length) noexcept;
   void finish(Time now) noexcept;
-  /// An error-passive node pauses after its own frame.
+  /// Begins the pause of an error-passive node after its own frame.
   void pause(BusNodeIndex index) noexcept {
     if (nodes_[index].error_passive(counters_.frames)) [[unlikely]]
       suspend(index);
@@ -107,12 +107,13 @@ class VirtualBus {
   std::uint32_t rank_at(const Offer& offer, Time now) const noexcept;
   [[gnu::cold, gnu::noinline]] void find_rival(std::uint32_t rank, Time now) noexcept;
   bool relays(BusNodeIndex index) const noexcept { return nodes_[index].options.relays; }
-  /// Returns true if there is another node than the sender, which is on the bus.
+  /// Returns true if the frame is acknowledged: by the analyser, or by another node than the
+  /// sender, which is on the bus.
   bool acknowledged() const noexcept { return analyser_ || on_bus_ > 1; }
 
   std::uint32_t bitrate_ = 1'000'000;
   std::uint64_t bit_ns_ = 1'000;  ///< whole nanoseconds of a bit
-  std::uint64_t bit_rest_ = 0;    ///< rest of that division; 0 at the usual bit rates
+  std::uint64_t bit_rest_ = 0;    ///< remainder of that division; 0 at the usual bit rates
   Random random_;
   std::vector<BusNode> nodes_;
   OfferList offers_;           ///< each change of the queue of a node renews its offer

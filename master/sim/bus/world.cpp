@@ -115,7 +115,7 @@ void World::run_device(std::size_t index) noexcept {
   hosted.device.on_time(local);
   after_call(index);
   if (timers_.earliest() <= now_ && timers_.first() == index) {
-    timers_.set(index, now_ + std::chrono::microseconds{1});  // time must advance in any case
+    timers_.set(index, now_ + std::chrono::microseconds{1});  // time must advance in each step
   }
 }
 

@@ -39,7 +39,7 @@ class World {
   World& operator=(const World&) = delete;
 
   Time now() const noexcept { return now_; }
-  /// Time of the next event that happens by itself; `never` if there is none.
+  /// Returns the time of the next event that needs no further input; `never` if there is none.
   Time next_event() const noexcept;
   /// Processes all events up to and including this time.
   void advance_to(Time until) noexcept;
@@ -47,8 +47,8 @@ class World {
   /// Attaches the CAN controller of a node outside the simulation: the master or a tool. It lives
   /// as long as the world.
   RemotePort& attach(RemotePortOptions options = {});
-  /// Like advance_to(), but stops as soon as `port` has a frame to receive. Returns true in that
-  /// case.
+  /// Advances as advance_to() does, but stops as soon as `port` has a frame to receive. Returns
+  /// true in that case.
   bool advance_until_frame(RemotePort& port, Time until) noexcept;
 
   /// Returns nullptr if there is no such device.

@@ -18,8 +18,8 @@ class FrameChannel {
   virtual bool send(const Frame& frame) noexcept = 0;
   /// Waits at most `timeout` for one frame; 0 means no wait.
   virtual ChannelRead receive(Frame& frame, Time timeout) noexcept = 0;
-  /// Like receive(), and also gives the monotonic time at which the frame was on the bus; 0 means
-  /// unknown.
+  /// Receives a frame as receive() does, and also gives the monotonic time at which the frame was
+  /// on the bus; 0 means unknown.
   virtual ChannelRead receive_stamped(StampedFrame& stamped, Time timeout) noexcept {
     stamped.when = Time{};
     return receive(stamped.frame, timeout);

@@ -10,8 +10,8 @@ constexpr std::uint16_t sdo_servers = 128;
 constexpr Time fast_tick = std::chrono::milliseconds{1};   // period for event-driven TPDOs
 constexpr Time slow_tick = std::chrono::milliseconds{10};  // between updates of a model
 
-/// True if the frame belongs to the exchange of process data, which changes no deadline of a
-/// service.
+/// Returns true if the frame belongs to the exchange of process data, which changes no deadline of
+/// a service.
 bool is_exchange(const Route& route, const Frame& frame) noexcept {
   return !frame.rtr && (route.kind == RouteKind::sync || route.kind == RouteKind::rpdo);
 }

@@ -54,8 +54,8 @@ struct DeviceTimes {
 };
 
 /// A CANopen device built from its tables. The device takes frames and its local time and hands out
-/// frames; it knows neither a bus nor a clock. The world calls on_time() at deadline() and empties
-/// out() after each call.
+/// frames; it has no access to a bus or to a clock. The world calls on_time() at deadline() and
+/// empties out() after each call.
 class Device final : private Dictionary {
  public:
   Device(const DeviceTable& table, Random random, DeviceTimes times = {});
@@ -80,7 +80,7 @@ class Device final : private Dictionary {
   std::size_t most_ids() const noexcept { return routes_.capacity(); }
   bool take_routes_changed() noexcept { return std::exchange(routes_changed_, false); }
 
-  /// Must be called when objects were changed without a write by SDO.
+  /// Call this when objects were changed without a write by SDO.
   void look_at_records() noexcept {
     for (Tpdo& tpdo : tpdos_) tpdo.look_at_record();
     list_live_pdos();
@@ -91,15 +91,15 @@ class Device final : private Dictionary {
   /// Resets the device as its own watchdog would.
   void reset_node(Time now) noexcept;
   void fail(std::uint16_t emcy_code, Time now) noexcept;
-  /// Must be called when DeviceFaults::storm_period has changed.
+  /// Call this when DeviceFaults::storm_period has changed.
   void start_storm(Time now) noexcept;
 
-  /// Node-ID from the network file.
+  /// Returns the node-ID from the network file.
   NodeId node() const noexcept { return node_; }
   /// Returns the present node-ID, which LSS may have changed. Returns std::nullopt if the device
   /// has no node-ID and therefore responds to LSS only.
   std::optional<NodeId> address() const noexcept;
-  /// Bit rate in kbit/s; 0 means the bit rate of the bus.
+  /// Returns the bit rate in kbit/s; 0 means the bit rate of the bus.
   unsigned bit_rate() const noexcept { return lss_ ? lss_->bit_rate() : 0; }
   DeviceState state() const noexcept { return state_; }
   ObjectStore& objects() noexcept { return store_; }

@@ -6,7 +6,7 @@
 namespace takt::sim {
 namespace {
 
-/// True if the entry holds the COB-ID of a communication object. CiA 301, 7.3.3.
+/// Returns true if the entry holds the COB-ID of a communication object. CiA 301, 7.3.3.
 bool holds_cob_id(ObjectKey key) noexcept {
   if (key.index == 0x1014) return key.sub == 0;
   if (key.index >= 0x1200 && key.index <= 0x127F) return key.sub == 1 || key.sub == 2;

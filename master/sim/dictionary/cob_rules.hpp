@@ -15,7 +15,8 @@ constexpr CobId cob_id(std::uint64_t entry) noexcept {
   return (raw & cob_extended) != 0 ? CobId::extended(raw & 0x1FFF'FFFF) : CobId::base(raw & 0x7FF);
 }
 
-/// True if no configurable communication object may use this identifier. CiA 301, 7.3.5, table 40.
+/// Returns true if no configurable communication object may use this identifier. CiA 301, 7.3.5,
+/// table 40.
 constexpr bool is_restricted(CobId cob) noexcept {
   if (cob.is_extended()) return false;
   const std::uint32_t id = cob.id();
@@ -23,7 +24,7 @@ constexpr bool is_restricted(CobId cob) noexcept {
          (id >= 0x601 && id <= 0x67F) || (id >= 0x6E0 && id <= 0x6FF) || id >= 0x701;
 }
 
-/// True if the entry is marked as 11-bit but has bits of a 29-bit identifier set.
+/// Returns true if the entry is marked as 11-bit but has bits of a 29-bit identifier set.
 constexpr bool has_stray_bits(std::uint64_t entry) noexcept {
   return (entry & cob_extended) == 0 && (entry & 0x1FFF'F800) != 0;
 }

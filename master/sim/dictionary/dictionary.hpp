@@ -8,7 +8,7 @@
 
 namespace takt::sim {
 
-/// The object dictionary as an SDO server sees it. The implementation makes every check.
+/// The object dictionary from the view of an SDO server. The implementation makes every check.
 class Dictionary {
  public:
   virtual ~Dictionary() = default;
@@ -18,7 +18,7 @@ class Dictionary {
   /// Sets `bytes` to the size of a number, or to 0 for strings and domains. Returns an abort code
   /// if the object can't be written at all.
   virtual Abort width(ObjectKey key, std::size_t& bytes) const noexcept = 0;
-  /// True if a fault suppresses the answers to requests for this object.
+  /// Returns true if a fault suppresses the answers to requests for this object.
   virtual bool is_mute(ObjectKey key) const noexcept = 0;
 };
 

@@ -35,7 +35,7 @@ struct Object {
   bool is_bytes() const noexcept { return width == 0; }
   /// Returns the number, sign-extended if its type is signed.
   std::int64_t number() const noexcept { return extended(value); }
-  /// Returns a raw value as number() does.
+  /// Returns a raw value, sign-extended if the type is signed.
   std::int64_t extended(std::uint64_t raw) const noexcept {
     return static_cast<std::int64_t>(raw << sign_shift) >> sign_shift;
   }
@@ -78,7 +78,7 @@ class ObjectStore {
 
  private:
   std::vector<Object> objects_;       ///< sorted by ascending key
-  std::deque<Object> constants_;      ///< see number_or()
+  std::deque<Object> constants_;      ///< objects that number_or() has returned for missing objects
   std::vector<std::uint32_t> slots_;  ///< hash table of positions + 1; the size is a power of two
 };
 

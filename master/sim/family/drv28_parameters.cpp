@@ -14,13 +14,13 @@ const Drv28Parameters::Parameter* Drv28Parameters::find(std::uint16_t address) c
   return found == parameters_.end() ? nullptr : &*found;
 }
 
-/// True if a password protects the parameters. A password of 0 protects nothing.
+/// Returns true if a password protects the parameters. A password of 0 protects nothing.
 bool Drv28Parameters::locked() const noexcept {
   return find(password_address)->value != 0 && !unlocked_;
 }
 
-/// True if another input terminal already has this function. Function 0 means no function and may
-/// be repeated.
+/// Returns true if another input terminal already has this function. Function 0 means no function
+/// and may be repeated.
 bool Drv28Parameters::is_taken(const Parameter& terminal, std::uint32_t value) const noexcept {
   return value != 0 && std::ranges::any_of(parameters_, [&](const Parameter& other) {
            return other.change == Change::terminal && &other != &terminal && other.value == value;

@@ -9,8 +9,8 @@ namespace takt::sim {
 /// speed.
 inline constexpr std::uint8_t first_free_word = 3;
 
-/// Copies received values back to the bus: the sub-indices from `first` on of `from` to those of
-/// `to`.
+/// Copies received values to objects that the device sends: the sub-indices from `first` on of
+/// `from` to the same sub-indices of `to`.
 inline void echo(ObjectStore& store, std::uint16_t from, std::uint16_t to,
                  std::uint8_t first = 1) noexcept {
   for (const Object& in : store.range(from, from)) {

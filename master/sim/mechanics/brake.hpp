@@ -5,7 +5,8 @@
 
 namespace takt::sim {
 
-/// A holding brake on the shaft of the motor: closed without current, and slow.
+/// A holding brake on the shaft of the motor. The brake is closed without current, and it opens and
+/// closes slowly.
 class Brake {
  public:
   explicit Brake(const BrakeParameters& table) noexcept
@@ -18,7 +19,7 @@ class Brake {
     const double end = current ? 1 : 0;
     if (opened_ == end) return;
     opened_ = std::clamp(opened_ + (current ? opening_step_ : -closing_step_), 0.0, 1.0);
-    // The faces part at the end of the opening and touch at the end of the closing.
+    // The faces separate at the end of the opening, and touch at the end of the closing.
     if (opened_ == end) is_closed_ = !current;
   }
   bool exists() const noexcept { return torque_ > 0; }

@@ -15,8 +15,8 @@ struct TorqueRange {
   double clamp(double torque) const noexcept { return std::clamp(torque, -negative, positive); }
 };
 
-/// The controllers of a servo drive: position (P, with the velocity of the set-points fed forward)
-/// above velocity (PI) above torque. What a limit takes away is not integrated.
+/// The controllers of a servo drive: position (P, with feed-forward of the velocity of the
+/// set-points), velocity (PI), and torque. The integral does not grow while a limit acts.
 class Cascade {
  public:
   Cascade(const MechanicsTable& table, double inertia) noexcept

@@ -34,13 +34,13 @@ class ShaftEncoder {
     newest_ = (newest_ + 1) % past_.size();
     past_[newest_] = angle;
   }
-  /// Angle and speed at the last sample: rad, rad/s.
+  /// Returns the angle and speed at the last sample: rad, rad/s.
   double angle() const noexcept { return angle_; }
   double speed() const noexcept { return speed_; }
   double increment() const noexcept { return increment_; }
 
-  /// Returns the angle that the drive reports `later` seconds after the last sample. It is as old
-  /// as the dead time.
+  /// Returns the angle that the drive reports `later` seconds after the last sample. This angle is
+  /// older by the dead time.
   double reported(double later, double speed) const noexcept {
     const double ago = delay_ - later / mechanics_tick;
     if (ago <= 0) return quantised(past_[newest_] - ago * speed * mechanics_tick);

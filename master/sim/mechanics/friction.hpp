@@ -14,8 +14,8 @@ class Friction {
         at_rest_{sliding_ * breakaway},
         per_torque_{span / inertia} {}
 
-  /// Returns the speed after a step. `before` is the speed before it, `speed` the one that it would
-  /// have without dry friction, `clamp` the torque of a brake on this mass.
+  /// Returns the speed after a step. `before` is the speed before it, `speed` the speed that it
+  /// would have without dry friction, `clamp` the torque of a brake on this mass.
   double slow(double before, double speed, double clamp = 0) const noexcept {
     const double most = (before == 0 ? at_rest_ : sliding_) + clamp * per_torque_ + creeping;
     if (std::abs(speed) <= most) return 0;
@@ -23,9 +23,9 @@ class Friction {
   }
 
  private:
-  static constexpr double creeping = 1e-12;  // rad/s, below which every mass stands
+  static constexpr double creeping = 1e-12;  // rad/s, below which every mass is at rest
 
-  double sliding_;  ///< speed that friction takes in a step
+  double sliding_;  ///< decrease of the speed by friction in a step
   double at_rest_;
   double per_torque_;  ///< speed per torque
 };

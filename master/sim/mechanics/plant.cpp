@@ -6,7 +6,7 @@
 namespace takt::sim {
 namespace {
 
-/// Returns the inertia that the shaft of the motor feels by itself.
+/// Returns the inertia of the parts that are rigidly connected to the shaft of the motor.
 double own_inertia(const MechanicsTable& table) noexcept {
   return table.motor.inertia + (table.load.stiffness ? 0 : table.load.inertia);
 }
@@ -69,7 +69,7 @@ void Plant::advance_rigid(double torque, double brake) noexcept {
   stop_at_ends(motor_);
 }
 
-/// Returns how far the spring is wound. It is 0 inside the backlash.
+/// Returns the twist of the spring. It is 0 inside the backlash.
 double Plant::wound() const noexcept {
   const double twist = motor_.angle - load_.angle;
   return twist - std::clamp(twist, -half_gap_, half_gap_);
@@ -94,7 +94,8 @@ void Plant::advance_elastic(double torque, double brake) noexcept {
   stop_at_ends(load_);
 }
 
-/// An axis that falls without end would otherwise leave the range of numbers.
+/// Limits the speed, because an axis that falls without end would otherwise leave the range of
+/// numbers.
 double Plant::bounded(double speed) noexcept { return std::clamp(speed, -fastest, fastest); }
 
 void Plant::stop_at_ends(Mass& mass) const noexcept {

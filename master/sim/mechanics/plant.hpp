@@ -27,7 +27,7 @@ class Plant {
   /// Advances by mechanics_tick with a constant `torque` (N m) of the motor. `brake` is the torque
   /// that a brake on the shaft of the motor can hold.
   void advance(double torque, double brake) noexcept;
-  /// The load can't leave the range from `low` to `high` (rad).
+  /// Sets hard stops: the load can't leave the range from `low` to `high` (rad).
   void set_stops(double low, double high) noexcept {
     low_stop_ = low;
     high_stop_ = high;
@@ -36,7 +36,7 @@ class Plant {
   const Mass& motor() const noexcept { return motor_; }
   const Mass& load() const noexcept { return is_rigid_ ? motor_ : load_; }
   bool stands() const noexcept { return motor_.speed == 0 && load_.speed == 0; }
-  /// The inertia of motor and load together.
+  /// Returns the inertia of motor and load together.
   double inertia() const noexcept { return inertia_; }
 
  private:

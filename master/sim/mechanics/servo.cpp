@@ -116,7 +116,8 @@ double Servo::torque_at(const Goal& goal, const ServoLimits& limits) noexcept {
                              there && goal.speed == 0 && encoder_.speed() == 0);
 }
 
-/// Near its greatest speed, the motor has no voltage left that could drive it further.
+/// Returns the torques that the motor can give. Near its greatest speed, no voltage is left to
+/// accelerate it.
 TorqueRange Servo::available(const ServoLimits& limits) const noexcept {
   const double speed = encoder_.speed();
   const double left = fastest_ - std::abs(speed);

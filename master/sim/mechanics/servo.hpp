@@ -10,9 +10,9 @@
 
 namespace takt::sim {
 
-/// What the controllers of a servo regulate.
+/// The quantity that the controllers of a servo control.
 enum class ServoLoop : std::uint8_t {
-  off,   ///< no torque; if the axis stands, it is held until its brake has closed
+  off,   ///< no torque; if the axis is at standstill, it is held until its brake has closed
   hold,  ///< the position at which this loop began
   torque,
   velocity,
@@ -24,8 +24,8 @@ struct ServoReference {
   ServoLoop loop = ServoLoop::off;
   double position = 0;
   double velocity = 0;      ///< counts/s; in the loop `position`, the velocity of the set-points
-  double velocity_add = 0;  ///< counts/s, added behind the position controller
-  double torque = 0;        ///< N m, set-point or addition behind the velocity controller
+  double velocity_add = 0;  ///< counts/s, added after the position controller
+  double torque = 0;        ///< N m, set-point, or addition after the velocity controller
 };
 
 /// The largest torques, in N m, and the largest speed of the motor, in rad/s. All are positive.
@@ -47,20 +47,20 @@ class Servo {
   void run(const ServoReference& next, const ServoLimits& limits, Time until) noexcept;
   /// Adds `counts` to all positions.
   void shift(double counts) noexcept;
-  /// The load can't leave this range of positions.
+  /// Sets hard stops: the load can't leave this range of positions.
   void set_stops(double low, double high) noexcept;
 
-  /// The position that the drive reports at this time, in counts: rounded to increments of the
-  /// encoder, and as old as its dead time. Not before the last run().
+  /// Returns the position that the drive reports at this time, in counts: rounded to increments of
+  /// the encoder, and as old as its dead time. `now` must not be before the last run().
   double reported(Time now) const noexcept;
-  /// The position at the angle 0 of the motor.
+  /// Returns the position at the angle 0 of the motor.
   double origin() const noexcept { return origin_; }
-  /// Position and speed as the controllers know them, in counts and counts/s.
+  /// Returns position and speed from the encoder, in counts and counts/s.
   double position() const noexcept { return counts(encoder_.angle()); }
   double velocity() const noexcept { return encoder_.speed() * counts_per_radian_; }
-  /// The position in increments of the encoder, which a shift() doesn't change.
+  /// Returns the position in increments of the encoder, which a shift() doesn't change.
   double increments() const noexcept { return encoder_.angle() / encoder_.increment(); }
-  /// The true positions of motor and load.
+  /// Returns the true positions of motor and load.
   double motor_position() const noexcept { return counts(plant_.motor().angle); }
   double load_position() const noexcept { return counts(plant_.load().angle); }
   double torque() const noexcept { return torque_; }         ///< N m
@@ -68,7 +68,7 @@ class Servo {
   bool limited() const noexcept { return cascade_.limited(); }
   /// Returns true if the axis may move: it has no brake, or the brake is open.
   bool released() const noexcept { return !brake_.is_closed(); }
-  /// Returns true if motor and load stand, and nothing will move them while there is no torque.
+  /// Returns true if motor and load are at rest, and will not move while there is no torque.
   bool rests() const noexcept;
   /// Returns true if the axis turns by less than half a turn in a minute.
   bool stands() const noexcept { return std::abs(encoder_.speed()) < standstill; }
@@ -105,13 +105,13 @@ class Servo {
   Cascade cascade_;
   Brake brake_;
   double counts_per_radian_;
-  double current_step_;  ///< part of a change of torque that one tick makes
+  double current_step_;  ///< part of a change of torque that takes effect in one tick
   double fastest_;       ///< rad/s, of the motor
   double origin_ = 0;    ///< position at angle 0, in counts
   double torque_ = 0;
   double wanted_ = 0;
   double held_ = 0;     ///< angle that is held, in rad
-  bool holds_ = false;  ///< the loop `off` still holds the axis for its brake
+  bool holds_ = false;  ///< the loop `off` still holds the axis until its brake closes
   ServoReference last_{};
   Time time_{};
   Time run_until_{};

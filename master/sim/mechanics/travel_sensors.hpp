@@ -58,7 +58,7 @@ class TravelSensors {
   double load_ = 0;
   bool has_edges_ = false;  ///< the load has crossed an edge in the last look()
   double edge_below_ = 0;   ///< the nearest edge of a switch that is not above the load
-  double edge_above_ = 0;   ///< the nearest one above the load
+  double edge_above_ = 0;   ///< the nearest edge above the load
 };
 
 }  // namespace takt::sim

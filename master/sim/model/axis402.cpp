@@ -49,7 +49,7 @@ void Axis402::reset(Time now) noexcept {
   publish();
 }
 
-/// True if nothing changes until an object is written.
+/// Returns true if nothing changes until an object is written.
 bool Axis402::idle() const noexcept {
   if (!settled_ || is_powered(state_) || state_ == DriveState::not_ready) return false;
   return servo_ ? servo_->servo().rests() : motor_.stands();
@@ -159,12 +159,13 @@ void Axis402::follow_controlword() noexcept {
   }
 }
 
-/// True while the axis has to wait for its brake before it is enabled.
+/// Returns true while the axis has to wait for its brake before it is enabled.
 bool Axis402::waits_for_brake(DriveState next) const noexcept {
   return servo_ && next == DriveState::operation_enabled && !servo_->servo().released();
 }
 
-/// Makes a demand of the motion as it is, after the demand has followed the motion or left it.
+/// Sets the demand to the present motion, after the demand has followed the motion or deviated from
+/// it.
 void Axis402::meet_motion() noexcept {
   demand_ = servo_ ? servo_->demand() : Demand{motor_.position, motor_.velocity};
 }

@@ -120,13 +120,14 @@ class Axis402 {
   std::uint16_t fault_code_ = 0;
   bool settled_ = false;   ///< the controlword requests no further transition
   bool releases_ = false;  ///< the axis has torque, and is enabled when its brake has opened
-  bool blocked_ = false;   ///< the axis is at the end of its travel; its set-points lead further
+  /// The axis is at the end of its travel, and its set-points lead beyond it.
+  bool blocked_ = false;
   bool interpolates_ = false;  ///< with mechanics: the points of the buffer are being followed
   bool following_error_ = false;
   bool on_target_ = false;
   bool target_waits_ = false;
   Time time_{};
-  Time published_ = never;  ///< the objects hold the motion of this time
+  Time published_ = never;  ///< time of the motion that the objects contain
   Time last_sync_{};
   Time sync_distance_{};
   Time following_time_{};

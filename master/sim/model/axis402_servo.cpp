@@ -52,7 +52,7 @@ void Axis402::follow_velocity(double target, double limit, double h) noexcept {
   demand_.position = motor_.position;
 }
 
-/// Returns 1 or -1 if the set-points of the present mode lead this way, otherwise 0.
+/// Returns 1 or -1 if the set-points of the present mode lead in this direction, otherwise 0.
 double Axis402::wanted_direction() const noexcept {
   const auto sign = [](double value) { return value > 0 ? 1.0 : value < 0 ? -1.0 : 0.0; };
   switch (mode_) {
@@ -76,7 +76,7 @@ double Axis402::wanted_direction() const noexcept {
   return 0;
 }
 
-/// Returns the deceleration with which the axis stops by itself, in counts/s2.
+/// Returns the deceleration of a stop that the drive itself begins, in counts/s2.
 double Axis402::stop_ramp() const noexcept {
   const double slow = objects_.profile_deceleration.positive_or(strongest());
   return objects_.quick_stop_deceleration.positive_or(slow);
@@ -109,7 +109,7 @@ void Axis402::step_points(double h) noexcept {
   constexpr double resolution = 1e-9;
   while (interpolates_ && h > resolution) {
     if (cyclic_.left() == 0 && !next_point()) {
-      interpolates_ = demand_.velocity == 0;  // before the first point, it waits
+      interpolates_ = demand_.velocity == 0;  // before the first point, the axis waits
       break;
     }
     const double part = std::min(h, cyclic_.left());

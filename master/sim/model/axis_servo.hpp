@@ -35,12 +35,12 @@ class AxisServo {
   /// Returns the sensors, whose positions do not include origin().
   const TravelSensors& sensors() const noexcept { return sensors_; }
   double origin() const noexcept { return servo_.origin(); }
-  /// True if the axis is at the end of its travel in a direction (1 or -1): on the limit switch, or
-  /// at the software limit 0x607D.
+  /// Returns true if the axis is at the end of its travel in a direction (1 or -1): on the limit
+  /// switch, or at the software limit 0x607D.
   bool at_end(double direction) const noexcept;
   /// Returns the set-point with which the position controller keeps the present motion.
   Demand demand() const noexcept;
-  /// Acceleration of the axis with its largest torque, in counts/s2.
+  /// Returns the acceleration of the axis with its largest torque, in counts/s2.
   double strongest() const noexcept { return servo_.acceleration(table_.motor.peak_torque); }
   /// Writes position, velocity, following error and torque into the objects.
   void publish(const Demand& demand, bool powered, Time now) noexcept;

@@ -34,7 +34,7 @@ class CyclicPosition {
   bool limited() const noexcept { return limited_; }
   /// Seconds until the demand reaches the set-point; 0 if it has reached it.
   double left() const noexcept { return left_; }
-  /// The velocity between the last two set-points.
+  /// Returns the velocity between the last two set-points.
   double slope() const noexcept { return slope_; }
 
  private:

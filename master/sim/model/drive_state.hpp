@@ -63,7 +63,7 @@ constexpr std::uint16_t state_bits(DriveState state) noexcept {
 /// (0, 1, 12 after the ramp, 13, 14) and the fault reset (15).
 DriveState commanded(DriveState state, DriveCommand command, bool stays) noexcept;
 
-/// True if the power stage is on in this state.
+/// Returns true if the power stage is on in this state.
 constexpr bool is_powered(DriveState state) noexcept {
   return state == DriveState::operation_enabled || state == DriveState::quick_stop ||
          state == DriveState::fault_reaction;

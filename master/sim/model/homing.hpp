@@ -22,8 +22,8 @@ class Homing {
   /// Enters the mode; homing has not been started yet.
   void start() noexcept { stage_ = Stage::idle; }
   void on_controlword(std::uint16_t before, std::uint16_t now, const Demand& demand) noexcept;
-  /// Returns true when the reference has been found and the axis stands still. Then shift() gives
-  /// the shift of the coordinates.
+  /// Returns true when the reference has been found and the axis is at standstill. Then shift()
+  /// gives the shift of the coordinates.
   bool step(Demand& demand, double deceleration, double h) noexcept;
   /// Returns the value to add to positions so that the reference reads minus the home offset
   /// 0x607C.

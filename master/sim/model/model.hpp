@@ -47,9 +47,9 @@ class Model {
   virtual void sync_lost(Time) noexcept {}
   /// Returns the deviations from CiA 301; constant after construction.
   virtual DeviceTraits traits() const noexcept { return {}; }
-  /// True if a SYNC that the device has sent acts on its own PDOs.
+  /// Returns true if a SYNC that the device has sent acts on its own PDOs.
   virtual bool obeys_own_sync() const noexcept { return false; }
-  /// Identifier of the SYNC that the device sends, if it differs from 0x1005.
+  /// Returns the identifier of the SYNC that the device sends, if it differs from 0x1005.
   virtual std::optional<CobId> sync_transmit_id() const noexcept { return {}; }
   /// Called when a heartbeat is lost, at bus-off, and when the device leaves OPERATIONAL.
   virtual void connection_lost(Time) noexcept {}

@@ -28,7 +28,7 @@ inline void ramp_velocity(Demand& demand, double target, const Ramps& ramps, dou
 }
 
 /// Makes one step of `h` seconds on a trapezoidal profile towards `target`. Returns true when the
-/// demand has reached the target and stands still.
+/// demand has reached the target and is at rest.
 inline bool approach(Demand& demand, double target, const Ramps& ramps, double h) noexcept {
   const double way = target - demand.position;
   const double half = ramps.deceleration * h / 2;
@@ -60,7 +60,7 @@ class Motor {
     const double wanted = (velocity * lag + target * h) / (lag + h);
     move(std::clamp(wanted, velocity - limit * h, velocity + limit * h), h);
   }
-  /// Without power, friction brings the motor to rest.
+  /// Lets friction bring the motor to rest, without power.
   void coast(double friction, double h) noexcept {
     const double lost = std::min(std::abs(velocity), friction * h);
     move(velocity - std::copysign(lost, velocity), h);

@@ -36,7 +36,7 @@ class PointBuffer {
     publish();
     return point;
   }
-  /// The point that was added last.
+  /// Returns the point that was added last.
   double newest() const noexcept { return newest_; }
 
  private:

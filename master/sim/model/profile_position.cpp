@@ -34,7 +34,7 @@ double ProfilePosition::new_target(std::uint16_t controlword, const Demand& dema
   return within_limits(objects_, target, limited_);
 }
 
-/// A rising edge of bit 4 hands over a set-point; the set-point is ignored if the buffer is full.
+/// Takes a set-point at a rising edge of bit 4, and ignores it if the buffer is full.
 void ProfilePosition::on_controlword(std::uint16_t before, std::uint16_t now, const Demand& demand,
                                      double actual) noexcept {
   if ((now & new_set_point) == 0) acknowledged_ = false;

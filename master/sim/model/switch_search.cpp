@@ -50,7 +50,7 @@ void SwitchSearch::begin(const HomingMethod& method, const TravelSensors& sensor
   if (method.needs_switch && sensors.active(method.seeks)) step_ = Step::settle;
 }
 
-/// True if the axis moves into a limit switch that ends its way.
+/// Returns true if the axis moves into a limit switch that ends its way.
 bool SwitchSearch::blocked(const TravelSensors& sensors) const noexcept {
   const TravelSwitch limit = direction_ > 0 ? positive_limit : negative_limit;
   return sensors.active(limit) && !(method_.needs_switch && method_.seeks == limit);
@@ -104,7 +104,7 @@ SwitchSearch::Result SwitchSearch::seek(const TravelSensors& sensors) noexcept {
   return Result::running;
 }
 
-/// Chooses the next stage when the axis stands, on the switch or behind a narrow one.
+/// Chooses the next stage when the axis is at rest, on the switch or behind a narrow one.
 void SwitchSearch::settle(const TravelSensors& sensors) noexcept {
   if (sensors.active(method_.seeks)) return approach_edge();
   direction_ = -direction_;

@@ -38,7 +38,7 @@ class SwitchSearch {
   /// does not seek, except once in the search for the home switch, where it turns back.
   Result step(const TravelSensors& sensors, Demand& demand, const SearchSpeeds& speeds,
               const Ramps& ramps, double h) noexcept;
-  /// The position of the reference, as TravelSensors has it. Valid once it has been found.
+  /// Returns the position of the reference, as TravelSensors has it. Valid once it has been found.
   double reference() const noexcept { return reference_; }
 
  private:

@@ -52,7 +52,7 @@ class PdoRecord {
     return start_ == nullptr ? 0 : static_cast<std::uint8_t>(start_->value);
   }
 
-  /// True for the objects of this PDO: 0x1400.. or 0x1800.., and the mapping 0x200 above.
+  /// Returns true for the objects of this PDO: 0x1400.. or 0x1800.., and the mapping 0x200 above.
   bool owns(ObjectKey key) const noexcept {
     return key.index == communication_ || key.index == communication_ + 0x200;
   }

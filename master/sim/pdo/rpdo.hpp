@@ -15,7 +15,7 @@ class Rpdo {
   explicit Rpdo(PdoRecord record) : record_{record} {}
 
   const PdoRecord& record() const noexcept { return record_; }
-  /// Length of the mapping in bytes.
+  /// Returns the length of the mapping in bytes.
   std::uint8_t length() const noexcept { return mapping_.bytes(); }
   void start() noexcept;
   void stop() noexcept { running_ = false; }
@@ -27,13 +27,14 @@ class Rpdo {
                        const EmcyProducer& emcy) noexcept;
   /// Returns true if the frame acts at once; the caller then calls apply().
   bool on_frame(const Frame& frame, Time now, Time window_end, EmcyProducer& emcy) noexcept;
-  /// True if received data waits for SYNC.
+  /// Returns true if received data waits for SYNC.
   bool waits() const noexcept { return full_ && synchronous_; }
   /// Writes the received data into the mapped objects.
   void apply() noexcept;
   void on_time(Time now, EmcyProducer& emcy) noexcept;
   Time deadline() const noexcept { return deadline_; }
-  /// False if no frame waits and none can be received, until start() or a change of the record.
+  /// Returns false if no frame waits and none can be received, until start() or a change of the
+  /// record.
   bool live() const noexcept { return record_.valid() || full_ || deadline_ != never; }
 
  private:

@@ -38,7 +38,7 @@ bool Tpdo::only_answers() const noexcept {
   return traits_.answers_255 && type_ == 255 && record_.event_timer() == Time{};
 }
 
-/// For the transmission types 0, 254 and 255.
+/// Returns true if events cause a transmission. Only for the transmission types 0, 254 and 255.
 bool Tpdo::has_events() const noexcept {
   if (traits_.timer == DeviceTraits::Timer::alone && runs_by_timer()) return false;
   return !only_answers();
@@ -70,8 +70,8 @@ void Tpdo::sample_at_sync(std::uint8_t counter, Time ready, Time window_end,
   }
 }
 
-/// True if the TPDO is due at this SYNC: at the SYNC whose counter equals the start value, and from
-/// there at every n-th.
+/// Returns true if the TPDO is due at this SYNC: at the SYNC whose counter equals the start value,
+/// and from there at every n-th.
 bool Tpdo::counts_to_its_turn(std::uint8_t counter) noexcept {
   const std::uint8_t start = record_.sync_start();
   if (start != 0 && counter != 0 && !started_) {

@@ -26,7 +26,8 @@ class Tpdo {
   /// take effect at the next start or write, but an invalid COB-ID ends the TPDO at once.
   void look_at_record() noexcept;
 
-  /// The frame may be on the wire from `ready` on; after `window_end` the frame is dropped.
+  /// Takes a SYNC. The frame of this TPDO may be on the wire from `ready` on; after `window_end`
+  /// the frame is dropped.
   void on_sync(std::uint8_t counter, Time ready, Time window_end, Transmitter& out) noexcept {
     if (active_) sample_at_sync(counter, ready, window_end, out);
   }
@@ -39,10 +40,10 @@ class Tpdo {
   }
   void on_time(Time now, Transmitter& out) noexcept;
   Time deadline() const noexcept { return deadline_; }
-  /// False if neither SYNC nor time nor changes of values have an effect until start(),
+  /// Returns false if neither SYNC nor time nor changes of values have an effect until start(),
   /// reconfigure() or look_at_record().
   bool live() const noexcept { return active_ || deadline_ != never; }
-  /// True if changes of mapped values are events.
+  /// Returns true if changes of mapped values are events.
   bool wants_events() const noexcept {
     return active_ && (type_ == 0 || type_ >= 254) && has_events();
   }
@@ -75,7 +76,7 @@ class Tpdo {
   Time allowed_from_{};  ///< end of the inhibit time
   Time timer_ = never;   ///< expiry of the event timer
   Time deadline_ = never;
-  PdoMapping mapping_;  ///< large, so it is the last member
+  PdoMapping mapping_;  ///< last member because it is large
 };
 
 }  // namespace takt::sim

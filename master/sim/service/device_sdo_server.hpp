@@ -36,7 +36,7 @@ class SdoServer {
     segment_time_ = segment;
   }
   void on_frame(const Frame& frame, Time now, Transmitter& out) noexcept;
-  /// Called when the client has been silent too long within a transfer, or the next segment of a
+  /// Call this when the client has been silent too long within a transfer, or the next segment of a
   /// block is due.
   void on_time(Time now, Transmitter& out) noexcept;
   Time deadline() const noexcept { return deadline_ < next_segment_ ? deadline_ : next_segment_; }

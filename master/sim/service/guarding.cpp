@@ -19,7 +19,7 @@ Time GuardingResponder::life_time() const noexcept {
   return std::chrono::milliseconds{store_.number({0x100C, 0}) * store_.number({0x100D, 0})};
 }
 
-/// Life guarding begins with the first request.
+/// Answers a request. Life guarding begins with the first request.
 void GuardingResponder::on_request(std::uint8_t state, Fault fault, Time now,
                                    Transmitter& out) noexcept {
   if (store_.number({0x1017, 0}) != 0) return;

@@ -20,14 +20,14 @@ class GuardingResponder {
   void set_node(NodeId node) noexcept { node_ = node; }
 
   CobId id() const noexcept { return CobId::base(0x700u + node_.value()); }
-  /// Must be called when communication was reset. The next answer then has toggle bit 0.
+  /// Call this when communication was reset. The next answer then has toggle bit 0.
   void reset() noexcept;
   /// Handles a remote frame of the master. A device that produces heartbeats does not answer.
   void on_request(std::uint8_t state, Fault fault, Time now, Transmitter& out) noexcept;
   /// Returns true if the life time has just expired without a request of the master.
   bool on_time(Time now) noexcept;
   Time deadline() const noexcept { return deadline_; }
-  /// Must be called when 0x100C or 0x100D was written.
+  /// Call this when 0x100C or 0x100D was written.
   void configure(Time now) noexcept;
 
  private:

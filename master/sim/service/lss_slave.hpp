@@ -36,9 +36,10 @@ class LssSlave {
   }
 
   std::uint8_t node_id() const noexcept { return active_; }
-  /// Bit rate in kbit/s; 0 means that LSS has never changed it.
+  /// Returns the bit rate in kbit/s; 0 means that LSS has never changed it.
   std::uint16_t bit_rate() const noexcept { return rate_; }
-  /// True while a change of the bit rate is in progress and the device neither sends nor receives.
+  /// Returns true while a change of the bit rate is in progress and the device neither sends nor
+  /// receives.
   bool switching() const noexcept { return ends_at_ != never; }
   /// Returns true once after a device without a node-ID has received one and left the configuration
   /// state.

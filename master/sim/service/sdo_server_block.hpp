@@ -11,7 +11,7 @@
 
 namespace takt::sim {
 
-/// CRC of block transfers, bit by bit. CiA 301, 7.2.4.3.16.
+/// Returns the CRC of block transfers, bit by bit. CiA 301, 7.2.4.3.16.
 std::uint16_t block_crc(std::span<const std::byte> data) noexcept;
 
 using SdoBytes = std::array<std::uint8_t, 8>;

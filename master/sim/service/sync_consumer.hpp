@@ -25,7 +25,7 @@ class SyncConsumer {
   /// Returns true if SYNC has just become overdue according to 0x1006.
   bool on_time(Time now) noexcept;
   Time deadline() const noexcept { return deadline_; }
-  /// End of the synchronous window of the newest SYNC; `never` means no window.
+  /// Returns the end of the synchronous window of the newest SYNC; `never` means no window.
   Time window_end() const noexcept { return window_end_; }
 
   Abort check_write(const Object& object, std::uint64_t raw) const noexcept;

@@ -19,7 +19,7 @@ class TimeConsumer {
   explicit TimeConsumer(ObjectStore& store) : cob_{store.find({0x1012, 0})} {}
 
   void reset() noexcept { set_.reset(); }
-  /// Identifier of TIME; empty if the device does not consume TIME.
+  /// Returns the identifier of TIME; empty if the device does not consume TIME.
   std::optional<CobId> id() const noexcept {
     if (cob_ == nullptr || (cob_->value & consumes) == 0) return {};
     return cob_id(cob_->value & ~std::uint64_t{consumes | cob_bit30});

@@ -9,7 +9,7 @@
 
 namespace takt {
 
-/// Listens to what taktd reports about the motions of all axes, and keeps the largest values of the
+/// Receives the reports of taktd about the motions of all axes, and keeps the largest values of the
 /// entries that are in progress.
 class MotionObserver final : public Actor {
  public:

@@ -30,24 +30,25 @@ struct AxisMaxima {
   double acceleration = 0.0;  ///< commanded
 };
 
-/// What has become of an entry of `motions:`.
+/// The outcome of an entry of `motions:`.
 struct MotionOutcome {
   std::string program;
   MotionKind kind = MotionKind::enable;
   SourcePos pos{};
-  std::optional<Time> begin{};       ///< when the program began it; empty: never
-  std::optional<Time> end{};         ///< when the program knew its end; empty: never
-  std::string result = "not_begun";  ///< `done`, `running`, `not_begun`, or why it ended otherwise
-  std::string text{};                ///< a sentence about an end other than `done`
+  std::optional<Time> begin{};  ///< time at which the program began the entry; empty: never
+  std::optional<Time> end{};  ///< time at which the program knew the end of the entry; empty: never
+  /// `done`, `running`, `not_begun`, or the reason of another end.
+  std::string result = "not_begun";
+  std::string text{};  ///< sentence about an end other than `done`
   std::vector<AxisMaxima> axes{};
   std::string expect = "done";  ///< one of expectable_ends
-  /// True if the script has ended it: its next entry, `kill`, or the end of the run.
+  /// True if the script has ended the entry: its next entry, `kill`, or the end of the run.
   bool by_script = false;
 
   bool as_expected() const { return by_script ? expect == "ended" : expect == result; }
 };
 
-/// Returns the number of entries that ended otherwise than expected.
+/// Returns the number of entries that did not end as expected.
 std::size_t unexpected_ends(const std::vector<MotionOutcome>& outcomes);
 
 /// Returns the number of axes that have moved.

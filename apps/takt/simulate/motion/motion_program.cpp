@@ -73,7 +73,7 @@ bool MotionProgram::open() {
   return opened.has_value();
 }
 
-/// The motion of the newest entry goes on meanwhile.
+/// During this time, the motion of the newest entry continues.
 void MotionProgram::pass_until(Time when) {
   while (program_time() < when && !setting_.is_killed()) {
     const auto left = when - program_time();

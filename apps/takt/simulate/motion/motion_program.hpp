@@ -21,11 +21,11 @@ class MotionProgram {
     std::function<std::unique_ptr<Transport>()> connect;
     std::function<bool()> is_killed;
   };
-  /// Does these entries of the script, and keeps an outcome for each of them.
+  /// Executes these entries of the script, and keeps an outcome for each of them.
   MotionProgram(Setting setting, const MotionScript& script, std::span<const MotionEntry> entries,
                 std::span<MotionOutcome> outcomes);
 
-  /// Does all entries, and stays alive afterwards until the program is killed.
+  /// Executes all entries, and then waits until the program is killed.
   void run();
 
  private:
@@ -46,8 +46,8 @@ class MotionProgram {
   std::span<MotionOutcome> outcomes_;
   std::optional<Axes> axes_;
   MotionOutcome* newest_ = nullptr;  // motion that the axes may still follow
-  std::optional<Time> interrupt_;    // when the present call has to return
-  std::size_t next_ = 0;             // entry that is next
+  std::optional<Time> interrupt_;    // time at which the present call has to return
+  std::size_t next_ = 0;             // index of the next entry
 };
 
 }  // namespace takt

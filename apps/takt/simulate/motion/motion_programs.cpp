@@ -126,7 +126,7 @@ void MotionPrograms::join(Stage& stage) {
   stage.add(observer_);
 }
 
-/// The new process does the entries up to the next `kill`.
+/// The new process executes the entries up to the next `kill`.
 void MotionPrograms::start(Program& program) {
   const std::vector<MotionEntry>& entries = program.script.entries;
   const auto begin = entries.begin() + static_cast<std::ptrdiff_t>(program.next);
@@ -145,7 +145,7 @@ void MotionPrograms::start(Program& program) {
   process.start([&code = *program.code] { code.run(); });
 }
 
-/// `program.next` is the entry that kills it.
+/// `program.next` is the entry that kills the process.
 void MotionPrograms::kill(Program& program, Time now) {
   program.process->kill();
   const auto outcomes = std::span{outcomes_}.subspan(program.first_outcome, program.next + 1);

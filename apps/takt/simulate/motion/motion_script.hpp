@@ -13,7 +13,7 @@
 
 namespace takt {
 
-/// What a simulated program does by an entry of `motions:`. All but `kill` are calls of Axes.
+/// The action of a simulated program for an entry of `motions:`. All but `kill` are calls of Axes.
 enum class MotionKind : std::uint8_t {
   enable,
   reset,
@@ -25,7 +25,7 @@ enum class MotionKind : std::uint8_t {
   stop,
   home,
   disable,
-  kill,  ///< the program ends without a word; a new one does the entries that follow
+  kill,  ///< the program ends without a message; a new one executes the entries that follow
 };
 inline constexpr std::array<std::string_view, 11> motion_kind_names{
     "enable", "reset", "move", "move_by", "jog", "gear",
@@ -68,7 +68,8 @@ struct MotionEntry {
   std::vector<PathPoint> points{};
 };
 
-/// What a simulated program does: it commands its axes by one entry after the other.
+/// The actions of a simulated program. The program commands its axes by the entries, in their
+/// order.
 struct MotionScript {
   std::string program;
   std::vector<std::string> axes;  ///< names as in AxesOptions::names

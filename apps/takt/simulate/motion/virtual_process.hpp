@@ -26,10 +26,10 @@ class VirtualProcess final : public Actor, private Surroundings {
 
   /// Starts the program: `work` runs on its thread, with the first act().
   void start(std::function<void()> work);
-  /// Ends the program. It sends and receives nothing any more; time passes for it until its code
-  /// has returned.
+  /// Ends the program. From then on, the program sends and receives nothing. Time passes for the
+  /// program until its code has returned.
   void kill();
-  /// Returns true from kill() on. For the code of the program.
+  /// Returns true from kill() on. The code of the program calls this.
   bool is_killed() const noexcept { return killed_; }
   /// Returns the connection of the program to LCM, which must not outlive `work`.
   std::unique_ptr<Transport> connect();

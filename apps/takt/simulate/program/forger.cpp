@@ -12,13 +12,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t memory = 8192;   // number of commands that the forger remembers
-constexpr Time as_good_as_new = 2s;    // a younger command may still be obeyed
+constexpr std::size_t memory = 8192;  // number of commands that the forger remembers
+// Age in which a command may still be valid; the forger repeats only older commands.
+constexpr Time as_good_as_new = 2s;
 constexpr std::int64_t low_bits = 15;  // bits of a position that identify its sender
 constexpr std::int64_t nobody = 6;     // value of these bits that no program uses
 constexpr std::int64_t fewest_away =
     50'000;                       // least cycles between a forged cycle and the true one
-constexpr Time least_away = 10s;  // the same distance as a time; no lease lasts longer than 1 s
+constexpr Time least_away = 10s;  // this distance as a time; no lease lasts longer than 1 s
 constexpr std::int64_t never_reached = std::int64_t{1} << 62;  // cycle number
 
 }  // namespace
@@ -54,7 +55,7 @@ void Forger::publish(const std::string& channel, Bytes data) {
   lcm_.publish(channel, data);
 }
 
-/// A program that has heard no motion acts as if there were none.
+/// If the program has received no message about motions, it forges none.
 void Forger::act_up(Time now) {
   if (!gears_.empty() && random_.chance(0.2)) {
     return random_.chance(0.5) ? forge_motion<motion_gear_t>(gears_, channels_.motion_gear, now)
@@ -133,8 +134,7 @@ std::array<std::int64_t, 6> Forger::wrong_cycles(std::int64_t cycle) {
           cycle - 2 * far_away()};
 }
 
-/// Sends the newest message with other targets, without limits of its own, and with a wrong cycle
-/// or session.
+/// Sends the newest message with other targets, without limits, and with a wrong cycle or session.
 template <class Message>
 void Forger::forge_motion(const std::deque<Heard>& heard, const std::string& channel, Time now) {
   const auto cycle = cycle_at(now);
@@ -176,7 +176,8 @@ void Forger::forge_command(Time now) {
   for (std::size_t i = 0; i < command->signals.size(); ++i) {
     const auto signal = static_cast<SignalIndex>(command->signals[i]);
     if (plan_.layout.signals[signal].object.index != 0x607A) continue;
-    command->values[i] = (command->values[i] & ~low_bits) | nobody;  // stays within every limit
+    // The value stays within every limit.
+    command->values[i] = (command->values[i] & ~low_bits) | nobody;
     forged_(signal, command->values[i]);
   }
   publish(channels_.command, encode(*command, buffer_));

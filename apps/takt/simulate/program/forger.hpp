@@ -13,10 +13,10 @@
 
 namespace takt {
 
-/// A program that receives every message and sends messages that nobody may obey: old messages once
-/// more, commands and motions computed from no cycle, from a future cycle or for another session,
-/// images of a future cycle, and random bytes. The forger learns only from genuine messages, and a
-/// forged cycle is always far from the true one.
+/// A program that receives every message and sends messages that must have no effect: old messages
+/// once more, commands and motions computed from no cycle, from a future cycle or for another
+/// session, images of a future cycle, and random bytes. The forger learns only from genuine
+/// messages, and a forged cycle is always far from the true one.
 class Forger final : public Actor {
  public:
   /// Called with each forged position, which must never appear on the wire.

@@ -13,12 +13,12 @@ using namespace std::chrono_literals;
 
 constexpr Time message_period = 20ms;
 constexpr Time message_jitter = 10ms;
-constexpr Time busy_pause = 800ms;  // between two motions, at most
+constexpr Time busy_pause = 800ms;  // longest pause between two motions
 constexpr Time calm_pause = 2s;     // minimum; a motion comes to rest in this pause
 constexpr double quick = 20'000;    // counts/s; of all axes without a lower limit
 constexpr double quick_rise = 0.1;  // s until the velocity is reached
 constexpr double jerk_rise = 0.05;  // s until the acceleration is reached
-constexpr double reach_time = 3.0;  // s of a quick motion to the farthest target
+constexpr double reach_time = 3.0;  // duration in s of a quick motion to the farthest target
 constexpr double part_of_range = 0.5;
 constexpr double near = 0.1;  // part of the reach within which most targets are
 constexpr Time longest_path = 8s;
@@ -111,8 +111,8 @@ void MotionCommander::see(SignalIndex target, std::int64_t counts) noexcept {
   }
 }
 
-/// The targets of a rival are farther away than those of any other program, so that its axes stop
-/// at one of them only if it has moved them.
+/// The targets of a rival are farther away than those of any other program, so that its axes come
+/// to rest at such a target only if the rival has moved them.
 std::int64_t MotionCommander::target_of(const Axis& axis) {
   const double sign = random_.chance(0.5) ? 1 : -1;
   double counts = sign * share(0) * axis.reach;

@@ -24,7 +24,7 @@ class MotionCommander {
   /// `nodes` are those of the program, in the order of BusPlan::nodes.
   MotionCommander(const BusPlan& plan, const std::vector<bool>& nodes, unsigned number);
 
-  /// Begins as a new process.
+  /// Begins anew, as a new process of the program.
   void start(sim::Random random);
   /// Returns the next message if it is due. The caller fills in the fields for the sender and the
   /// time. A message of the kind "gear" has to be sent as gear() returns it, and one of the kinds
@@ -37,12 +37,12 @@ class MotionCommander {
   motion_stream_t stream(const motion_command_t& command) const;
   /// Returns the time of the newest point of the present stream, from its begin on.
   Time points_until() const noexcept { return path_.sent_until(); }
-  /// The target position that the drive has at present, in counts.
+  /// Takes the present target position of the drive, in counts.
   void see(SignalIndex target, std::int64_t counts) noexcept;
   /// From now on each message is a stop of all axes.
   void leave() noexcept { leaves_ = true; }
   bool has_axes() const noexcept { return !axes_.empty(); }
-  /// Returns true if this output is a target position or a velocity offset of one of the axes.
+  /// Returns true if this output is the target position or a velocity offset of one of the axes.
   bool leads(SignalIndex output) const noexcept;
 
  private:
@@ -51,7 +51,7 @@ class MotionCommander {
     std::string node{};
     double scale = 1.0;         ///< scale of the target position
     double offset = 0.0;        ///< offset of the target position
-    double speed = 0.0;         ///< a quick motion, in counts/s
+    double speed = 0.0;         ///< velocity of a quick motion, in counts/s
     double acceleration = 0.0;  ///< acceleration of a quick motion, in counts/s^2
     double reach = 0.0;         ///< farthest target, in counts
     bool limited = false;       ///< `limits:` has a velocity and an acceleration

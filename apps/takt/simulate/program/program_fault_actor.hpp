@@ -19,7 +19,7 @@ using VirtualApplications = std::vector<std::unique_ptr<VirtualApplication>>;
 /// Applies the program faults of a fault file to the programs of a run.
 class ProgramFaultActor final : public Actor {
  public:
-  /// The objects that the faults act on. Each application has a rival with the same name.
+  /// The parts of the run on which the faults act. Each application has a rival with the same name.
   struct Cast {
     VirtualLcm& lcm;
     VirtualDaemon& daemon;
@@ -47,7 +47,7 @@ class ProgramFaultActor final : public Actor {
   Cast cast_;
   Agenda agenda_;
   bool daemon_dies_ = false;
-  Time restart_ = never;  // when the daemon starts again
+  Time restart_ = never;  // time at which the daemon starts again
 };
 
 }  // namespace takt

@@ -14,13 +14,16 @@ using namespace std::chrono_literals;
 constexpr std::size_t application_room = 300;  // messages
 constexpr std::int64_t stride = 16;            // counts per command; low bits identify the program
 constexpr std::int64_t downwards = 8;          // the low bit that marks a falling position
-constexpr std::int64_t most_push = 100;        // per mille of the rated torque
-constexpr std::int64_t push_velocity = 4;      // counts per second for each unit of push
-constexpr std::uint64_t images_a_reset = 60;   // between fault resets, which take several images
+// Largest magnitude of the push, per mille of the rated torque.
+constexpr std::int64_t most_push = 100;
+constexpr std::int64_t push_velocity = 4;  // counts per second for each unit of push
+// Number of images between fault resets, which take several images.
+constexpr std::uint64_t images_a_reset = 60;
 constexpr std::uint16_t from_target_to_offset = 0x60B0 - 0x607A;
-constexpr double turn_before = 2000;   // distance from a limit, in counts
-constexpr Time longest_deafness = 3s;  // the layout is published once a second
-constexpr Time longest_turn = 15s;     // longest turn with motions
+constexpr double turn_before = 2000;  // distance from a limit, in counts
+// Longest time in which images come and none is used; the layout is published once a second.
+constexpr Time longest_deafness = 3s;
+constexpr Time longest_turn = 15s;  // longest turn with motions
 constexpr Time longest_set_points = 4s;
 constexpr Time leaving_time = 2s;       // time in which the motions of a program come to rest
 constexpr Time talkative_time = 500ms;  // time in which the first motion has begun
@@ -159,7 +162,7 @@ void VirtualApplication::judge_hearing(Time now) {
 
 void VirtualApplication::follow_image() {
   axes_.on_image(input_);
-  // Set-points that follow begin where the motions have led the axes.
+  // Set-points that follow motions begin at the positions to which the motions have moved the axes.
   if (turn_ != Turn::set_points) axes_.set_positions(axes_.sent_positions());
   const bool resets = ++images_ % images_a_reset == 0;
   for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
@@ -275,7 +278,7 @@ void VirtualApplication::count_on(command_t& command) {
   jump_ = 0;
 }
 
-/// Removes the outputs that the motions lead.
+/// Removes the outputs that the motions control.
 void VirtualApplication::leave_motions(command_t& command) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < command.signals.size(); ++i) {

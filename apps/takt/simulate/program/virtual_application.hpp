@@ -29,8 +29,8 @@ struct CommandedMotion {
   const motion_command_t& command;
   Time computed_from{};  ///< SYNC time of the image that the program has seen
   Time points_until{};   ///< time of the newest point of a stream, from the begin of the stream on
-  const motion_gear_t* gear = nullptr;      ///< the message, if it is one about a gear
-  const motion_stream_t* stream = nullptr;  ///< the same for a stream
+  const motion_gear_t* gear = nullptr;      ///< the message if it is about a gear
+  const motion_stream_t* stream = nullptr;  ///< the message if it is about a stream
 };
 
 struct ApplicationOptions {
@@ -41,13 +41,14 @@ struct ApplicationOptions {
 
   /// Called with each command that is sent and the SYNC time of the image it was computed from.
   std::function<void(const command_t& command, Time computed_from)> commanded{};
-  /// The same for a message about motions.
+  /// Called with each message about motions that is sent.
   std::function<void(const CommandedMotion& motion)> motion_commanded{};
   /// Called when the program gives up its outputs.
   std::function<void(Time now)> released{};
   /// Called if the program has received images for a long time and could use none of them.
   std::function<void(const std::string& what)> deaf{};
-  /// For tests: returns the instance that the program uses. `own` is its random one.
+  /// For tests: returns the instance that the program uses. `own` is the random instance of the
+  /// program.
   std::function<std::int64_t(std::int64_t own)> instance{};
   /// For tests: returns false if the program shall ignore this image.
   std::function<bool(const image_t& image)> hears{};
@@ -133,7 +134,7 @@ class VirtualApplication final : public Actor {
     std::optional<std::int64_t> position;  // last commanded one; empty while not enabled
     bool down = false;
     std::int64_t push = 0;   // target torque; the target velocity is a multiple of it
-    bool weaker = false;     // `push` falls
+    bool weaker = false;     // `push` decreases
     std::int64_t apart = 0;  // counts by which target velocity and torque have jumped
     std::int64_t shift = 0;  // position offset
   };

@@ -48,7 +48,7 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   void on_round(RoundHook on_round) { round_hook_ = std::move(on_round); }
   /// For tests: changes each command before the front thread receives it.
   void rewrite(RewritingTransport::Rewrite rewrite) { transport_.rewrite(std::move(rewrite)); }
-  /// The same for each message about motions.
+  /// For tests: changes each message about motions before the front thread receives it.
   void rewrite(RewritingTransport::RewriteMotion rewrite) {
     transport_.rewrite(std::move(rewrite));
   }
@@ -100,7 +100,8 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   const Clocks& clocks_;  // clocks of the front thread
   sim::Random random_;
   VirtualEndpoint& lcm_;
-  RewritingTransport transport_;  // what the front thread sees of `lcm_`
+  // Transport of the front thread, which passes on the messages of `lcm_`.
+  RewritingTransport transport_;
   Hears hears_;
   RoundHook round_hook_;
   std::int64_t session_ = 0;

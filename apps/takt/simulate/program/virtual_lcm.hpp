@@ -37,8 +37,8 @@ class VirtualEndpoint final : public Transport {
   bool good() const override { return true; }
   std::string url() const override { return "virtual"; }
 
-  /// Arrival time of the oldest message in the queue, which may be in the future; `never` if the
-  /// queue is empty.
+  /// Returns the arrival time of the oldest message in the queue, which may be in the future;
+  /// `never` if the queue is empty.
   Time next_arrival() const noexcept { return waiting_.empty() ? never : waiting_.front().arrival; }
   /// Discards all waiting messages and subscriptions, as the end of the process does.
   void close();

@@ -13,8 +13,8 @@ namespace takt::smooth {
 namespace {
 
 constexpr std::size_t fewest_set_points = 16;
-constexpr double longest_stride = 1000;    // SYNCs from one set-point to the next
-constexpr std::size_t reach = 4;           // cycles before and behind a motion that belong to it
+constexpr double longest_stride = 1000;  // SYNCs from one set-point to the next
+constexpr std::size_t reach = 4;  // number of cycles before and after a motion that belong to it
 constexpr std::size_t longest_stair = 50;  // cycles with one value within a motion
 
 Time usual_interval(const std::vector<Sample>& samples) {
@@ -67,7 +67,8 @@ class CycleBuilder {
     return list;
   }
 
-  /// Returns which of every `stride` SYNCs ends a cycle: the one that most set-points precede.
+  /// Returns the offset, within `stride` SYNCs, of the SYNC that ends a cycle. It is the SYNC
+  /// before which most set-points come.
   std::uint64_t best_offset(const std::vector<std::uint64_t>& numbers) const {
     if (out_.stride == 1) return 0;
     std::vector<std::uint64_t> hits(out_.stride);
@@ -126,7 +127,7 @@ class CycleBuilder {
     for (Cycle& cycle : out_.cycles) {
       cycle.active = is_enabled(status.at(cycle.begin)) && is_cyclic(mode, asked, cycle.begin);
     }
-    std::optional<std::size_t> before;  // the step before
+    std::optional<std::size_t> before;  // cycle of the previous step
     for (std::size_t i = 1; i < out_.cycles.size(); ++i) {
       if (out_.step(i) == 0 && !out_.cycles[i].varied) continue;
       const bool one_motion = before && i - *before <= longest_stair;

@@ -15,7 +15,7 @@ struct Sample {
   std::int64_t value = 0;
 };
 
-/// What the settings of a drive say about its set-points. A value is empty if it is not known.
+/// The settings of a drive that concern its set-points. A value is empty if it is not known.
 struct AxisSettings {
   std::optional<unsigned> transmission{};  ///< type of the RPDO with the set-point, 0..255
   std::optional<Time> interpolation{};     ///< 0x60C2
@@ -31,7 +31,7 @@ struct AxisRecord {
   std::uint8_t node = 0;
   unsigned axis = 0;         ///< counts from 0
   ObjectKey set_point{};     ///< object of the set-point: 607A, 60C1:01 or 60FF of the axis
-  CobId set_point_id{};      ///< RPDO that carries it
+  CobId set_point_id{};      ///< RPDO that carries the set-point
   bool by_velocity = false;  ///< the set-point is a velocity
   AxisSettings settings{};
   std::vector<Sample> set_points{};
@@ -49,10 +49,10 @@ struct WireFrame {
   std::uint16_t bits = 0;  ///< length of the frame on the wire with average bit stuffing
 };
 
-/// Everything of a recording that matters for the smoothness of the axes. Times count from the
+/// The data of a recording from which the smoothness of the axes is judged. Times count from the
 /// beginning of the recording and always increase, also if several frames have one time stamp.
 struct BusRecord {
-  std::string source{};  ///< file, or what was listened to
+  std::string source{};  ///< path of the file, or the interface or bus that was recorded
   Time length{};
   Time resolution{};       ///< resolution of the time stamps
   bool with_times = true;  ///< false: the times of the set-points within their cycles are not known

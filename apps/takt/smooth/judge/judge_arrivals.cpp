@@ -70,7 +70,7 @@ struct Rhythm {
   double slips = 0;    // periods by which set-points and SYNC diverge in the recording
   double focus = 1;    // 1: always at one place between two SYNCs; 0: anywhere
   double steady = 0;   // share of intervals that are near the usual one
-  Time usual_phase{};  // after SYNC
+  Time usual_phase{};  // usual time after SYNC
 };
 
 Rhythm rhythm_of(const AxisView& view) {

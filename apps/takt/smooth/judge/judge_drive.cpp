@@ -105,7 +105,8 @@ void judge_delay(const AxisView& view, const Following& following, Findings& fin
 }
 
 void judge_ripple(const Following& following, Findings& findings) {
-  // 606C itself is noisy: many drives compute it from few increments of the encoder.
+  // The tolerance for 606C is larger because 606C is noisy: many drives compute it from few
+  // increments of the encoder.
   const double allowed = following.by_velocity ? 0.12 : 0.06;
   if (following.ripple < allowed || following.ripple_units < 2) return;
   const std::string frequency =

@@ -18,8 +18,8 @@ struct Zigzag {
   std::int64_t apart = 0;  // increments between the two series
 };
 
-/// Counts in the cycles in motion. The values of two senders alternate between two series. The
-/// values of one sender do not, whatever its jitter is.
+/// Counts the zigzags in the cycles in motion. The values of two senders alternate between two
+/// series. The values of one sender do not, whatever its jitter is.
 Zigzag count_zigzags(const AxisView& view) {
   Zigzag result;
   const auto& samples = view.axis.set_points;

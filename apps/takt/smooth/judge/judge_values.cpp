@@ -15,7 +15,7 @@ constexpr std::uint64_t fewest_of_beat = 6;
 /// Cycles in motion whose value is not one usual step after the previous one.
 struct Strange {
   std::vector<std::size_t> repeats;  // the value is repeated, and then the usual step follows
-  std::vector<std::size_t> doubles;  // the value is repeated, and a larger step makes up for it
+  std::vector<std::size_t> doubles;  // the value is repeated, and a larger step compensates for it
   std::vector<std::size_t> skips;    // the step is twice the usual one
 };
 
@@ -54,7 +54,7 @@ Strange find_strange(const AxisCycles& cycles) {
   return out;
 }
 
-/// Returns the usual distance of the places if most of them are that far apart, else 0.
+/// Returns the usual distance between the places if most of them have this distance, else 0.
 double regular_distance(const std::vector<std::size_t>& places) {
   if (places.size() < fewest_of_beat) return 0;
   std::vector<double> apart;

@@ -8,7 +8,7 @@
 
 namespace takt::smooth {
 
-/// An axis as the judges see it.
+/// The data of an axis for the judges.
 struct AxisView {
   const BusRecord& bus;
   const SyncGrid& sync;

@@ -93,7 +93,7 @@ std::vector<Velocity> velocities_of(const std::vector<Pair>& velocities) {
 /// Differences between the velocities and those of the set-points `lag` cycles before.
 struct Residuals {
   std::vector<double> values;
-  double factor = 1;  // between the units of both
+  double factor = 1;  // factor between the units of the two velocities
 };
 
 Residuals residuals(const AxisCycles& cycles, const std::vector<Velocity>& velocities,
@@ -122,8 +122,8 @@ double mean_square(std::span<const double> values) {
                         : sum / static_cast<double>(values.size());
 }
 
-/// Returns the frequency at which the residuals repeat themselves, cycles^-1, or 0. The newest few
-/// thousand of them show it.
+/// Returns the frequency of a repetition in the residuals, in 1/cycle, or 0. Only the newest few
+/// thousand residuals are used.
 double repetition(std::span<const double> values) {
   values = values.last(std::min(values.size(), newest_kept));
   const double whole = mean_square(values) * static_cast<double>(values.size());

@@ -7,9 +7,9 @@ namespace takt::smooth {
 
 /// The relation between the actual position (6064) and the set-points.
 struct Following {
-  std::size_t cycles = 0;    ///< number of cycles in which set-point and 6064 are known
-  Time delay{};              ///< following error divided by the velocity
-  double fit = 0;            ///< how well the velocity explains the following error, 0..1
+  std::size_t cycles = 0;  ///< number of cycles in which set-point and 6064 are known
+  Time delay{};            ///< following error divided by the velocity
+  double fit = 0;          ///< measure of how well the velocity explains the following error, 0..1
   double error_at_peak = 0;  ///< following error at the usual largest velocity, increments
   double ripple = 0;         ///< ripple of the actual velocity around that of the set-points, 0..1
   double ripple_units = 0;   ///< `ripple` in units of 6064 per cycle, or in units of 606C

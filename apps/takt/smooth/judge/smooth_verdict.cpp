@@ -53,7 +53,7 @@ void leave_out_consequences(const Findings& of_bus, Findings& findings) {
       return std::ranges::find(rule.follows, finding.cause) != rule.follows.end();
     });
   }
-  // The drive is the cause only of what its set-points do not explain.
+  // The drive counts as a cause only if its set-points do not explain the finding.
   const auto is_of_set_points = [](const Finding& finding) {
     return finding.cause >= two_senders && finding.cause <= coarse;
   };

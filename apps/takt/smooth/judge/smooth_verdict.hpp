@@ -17,12 +17,12 @@ struct AxisVerdict {
   unsigned axis = 0;  ///< counts from 0
   ObjectKey set_point{};
   CobId set_point_id{};
-  std::uint64_t set_points = 0;  ///< frames
-  std::uint64_t cycles = 0;      ///< all
+  std::uint64_t set_points = 0;  ///< number of frames with the set-point
+  std::uint64_t cycles = 0;      ///< number of all cycles
   std::uint64_t moving = 0;      ///< cycles in motion
   std::uint64_t without = 0;     ///< cycles in motion without a set-point
-  std::uint64_t with_two = 0;    ///< cycles in motion with more than one
-  Time period{};                 ///< between two set-points as they should come
+  std::uint64_t with_two = 0;    ///< cycles in motion with more than one set-point
+  Time period{};                 ///< nominal time between two set-points
   Time interpolation{};          ///< 60C2; 0 = not known
   double peak_velocity = 0;      ///< peak velocity of the set-points, increments per second
   std::vector<Finding> findings{};
@@ -40,7 +40,7 @@ struct Verdict {
   bool rough() const;
 };
 
-/// Finds what makes the axes of a recording rough. A cause that follows from another one is left
+/// Finds the causes of rough motions in a recording. A cause that follows from another one is left
 /// out.
 Verdict judge(const BusRecord& bus);
 

@@ -48,7 +48,7 @@ Time usual_period(std::span<const Time> syncs, std::optional<Time> planned) {
   return alternate && steady_share(twofold, 0.06) > 0.9 ? pair : usual;
 }
 
-/// Returns the exact period: the median may be coarse if the time stamps are.
+/// Returns the exact period: the median is coarse if the time stamps are coarse.
 Time mean_period(const std::vector<Tick>& ticks, Time usual) {
   std::int64_t periods = 0;
   for (std::size_t i = 1; i < ticks.size(); ++i) periods += ticks[i].periods;
@@ -77,8 +77,8 @@ class GridBuilder {
 
  private:
   /// Returns how far a SYNC is from its place in an even grid, or from one period after the
-  /// previous SYNC. The smaller of both differences counts, because some producers keep a grid and
-  /// others only an interval.
+  /// previous SYNC. The smaller of the two differences counts, because some producers keep a grid
+  /// and others only an interval.
   Time off(Time when) const {
     return std::min(distance(when, place_ + grid_.period),
                     distance(when, grid_.ticks.back().when + grid_.period));

@@ -14,10 +14,10 @@ struct Tick {
   std::uint32_t periods = 1;
 };
 
-/// The SYNC of a recording: its period, and what is wrong with it.
+/// The SYNC of a recording: its period and its deviations.
 struct SyncGrid {
   Time period{};              ///< 0 if there is no SYNC
-  std::vector<Tick> ticks;    ///< without the surplus SYNCs
+  std::vector<Tick> ticks;    ///< ticks without the surplus SYNCs
   std::uint64_t missing = 0;  ///< periods without SYNC
   std::uint64_t surplus = 0;  ///< SYNCs that come in addition to one in each period
   Time first_missing{};

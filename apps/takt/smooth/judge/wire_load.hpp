@@ -6,7 +6,8 @@
 
 namespace takt::smooth {
 
-/// Returns the length of a frame on the wire with the space behind it, with average bit stuffing.
+/// Returns the length of a frame on the wire in bits, including the interframe space, with average
+/// bit stuffing.
 std::uint16_t wire_bits(const Frame& frame) noexcept;
 
 /// Returns the share of the time from `from` to `until` in which the wire was busy, 0..1. The bit

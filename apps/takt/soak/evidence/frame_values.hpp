@@ -15,8 +15,8 @@ inline constexpr std::uint64_t cyclic_synchronous_position = 8;
 /// Returns true if the drive is in Operation enabled.
 constexpr bool is_enabled(std::uint64_t statusword) noexcept { return (statusword & 0x6F) == 0x27; }
 
-/// The value of a signal in a frame that may be one of these PDOs; empty if the frame does not have
-/// it. A receiver ignores a frame that is shorter than its mapping.
+/// Returns the value of a signal in a frame that may be one of these PDOs; empty if the frame does
+/// not have it. A receiver ignores a frame that is shorter than its mapping.
 template <class Rows>
 std::optional<std::uint64_t> value_in(const BusPlan& plan, const Rows& rows, const Frame& frame,
                                       SignalIndex signal) {
@@ -28,14 +28,14 @@ std::optional<std::uint64_t> value_in(const BusPlan& plan, const Rows& rows, con
   return std::nullopt;
 }
 
-/// The value of an input in a TPDO.
+/// Returns the value of an input in a TPDO.
 inline std::optional<std::uint64_t> input_in(const BusPlan& plan, const Frame& frame,
                                              SignalIndex input) {
   if (plan.layout.signals[input].output) return std::nullopt;
   return value_in(plan, plan.pdos.tpdos, frame, input);
 }
 
-/// The value of an output in an RPDO.
+/// Returns the value of an output in an RPDO.
 inline std::optional<std::uint64_t> output_in(const BusPlan& plan, const Frame& frame,
                                               SignalIndex output) {
   if (!plan.layout.signals[output].output) return std::nullopt;

@@ -59,7 +59,7 @@ void HomingJudge::heard(const Frame& frame, Time now) {
   }
 }
 
-/// The drive obeys the set-point that it has got before it changes to this mode.
+/// Before the drive changes to this mode, it follows the set-point that it has received.
 void HomingJudge::take_inputs(std::size_t axis, const Frame& frame, Time now) {
   const MotionAxis& signals = signals_[axis];
   Axis& own = axes_[axis];

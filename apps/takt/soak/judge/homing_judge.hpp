@@ -21,7 +21,7 @@ class HomingJudge {
   /// `velocity` is the largest one that programs command, in the unit of each axis per second.
   HomingJudge(const BusPlan& plan, Verdict& verdict, double velocity);
 
-  /// Call this when the daemon is a new process, which knows of no run.
+  /// Call this when a new process of the daemon begins, which has seen no homing run.
   void begin_anew(Time now);
   /// Call this with each frame on the wire, at its end.
   void heard(const Frame& frame, Time now);
@@ -39,14 +39,15 @@ class HomingJudge {
  private:
   struct Axis {
     std::uint64_t statusword = 0;
-    std::uint64_t mode = 0;             ///< 6061
-    double position = 0.0;              ///< 6064, in counts
-    std::optional<double> target{};     ///< newest set-point of this boot, in counts
-    Time sent_at{};                     ///< when the target was sent
-    bool obeys = false;                 ///< the drive follows set-points of position
-    std::optional<Time> homed_since{};  ///< since the end of a good run; empty: not homed
-    Time unhomed_since{};               ///< since when it is not homed
-    Time heard{};                       ///< last TPDO
+    std::uint64_t mode = 0;          ///< 6061
+    double position = 0.0;           ///< 6064, in counts
+    std::optional<double> target{};  ///< newest set-point of this boot, in counts
+    Time sent_at{};                  ///< time at which the target was sent
+    bool obeys = false;              ///< the drive follows set-points of position
+    /// End of the good run since which the axis is homed; empty: not homed.
+    std::optional<Time> homed_since{};
+    Time unhomed_since{};  ///< time since which the axis is not homed
+    Time heard{};          ///< time of the last TPDO
   };
 
   void take_inputs(std::size_t axis, const Frame& frame, Time now);

@@ -18,9 +18,10 @@ using namespace std::chrono_literals;
 
 constexpr std::uint16_t axis_objects = 0x800;  // distance of two axes in a device, CiA 402
 constexpr std::uint16_t first_axis_objects = 0x6000;
-constexpr double cycles_behind = 4;           // age of the actual position that the master knows
-constexpr std::size_t fewest_remembered = 8;  // positions kept even if they are old
-constexpr double real_rounding = 0x1p-20;     // relative rounding of a value of type REAL
+constexpr double cycles_behind = 4;  // age of the actual position that the master knows
+// Number of positions that are kept even if they are old.
+constexpr std::size_t fewest_remembered = 8;
+constexpr double real_rounding = 0x1p-20;  // relative rounding of a value of type REAL
 
 double number(const Signal& signal, std::uint64_t bits) noexcept {
   if (signal.type == DataType::real32) {
@@ -131,7 +132,7 @@ bool LimitJudge::is_actual(SignalIndex signal, std::uint64_t bits) const noexcep
   return std::ranges::find(place.actual, position, &Seen::position) != place.actual.end();
 }
 
-/// Returns true if the drive certainly follows set-points and the master certainly knows it.
+/// Returns true if the drive certainly follows set-points and the master certainly knows that.
 bool LimitJudge::follows(const Place& place) const noexcept {
   return place.doubt == 0 && place.enabled && (place.enables || !place.controlword);
 }
@@ -153,8 +154,8 @@ bool LimitJudge::in_force(const Place& place) const noexcept {
   return !mode || takt::follows(place.limit->quantity, *mode);
 }
 
-/// Returns true if only the range counts, because positions do not lead the axis, or because the
-/// drive has ramps of its own.
+/// Returns true if only the range is checked, because the axis does not follow positions, or
+/// because the drive has ramps of its own.
 bool LimitJudge::in_profile(const Place& place) const noexcept {
   return ramps(place) || (place.limit->quantity == AxisQuantity::position && !in_force(place));
 }
@@ -179,7 +180,8 @@ Way LimitJudge::way_to(const Place& place, double value, Time now) const noexcep
           .cycles = cycles_between(place.when, now, plan_.cycle.period, most_cycles_)};
 }
 
-/// Returns how far from its actual value an axis may be sent in so many cycles, in counts.
+/// Returns the largest distance between a set-point and the actual value of an axis after this
+/// number of cycles, in counts.
 double LimitJudge::reach(const Place& place, double cycles) const noexcept {
   const double rate = std::min(place.limit->step, place.limit->rate);
   if (rate != OutputLimit::none) return std::ceil(rate * cycles);
@@ -267,7 +269,7 @@ void LimitJudge::judge(Time now) {
   }
 }
 
-/// Returns the value that the limits of an output hold for: the sum with its offset if the drive
+/// Returns the value to which the limits of an output apply: the sum with its offset if the drive
 /// adds both. The result is empty if they hold for a sum to which the output belongs, or if the
 /// mode has changed so recently that this is uncertain.
 std::optional<double> LimitJudge::limited_value(const Place& place) const noexcept {
@@ -282,8 +284,8 @@ std::optional<double> LimitJudge::limited_value(const Place& place) const noexce
   return value + added * (offset.scale / signal_of(place).scale);
 }
 
-/// Returns true if the master may have sent the value without a command. Of a sum, this must be
-/// true of each part that is new.
+/// Returns true if the master may have sent the value without a command. For a sum, this must be
+/// true for each part that is new.
 bool LimitJudge::is_own(const Place& place) const noexcept {
   const auto own = [&](SignalIndex signal) {
     return is_own_value(plan_.layout.signals[signal], sent_[signal - plan_.layout.inputs]);

@@ -31,12 +31,12 @@ class LimitJudge {
   /// Call this when the master passes a value of an output to the interface. `begins` is true if
   /// the output was not sent in the last cycles.
   void sent(SignalIndex signal, std::uint64_t bits, bool begins);
-  /// Judges the values that were sent. To be called when the master has passed all its frames.
+  /// Judges the values that were sent. Call this when the master has passed all its frames.
   void judge(Time now);
   /// Call this with each frame on the wire. The sender does not matter, because the master cannot
   /// know it.
   void heard(const Frame& frame);
-  /// Call this when the daemon is a new process, which has sent nothing so far.
+  /// Call this when a new process of the daemon begins, which has sent nothing so far.
   void begin_anew();
   /// Returns true if this target equals one of the newest actual positions on the wire.
   bool is_actual(SignalIndex signal, std::uint64_t bits) const noexcept;
@@ -48,7 +48,7 @@ class LimitJudge {
     Time when{};
     double position = 0;
   };
-  /// What was sent of an output, or of its offset, since the newest judge().
+  /// The frames of an output, or of its offset, that were sent since the newest judge().
   enum class Change : std::uint8_t { none, value, begins };
   struct Place {
     const OutputLimit* limit = nullptr;
@@ -56,7 +56,7 @@ class LimitJudge {
     std::optional<double> value{};             ///< value sent last
     double target = 0;                         ///< the part of `value` that is no offset
     double offset = 0;                         ///< the offset in `value`, in its own counts
-    Time when{};                               ///< when `value` was first sent
+    Time when{};                               ///< time at which `value` was first sent
     std::optional<Way> last_way{};  ///< distance to `value`; empty if the drive did not follow
     std::int64_t mode = 0;          ///< 6060 as sent, otherwise 6061 as received
     bool ramped = false;            ///< `value` was sent in a mode in which the drive has ramps

@@ -17,8 +17,8 @@ void OutputJudge::commanded(SignalIndex signal, std::int64_t value, std::uint32_
                             Time now) {
   const std::size_t output = signal - plan_.layout.inputs;
   const std::uint64_t mask = mask_of(plan_.layout.signals[signal].bits);
-  // Two cycles and a quarter on top: one until the bus thread takes the command, one in which it is
-  // sent late, and a quarter before that.
+  // The time to live is extended by two cycles and a quarter: one until the bus thread takes the
+  // command, one in which the command is sent late, and a quarter before that.
   commands_[output][count_[output]++ % depth] = {
       .value = static_cast<std::uint64_t>(value) & mask,
       .until = now + (time_to_live + 2) * plan_.cycle.period + plan_.cycle.period / 4};

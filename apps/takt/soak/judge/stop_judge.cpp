@@ -49,7 +49,7 @@ void StopJudge::judge(StopResult result) {
   for (const Axis& axis : axes_) {
     if (axis.blamed || !axis.was_powered) continue;
     ++confirmed_;
-    // Twice the window allows for rounding and for a motor that coasts between two looks.
+    // Twice the window allows for rounding and for a motor that coasts between two checks.
     const bool moved = axis.speed_then > 2 * axis.plan->velocity_window;
     if (!moved && !axis.powered) continue;
     verdict_.report_violation(

@@ -80,7 +80,7 @@ void WireJudge::judge(SignalIndex index, std::uint64_t value, Time now) {
   const auto found = output.known.find(value);
   const Known* const known = found == output.known.end() ? nullptr : &found->second;
   const bool fresh = known != nullptr && now <= known->until;
-  // While an axis does not obey, the master itself sends its actual position.
+  // While an axis does not follow its set-points, the master sends its actual position.
   const bool actual = is_target(signal) && limits_.is_actual(index, value);
   if (is_target(signal)) {
     const auto counts = static_cast<std::int32_t>(static_cast<std::uint32_t>(value));

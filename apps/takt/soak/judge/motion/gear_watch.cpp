@@ -9,7 +9,7 @@ namespace {
 
 // Number of cycles with a constant difference while the axis moves.
 constexpr unsigned clear_cycles = 100;
-constexpr double clear_way = 50.0;  // counts by which it moves
+constexpr double clear_way = 50.0;  // counts by which the axis moves
 constexpr double slack = 0.1;       // counts
 
 }  // namespace
@@ -45,7 +45,7 @@ Time GearWatch::longest_phase_in(double difference) const {
   return task_.phase_in + std::chrono::duration_cast<Time>(seconds);
 }
 
-/// Each of the two positions is rounded to a count.
+/// A deviation is permitted, because each of the two positions is rounded to a count.
 bool GearWatch::keeps(double difference) const noexcept {
   const double rounding = (1.0 + std::abs(task_.ratio)) / 2;
   if (task_.phase && std::abs(difference - *task_.phase) > rounding + slack) return false;

@@ -6,18 +6,19 @@
 
 namespace takt::soak {
 
-/// Compares the target positions of an axis with those of the axis that it follows. Once it is
-/// locked, its position minus the ratio times that of its leader is constant. It has to be locked
-/// after the longest time of its phase-in. It is also known to be locked if it has moved with a
-/// constant difference for some time.
+/// Compares the target positions of an axis with those of the axis that it follows. Once the axis
+/// is locked, its position minus the ratio times that of its leader is constant. The axis has to be
+/// locked after the longest time of its phase-in. It is also considered locked if it has moved with
+/// a constant difference for some time.
 class GearWatch {
  public:
-  /// What the gear prescribes.
+  /// The values that the gear prescribes.
   struct Task {
     double ratio = 1.0;             ///< counts of the axis in a count of the leader
-    std::optional<double> phase{};  ///< the difference in counts; empty: the one that it has
+    std::optional<double> phase{};  ///< difference in counts; empty: the difference at the begin
     Time phase_in{};                ///< longest time until the velocities are equal
-    double catch_up = 1.0;          ///< counts/s by which it can be faster than its leader
+    /// Velocity in counts/s by which the axis can be faster than its leader.
+    double catch_up = 1.0;
   };
   /// Positions of a cycle, in counts.
   struct Positions {
@@ -47,8 +48,8 @@ class GearWatch {
   void take(double difference, double own, Time now) noexcept;
 
   Task task_;
-  Time since_;                   // the leader has been such that the axis can follow it
-  std::optional<Time> lock_at_;  // the axis is locked by then
+  Time since_;                   // time since which the axis can follow its leader
+  std::optional<Time> lock_at_;  // time by which the axis is locked
   std::optional<Span> span_;     // time span with a constant difference
   std::optional<double> last_own_;
   bool is_locked_ = false;

@@ -10,9 +10,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double cruise_cycles = 8;   // number of cycles in which the velocity is measured
-constexpr double least_way = 50;      // counts; an axis with less is not watched
-constexpr unsigned late_cycles = 10;  // an axis that has not moved so much later has not begun
+constexpr double cruise_cycles = 8;  // number of cycles in which the velocity is measured
+constexpr double least_way = 50;     // counts; an axis with a shorter way is not watched
+// Number of cycles after which an axis that has not moved has not begun.
+constexpr unsigned late_cycles = 10;
 
 double seconds(Time time) noexcept { return std::chrono::duration<double>(time).count(); }
 
@@ -49,8 +50,8 @@ void GroupJudge::forget(std::size_t axis) {
   });
 }
 
-/// An axis that has reached its velocity is where it would be if it had jumped to this velocity in
-/// the middle of its acceleration.
+/// When an axis has reached its velocity, its position is the same as if its velocity had jumped in
+/// the middle of the acceleration.
 void GroupJudge::look(Begin& axis, Group& group, double value, Time now) const {
   axis.value = value;
   const MotionBounds& bounds = axis.member.bounds;

@@ -25,11 +25,11 @@ class GroupJudge {
 
   /// Watches a group that was commanded now.
   void watch(const std::vector<Member>& members);
-  /// Forgets the groups of this axis: something else moves it, or its drive does not follow.
+  /// Forgets the groups of this axis: another motion moves it, or its drive does not follow.
   void forget(std::size_t axis);
   /// Forgets all groups, because cycles were left out.
   void forget_all() { groups_.clear(); }
-  /// The axis has got this set-point, in counts.
+  /// Call this when the axis has received this set-point, in counts.
   void sent(std::size_t axis, double value, Time now);
   std::uint64_t judged() const noexcept { return judged_; }  ///< groups whose begin was seen
 
@@ -37,7 +37,7 @@ class GroupJudge {
   struct Begin {
     Member member{};
     double value = 0;  ///< newest set-point
-    /// A set-point at which the velocity was reached, and when it was sent.
+    /// A set-point at which the velocity was reached, and the time at which it was sent.
     std::optional<double> cruises_at{};
     Time cruises_since{};
     std::optional<Time> begun{};

@@ -31,7 +31,8 @@ void HolderJudge::moved(std::size_t node_index, const Move& move, Time now) {
                     std::countr_zero(holder.sender), (holder.until - now) / 1us));
   }
   if (holder.sender != move.sender) holder = {.sender = move.sender, .until = {}};
-  // A value from before the release may come to the wire later; it does not hold the node.
+  // A value that was computed before the release may come to the wire later. It does not hold the
+  // node.
   if (move.computed_from > released_[static_cast<std::size_t>(std::countr_zero(move.sender))]) {
     holder.until = std::max(holder.until, move.held_until);
   }

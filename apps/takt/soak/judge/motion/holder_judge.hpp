@@ -10,15 +10,15 @@ namespace takt::soak {
 /// A set of senders of commands: one bit for each program.
 using SenderBit = std::uint32_t;
 
-/// Knows who holds each node, from what has reached the wire, and checks that no sender moves what
-/// another one holds.
+/// Determines from the frames on the wire which sender holds each node, and checks that no sender
+/// moves a node that another one holds.
 class HolderJudge {
  public:
   /// A movement that a message of this sender has caused.
   struct Move {
     SenderBit sender = 0;
     Time computed_from{};  ///< SYNC time of the image that the message was computed from
-    Time held_until{};     ///< until then the message certainly gives the node to its sender
+    Time held_until{};     ///< time until which the message certainly gives the node to its sender
   };
 
   HolderJudge(const BusPlan& plan, Verdict& verdict);
@@ -26,7 +26,7 @@ class HolderJudge {
   void moved(std::size_t node_index, const Move& move, Time now);
   /// Call this when this sender has given up its outputs.
   void released(SenderBit sender, Time now);
-  /// Call this when the daemon is a new process: no sender holds the outputs.
+  /// Call this when a new process of the daemon begins. No sender holds the outputs then.
   void begin_anew();
   /// Notes that an axis of this sender has moved.
   void note_move(SenderBit sender, Time now);

@@ -92,7 +92,7 @@ void MotionJudge::begin_anew() {
   }
 }
 
-/// A SYNC that is missing or late delays the motions, or ends them.
+/// Evaluates a cycle. A SYNC that is missing or late delays the motions, or ends them.
 void MotionJudge::end_cycle(Time now) {
   std::vector<bool> follows;
   for (const Axis& axis : axes_) {
@@ -123,7 +123,7 @@ void MotionJudge::begin_cycle(Time now) {
   }
 }
 
-/// The first cycles after a failure are those in which the master may not know it.
+/// In the first cycles after a failure, the master may not know of the failure.
 void MotionJudge::judge_failure(std::size_t axis, Time now) {
   const PdoRow& row = plan_.pdos.tpdos[plan_.layout.signals[orders_.axes()[axis].statusword].row];
   const bool every_cycle = row.cyclic() && row.transmission == 1;
@@ -133,7 +133,7 @@ void MotionJudge::judge_failure(std::size_t axis, Time now) {
   groups_.forget(axis);
 }
 
-/// An axis that rests at the target of a program was moved by this program.
+/// Checks that an axis that rests at the target of a program was moved by this program.
 void MotionJudge::judge_rest(std::size_t axis) {
   Axis& own = axes_[axis];
   own.judged_rest = true;
@@ -152,10 +152,11 @@ void MotionJudge::judge_rest(std::size_t axis) {
        .computed_from = cause->computed_from,
        .held_until = cause->computed_from + cause->timeout - hold_tolerance * plan_.cycle.period},
       own.when);
-  if (!cause->creeps) orders_.arrived(axis, *cause);  // otherwise it may still end
+  if (!cause->creeps) orders_.arrived(axis, *cause);  // otherwise the motion may still end
 }
 
-/// If SYNC was missing in more than one period, the motions have ended at once.
+/// Takes a SYNC. If SYNC was missing in more than one period before, the motions have ended at
+/// once.
 void MotionJudge::sync_heard() noexcept {
   ++syncs_;
   if (cycles_without_sync_ > 2) late_cycles_ = cycles_after_late + 1;
@@ -192,7 +193,8 @@ void MotionJudge::sent(SignalIndex target, std::int64_t value, const Cause& caus
   paths_.sent(*found, counts, cause.by_set_point);
   const auto syncs = static_cast<unsigned>(std::min<std::uint64_t>(syncs_ - axis.syncs, 1000));
   axis.syncs = syncs_;
-  if (plan_.cycle.sync && syncs == 0 && axis.value == counts) return;  // the drive has not acted
+  // The drive has not yet followed.
+  if (plan_.cycle.sync && syncs == 0 && axis.value == counts) return;
   if (cause.begins) axis.doubt = state_doubt;
   groups_.sent(*found, counts, now);
   const bool follows = axis.enabled && axis.doubt == 0;
@@ -219,8 +221,9 @@ void MotionJudge::sent(SignalIndex target, std::int64_t value, const Cause& caus
   }
 }
 
-/// Each of the values is rounded to a count. From one SYNC to the next, an axis moves at most as
-/// far as its velocity limit allows in one period, however late the next SYNC is.
+/// Checks the distance of a set-point. Between two SYNCs, an axis moves at most as far as its
+/// velocity limit allows in one period, however late the second SYNC is. One count is added,
+/// because the values are rounded to counts.
 void MotionJudge::judge_way(std::size_t axis, const Way& way, unsigned syncs, Time now) {
   const auto bounds = orders_.bounds(axis, now);
   if (!bounds) return;

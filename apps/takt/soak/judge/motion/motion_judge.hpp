@@ -24,14 +24,14 @@ class MotionJudge {
 
   /// Call this when a program has sent this message to the present process of the daemon.
   void commanded(const SentMotion& sent, Time now);
-  /// Call this when the daemon is a new process.
+  /// Call this when a new process of the daemon begins.
   void begin_anew();
   /// Call this when the ordered stop begins: the master then commands the outputs itself.
   void begin_stop() {
     stops_ = true;
     paths_.disturbed(never);
   }
-  /// Call this if a fault of a program or of the daemon begins that may last until this time.
+  /// Call this when a fault of a program or of the daemon begins that may last until this time.
   void disturbed(Time until) { paths_.disturbed(until); }
   /// Call this when the master begins a cycle.
   void begin_cycle(Time now);
@@ -51,7 +51,7 @@ class MotionJudge {
   /// Returns true if a motion may explain the value of this output: a target position or a velocity
   /// offset.
   bool explains(SignalIndex output, Time now) const noexcept;
-  /// Returns true if this is a target position that motions have led in this run of the daemon.
+  /// Returns true if motions have set this target position in this run of the daemon.
   bool was_led(SignalIndex target) const noexcept;
   const MotionOrders& orders() const noexcept { return orders_; }
   /// Returns the number of motions that have come to rest at their targets.
@@ -63,14 +63,14 @@ class MotionJudge {
  private:
   struct Axis {
     std::optional<double> value{};  ///< newest target position, in counts
-    Time when{};                    ///< when `value` was first sent
-    Time sent_at{};                 ///< when the last frame was sent
+    Time when{};                    ///< time at which `value` was first sent
+    Time sent_at{};                 ///< time at which the last frame was sent
     std::optional<Way> last_way{};  ///< way of that frame; empty if the drive did not follow
     std::uint64_t syncs = 0;        ///< SYNCs on the wire until that frame
     bool enabled = false;           ///< the last statusword is that of an enabled drive
     unsigned doubt = 0;             ///< cycles in which the master may not know the state
     unsigned disabled_cycles = 0;   ///< cycles that have begun since the drive was disabled
-    unsigned silent_cycles = 0;     ///< SYNCs since its last statusword
+    unsigned silent_cycles = 0;     ///< number of SYNCs since the last statusword of the drive
     bool judged_rest = true;        ///< the rest at `value` was judged
   };
 

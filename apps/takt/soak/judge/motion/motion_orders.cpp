@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 constexpr unsigned cycles_kept_alive = 16;
 // Number of cycles from the end of a timeout to the last frame.
 constexpr unsigned cycles_to_the_wire = 6;
-constexpr Time oldest_message = 1s;  // an older one is refused
+constexpr Time oldest_message = 1s;  // older messages are refused
 constexpr Time usual_timeout = 500ms;
 constexpr Time longest_creep = 5s;   // longest time in which a slow axis moves by one count
 constexpr double usual_rise = 0.05;  // s until the acceleration is reached
@@ -118,8 +118,8 @@ void MotionOrders::add(const SentMotion& sent, const motion_goal_t& goal, std::s
   orders.push_back(order);
 }
 
-/// A missing beat delays a stream by a period. The points that are left may take twice their time,
-/// and those before may have taken a tenth more.
+/// A missing beat delays a stream by a period. The remaining points may take twice their time, and
+/// the points before may have taken a tenth more.
 void MotionOrders::take_points(const SentMotion& sent, OrderedMotion& order,
                                Time now) const noexcept {
   if (order.stream != sent.command.id || order.sender != sent.sender) return;
@@ -163,8 +163,8 @@ Time MotionOrders::end_of(std::size_t axis, const OrderedMotion& order) const no
   return std::min({silent, order.ended, order.points_end});
 }
 
-/// An axis that waits for others may move by less than a count in each second. One that follows
-/// moves again when its leader does.
+/// An axis that waits for others may move by less than a count in each second. An axis that follows
+/// a leader moves again when its leader moves.
 void MotionOrders::stood(std::size_t axis, Time since, Time now) {
   std::erase_if(orders_[axis], [&](const OrderedMotion& order) {
     return !order.follows && latest_begin(order) < since &&

@@ -36,7 +36,7 @@ struct SentMotion {
 
 /// A move, a jog, a gear or a stream of one axis that a program has sent.
 struct OrderedMotion {
-  std::uint64_t message = 0;  ///< number of the message; all axes of a group have the same
+  std::uint64_t message = 0;  ///< number of the message; the same for all axes of a group
   std::size_t group_size = 1;
   bool creeps = false;  ///< the axis may be as slow as the slowest axis of its group
   SenderBit sender = 0;
@@ -49,13 +49,13 @@ struct OrderedMotion {
   bool follows = false;  ///< the motion is a gear: the axis is at rest while its leader is at rest
   std::optional<std::int32_t> stream{};  ///< `id` of a stream; empty for other motions
   Time ended = never;                    ///< time after which the motion moves nothing
-  Time points_end = never;               ///< the same for a stream that gets no further points
+  Time points_end = never;  ///< end of the points of a stream that gets no further points
 };
 
-/// Knows from the messages of the programs which motions may run at this moment. A motion may run
-/// while its sender was heard within the timeout, and then for as long as its stop takes. For a
-/// jog, only the messages count that name its axis. The answers are upper limits: a message may
-/// have been refused, and a gear may have been replaced.
+/// Determines from the messages of the programs which motions may run at this moment. A motion may
+/// run while a message of its sender has come within the timeout, and then for as long as its stop
+/// takes. For a jog, only the messages that name its axis count. The results are upper limits: a
+/// message may have been refused, and a gear may have been replaced.
 class MotionOrders {
  public:
   /// The longest time from the sending of a motion to its begin. Messages are not slower, and those
@@ -67,15 +67,16 @@ class MotionOrders {
   explicit MotionOrders(const BusPlan& plan);
 
   void commanded(const SentMotion& sent, Time now);
-  /// Call this when the daemon is a new process, which knows no motion.
+  /// Call this when a new process of the daemon begins, which has received no motion.
   void begin_anew();
-  /// The axis has stood still since this time. Forgets the motions that have ended therefore.
+  /// Notes that the axis has been at standstill since this time. Forgets the motions that have
+  /// therefore ended.
   void stood(std::size_t axis, Time since, Time now);
-  /// This motion has come to rest at its target. It and those that its sender has sent before are
-  /// over.
+  /// Call this when the motion has come to rest at its target. The motion, and the motions that its
+  /// sender has sent before, are then over.
   void arrived(std::size_t axis, const OrderedMotion& order);
-  /// The drive of the axis did not follow at `now`: its motion has ended, and the other axes of its
-  /// group stop.
+  /// Notes that the drive of the axis did not follow at `now`. Its motion has ended, and the other
+  /// axes of its group stop.
   void failed(std::size_t axis, Time now);
 
   /// Returns the number of the axis with this target position, or with this velocity offset.
@@ -90,7 +91,8 @@ class MotionOrders {
   bool keeps_alive(std::size_t node_index, Time now) const noexcept;
   std::span<const OrderedMotion> orders(std::size_t axis) const noexcept { return orders_[axis]; }
   bool was_commanded(std::size_t axis) const noexcept;
-  /// Returns the time at which the newest motion was sent that is not over; 0 if all are.
+  /// Returns the time at which the newest motion that is not over was sent; 0 if all motions are
+  /// over.
   Time newest(std::size_t axis) const noexcept {
     return orders_[axis].empty() ? Time{} : orders_[axis].back().sent;
   }
@@ -106,7 +108,7 @@ class MotionOrders {
   void add(const SentMotion& sent, const motion_goal_t& goal, std::size_t axis, Time now);
   void take_points(const SentMotion& sent, OrderedMotion& order, Time now) const noexcept;
   MotionBounds bounds_of(const motion_goal_t& goal, std::size_t axis) const noexcept;
-  /// `axis` is that of the order.
+  /// Returns the end of an order of `axis`.
   Time end_of(std::size_t axis, const OrderedMotion& order) const noexcept;
   Time latest_begin(const OrderedMotion& order) const noexcept;
   Time heard(SenderBit sender) const noexcept;

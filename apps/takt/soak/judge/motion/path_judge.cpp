@@ -15,8 +15,8 @@ constexpr Time longest_message = 40ms;
 // Part of the limits; with 0.8, an axis does not fall behind.
 constexpr double part_for_leader = 0.7;
 constexpr double part_for_phase = 0.1;  // part of the velocity for catching up
-constexpr int phase_ins = 6;            // times of a stop until the velocities are equal
-constexpr double end_margin = 1000.0;   // counts, from the end of the range
+constexpr int phase_ins = 6;            // number of stopping times until the velocities are equal
+constexpr double end_margin = 1000.0;   // distance from the end of the range in counts
 
 }  // namespace
 
@@ -32,7 +32,8 @@ void PathJudge::disturbed(Time until) {
   calm_from_ = std::max(calm_from_, until);
 }
 
-/// A message that is refused is no sign of life, so only those count that never are.
+/// A message that is refused is no sign of life. Therefore only messages that are never refused
+/// count.
 void PathJudge::commanded(const SentMotion& sent, bool stands, Time now) {
   const auto hear = [&](std::optional<Watch>& watch) {
     if (!watch || watch->sender != sent.sender) return;
@@ -88,7 +89,8 @@ void PathJudge::begin(const SentMotion& sent, std::size_t axis, bool stands, Tim
   axes_[axis].watch = std::move(watch);
 }
 
-/// A measured leader has an estimate of its position, which nobody but the master knows.
+/// For a measured leader, the master uses an estimate of the position, which the judge does not
+/// know.
 std::optional<PathJudge::Following> PathJudge::following(const SentMotion& sent, std::size_t axis,
                                                          Time now) const {
   const motion_gear_t& gear = *sent.gear;
@@ -178,7 +180,7 @@ bool PathJudge::can_follow(const Watch& watch, const Following& following, Time 
          is_within(most->jerk, watch.bounds.jerk);
 }
 
-/// Near the end of its range, an axis stops.
+/// Returns false near an end of the range, where an axis stops.
 bool PathJudge::is_far_from_ends(std::size_t axis, const MotionBounds& bounds) const {
   const MotionAxis& own = orders_.axes()[axis];
   const Signal& target = plan_.layout.signals[own.target];

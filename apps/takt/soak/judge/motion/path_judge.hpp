@@ -15,8 +15,8 @@ namespace takt::soak {
 
 /// Compares the target positions of axes with the path of their stream, or with the axis that leads
 /// them. It judges an axis only while nothing happens that may end the motion or delay it: each
-/// cycle has its SYNC and its frames, the drives follow, the program is alive, and nobody commands
-/// anything else.
+/// cycle has its SYNC and its frames, the drives follow, the program is alive, and no other command
+/// comes.
 class PathJudge {
  public:
   PathJudge(const BusPlan& plan, const MotionOrders& orders, Verdict& verdict);
@@ -24,7 +24,7 @@ class PathJudge {
   /// Call this after MotionOrders has taken the message. `stands` is true if the axes of the
   /// message were at rest, and no older motion may begin.
   void commanded(const SentMotion& sent, bool stands, Time now);
-  /// Call this if something may delay or end motions until this time.
+  /// Call this when an event may delay or end motions until this time.
   void disturbed(Time until);
   void forget_all();
   void forget(std::size_t axis) { axes_[axis].watch.reset(); }
@@ -60,7 +60,7 @@ class PathJudge {
   };
   struct Axis {
     std::optional<Watch> watch{};
-    std::optional<double> counts{};  // sent in this cycle
+    std::optional<double> counts{};  // value that was sent in this cycle
     std::optional<double> last{};    // value in the previous cycle
     bool by_set_point = false;
   };

@@ -3,12 +3,12 @@
 
 namespace takt::soak {
 
-/// What is known of a target position that has to be on a path.
+/// The knowledge about a target position that has to be on a path.
 enum class PathVerdict : std::uint8_t {
   on,       ///< the position is on the path
   off,      ///< the position is not on the path
   done,     ///< the position is the end of the path
-  unknown,  ///< nothing can be said from now on
+  unknown,  ///< from now on, the position can't be judged
 };
 
 }  // namespace takt::soak

@@ -9,11 +9,11 @@
 namespace takt::soak {
 
 /// Compares the target positions of an axis with the path of a stream: in each cycle, the position
-/// has to be that of the polynomial through the points. The cycle of the begin is not known: any
-/// one within `longest_begin` is possible until the positions say which one it is.
+/// has to be that of the polynomial through the points. The cycle of the begin is not known. Each
+/// cycle within `longest_begin` is possible until the positions show which one it is.
 class StreamWatch {
  public:
-  /// The counts of the axis, and the cycles.
+  /// The conversion to counts of the axis, and the cycles.
   struct Frame {
     double scale = 1.0;
     double offset = 0.0;         ///< offset in the unit of the axis
@@ -45,7 +45,7 @@ class StreamWatch {
   std::vector<Point> points_;
   unsigned cycle_ = 0;            // cycle that is judged next
   std::vector<unsigned> begins_;  // cycles in which the stream may have begun
-  bool at_start_ = true;          // the axis has stood at the first point so far
+  bool at_start_ = true;          // the axis has been at the first point so far
 };
 
 }  // namespace takt::soak
