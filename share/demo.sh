@@ -25,7 +25,7 @@ build_programs() {
   say "Building taktd and takt-move (about two minutes the first time)"
   started=$(date +%s)
   mkdir -p $build && rm -f $build/demo-built
-  # Without the tests, unless this folder has been configured before. The tool `takt` is as much to compile as the rest.
+  # Builds without the tests, unless this folder has been configured before. The tool `takt` would double the time of the build.
   [ -e $build/build.ninja ] ||
     cmake --preset release -DTAKT_TESTS=OFF -DTAKT_PCH=ON -DTAKT_UNITY=ON >$build/demo-build.log 2>&1 || build_failed
   { ninja -C $build taktd takt-move && touch $build/demo-built; } 2>&1 | tee $build/demo-build.log |
@@ -46,7 +46,7 @@ end() {
 trap end EXIT
 trap 'exit 130' INT TERM
 
-# LCM through the daemon's own hub on loopback: needs no multicast route.
+# LCM uses the daemon's own hub on loopback, which needs no multicast route.
 LCM_DEFAULT_URL=tcpq://127.0.0.1:$((20000 + $$ % 20000))
 export LCM_DEFAULT_URL
 ip -o link show lo 2>/dev/null | grep -q UP || ip link set lo up 2>/dev/null || true

@@ -1,7 +1,6 @@
 #!/bin/sh
-# install_packages.sh PURPOSE... - installs what share/packages.txt lists for build, run, wheel, package, chroot or test and this machine
-# lacks.
-# With nothing to install it is silent and needs no rights.
+# install_packages.sh PURPOSE... - installs the packages of share/packages.txt for a purpose (build, run, wheel, package, chroot or
+# test) that this machine lacks. If nothing is to be installed, it prints nothing and needs no root rights.
 set -eu
 list=$(dirname "$0")/packages.txt
 [ $# -gt 0 ] || { echo "usage: $0 build|run|wheel|package|chroot|test..." >&2; exit 2; }
@@ -37,7 +36,7 @@ trap 'rm -f "$log"' EXIT
 apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qy "$@" >"$log" 2>&1 </dev/null; }
 # shellcheck disable=SC2086
 install() { apt install --no-install-recommends $missing; }
-# The lists of a fresh or old system don't know every package: then, and only then, fetch them.
+# The package lists of a new or old system may lack a package: only in this case, fetch the lists.
 # shellcheck disable=SC2086
 if ! { apt install -s --no-install-recommends $missing && install; }; then
   apt update && install || { cat "$log" >&2; echo "apt-get failed (above)." >&2; exit 1; }

@@ -1,10 +1,10 @@
 #!/bin/sh
-# package.sh [--arch arm64] [FOLDER] - builds the Debian packages takt, libtakt-dev and takt-doc there (build/packages). Prints their names.
-# The debian folder comes from share/debian; sources are the files that git knows, or all but .git and build. The same sources give
-# the same bytes: the time in the files is SOURCE_DATE_EPOCH, else that of the newest commit. lintian's complaints go to stderr; an
-# error of lintian is exit code 1.
-# For another architecture: in a Debian of its own, because LCM's libraries of two architectures exclude each other. Needs root,
-# and downloads about 500 MB.
+# package.sh [--arch arm64] [FOLDER] - builds the Debian packages takt, libtakt-dev and takt-doc in FOLDER (default: build/packages),
+# and prints their names. The debian folder comes from share/debian; the sources are the files that git knows, or all files but .git
+# and build. The build is reproducible: the time in the files is SOURCE_DATE_EPOCH, otherwise that of the newest commit. lintian's
+# complaints go to stderr; an error of lintian is exit code 1.
+# For another architecture, the script builds in a separate Debian system, because LCM's libraries of two architectures exclude each
+# other. This needs root, and downloads about 500 MB.
 #   TAKT_JOBS       parallel jobs (number of processors)
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -34,7 +34,7 @@ trap 'rm -rf "$tmp"' EXIT
 tree=$tmp/takt-$version
 mkdir "$tree"
 
-# Files that only the tests need stay, as in a clone: CMakeLists.txt names them.
+# The tree also has the files that only the tests need, as a clone has, because CMakeLists.txt names them.
 list_files() {
   if [ -e .git ]; then
     git ls-files -z --cached --others --exclude-standard
@@ -59,7 +59,7 @@ takt ($version) bookworm; urgency=medium
 END
 
 options="parallel=$jobs nocheck"
-# What another checkout has compiled need not be compiled again.
+# ccache reuses what another checkout has compiled.
 build_here() {
   if command -v ccache >/dev/null; then
     CCACHE_DIR=$(ccache --get-config cache_dir) CCACHE_BASEDIR=$tree CCACHE_NOHASHDIR=1
@@ -68,7 +68,7 @@ build_here() {
   (cd "$tree" && DEB_BUILD_OPTIONS=$options dpkg-buildpackage -b -us -uc)
 }
 
-# for_target PACKAGE - its name with the architecture, unless it is the same for all.
+# for_target PACKAGE - the name of the package with the architecture, unless the package is the same for all architectures.
 for_target() {
   case $(apt-cache show --no-all-versions "$1" | sed -n 's/^Architecture: //p') in
     all) echo "$1" ;;
@@ -76,8 +76,8 @@ for_target() {
   esac
 }
 
-# A Debian with the compiler of this machine and the libraries of the other. lcm-gen of this machine is unpacked into a folder. What
-# the programs write about themselves they write under an emulator.
+# Builds in a Debian system that has the compiler of this machine and the libraries of the other architecture. lcm-gen of this machine
+# is unpacked into a folder. The programs write their manual pages and completions under an emulator.
 build_there() {
   other=$tmp/root
   included=cmake,crossbuild-essential-$arch,debhelper,ninja-build,pkgconf:$arch,qemu-user-static

@@ -1,5 +1,6 @@
 #!/bin/sh
-# test.sh - everything that CI runs, a line a stage; ends with the count and exit code 0 if all is good.
+# test.sh - runs everything that CI runs and prints one line for each stage; at the end it prints the count. Exit code 0: all tests
+# passed.
 #   TAKT_STAGES  only these of: format release asan tsan fuzz tidy alone mutation trajectories packages (without: all but the last four,
 #                which belong to a release: they compile each source alone, and 200 changed copies, plan 10^8 trajectories, and build the
 #                Debian packages twice and install them into a new Debian, which needs root)
@@ -13,7 +14,7 @@ sh share/install_packages.sh build run wheel test || exit 1
 stages=${TAKT_STAGES:-format release asan tsan fuzz tidy}
 jobs=${TAKT_JOBS:-$(nproc)}
 logs=build/test-logs
-# What another checkout on this machine has compiled need not be compiled again.
+# ccache reuses what another checkout on this machine has compiled.
 export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
 mkdir -p $logs
 passed=0
@@ -25,7 +26,7 @@ sources() { find eds_parser master apps test share/include \( -name '*.hpp' -o -
 # counts LOG: "PASSED FAILED" of the line that run_tests has added.
 counts() { sed -n 's/^all tests: \([0-9]*\) passed, \([0-9]*\) failed$/\1 \2/p' "$1" | tail -n 1; }
 
-# What the tests that failed have said, without their checks that were good; at most 100 lines of each.
+# Prints the output of the failed tests without the checks that passed, at most 100 lines of each test.
 failed_tests() {
   awk '/^ *[0-9]+\/[0-9]+ Test +#/ { left = /\*\*\*/ && !/\*\*\*Skipped/ ? 100 : 0 }
        /^ +Start +[0-9]+: / || /^[0-9]+% tests passed/ { left = 0 }
@@ -33,7 +34,7 @@ failed_tests() {
        left > 0 { print; left-- }' "$1"
 }
 
-# Shows what matters of a log that ended badly.
+# Shows the important part of the log of a failed stage.
 explain() {
   echo "--- $1"
   grep -nE 'error:|Failure|\*\*\*|ERROR: |SUMMARY: |WARNING: ThreadSanitizer' "$1" | head -n 40
@@ -43,7 +44,7 @@ explain() {
   tail -n 20 "$1"
 }
 
-# stage NAME COMMAND... - counts as one test, or as its tests where the command is ctest.
+# stage NAME COMMAND... - runs the command. It counts as one test, or, if the command is ctest, as the number of its tests.
 stage() {
   name=$1
   log=$logs/$1.log
@@ -68,8 +69,8 @@ stage() {
 
 check_format() { sources | xargs clang-format-19 --dry-run -Werror; }
 
-# read_sources SCRIPT BUILD OPTION...: without precompiled headers, because clang can't read those of GCC. What has been good before
-# is not read again.
+# read_sources SCRIPT BUILD OPTION... - reads sources without precompiled headers, because clang can't read those of GCC. A source
+# that has passed before is not read again.
 read_sources() {
   script=$1
   build=$2
@@ -82,7 +83,7 @@ check_tidy() { read_sources tidy build/tidy -DTAKT_UNITY=ON; }
 # the same by names (test/house/check_includes.py).
 check_alone() { read_sources alone build/alone -DTAKT_UNITY=OFF -DTAKT_WERROR=ON; }
 
-# The copy of the tree and its programs stay in build/mutation, so that a second run compiles only what has changed.
+# The copy of the tree and its programs stay in build/mutation, so a second run compiles only what has changed.
 check_mutation() { python3 test/mutation/mutate.py --seed 1 --count 200 --jobs "$jobs"; }
 
 # Beside ruckig. CI compares a million trajectories (test/motion/judge_trajectories.py).
@@ -90,7 +91,7 @@ check_trajectories() {
   python3 test/motion/judge_many.py --cases 100000000 && python3 test/motion/judge_many.py --cases 1000000 --class "wide limits"
 }
 
-# The second build is elsewhere and compiles everything again: the packages have the same bytes.
+# The second build is in another folder and compiles everything again; its packages must have the same bytes.
 check_packages() {
   first=build/packages
   second=build/packages-again
@@ -111,7 +112,7 @@ build() {
     -DTAKT_WERROR=$werror -DTAKT_UNITY=ON -DTAKT_PCH="${TAKT_PCH:-ON}" && ninja -C "build/$preset" -j "$jobs" "$@"
 }
 
-# Each runs for about a second and must not fail. What it says is no figure: those come from sh test/bench/run.sh.
+# Each benchmark runs for about a second and must not fail. Its output is no measurement: use sh test/bench/run.sh for that.
 run_benchmarks() {
   bin=build/release/bin
   $bin/pdo_benchmark --benchmark_min_time=0.1 && $bin/trajectory_cost --benchmark_min_time=0.1 &&
@@ -122,7 +123,7 @@ run_benchmarks() {
 fuzz() {
   seconds=${TAKT_FUZZ:-60}
   build fuzz clang++-19 takt_fuzz_targets || return 1
-  # One seed: a finding comes from a change and not from luck. Longer runs with other seeds belong to a release.
+  # All runs use one seed, so a finding comes from a change and not from chance. Longer runs with other seeds belong to a release.
   {
     echo "eds $seconds -dict=test/fuzz/eds.dict"
     echo "network $((seconds / 2)) -dict=test/fuzz/network.dict"
@@ -130,7 +131,7 @@ fuzz() {
   } | xargs -P "$jobs" -L 1 sh test/fuzz/fuzz_one.sh
 }
 
-# run_tests PRESET [CTEST OPTION...]. Each run of run_gtest.py is one test for ctest and many for the count.
+# run_tests PRESET [CTEST OPTION...]. Each run of run_gtest.py is one test for ctest; the count includes all its tests.
 run_tests() {
   preset=$1
   shift

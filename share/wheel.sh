@@ -1,6 +1,7 @@
 #!/bin/sh
-# wheel.sh [FOLDER] - builds the Python package takt there (build/): takt-VERSION-py3-none-any.whl. Prints its name. Needs no network,
-# lcm-gen, and the setuptools of Debian. The same sources give the same bytes; the time in the file is SOURCE_DATE_EPOCH, else 2026-01-01.
+# wheel.sh [FOLDER] - builds the Python package takt-VERSION-py3-none-any.whl in FOLDER (default: build/), and prints its name. The
+# script needs lcm-gen and the setuptools of Debian, and no network. The build is reproducible: the time in the file is
+# SOURCE_DATE_EPOCH, otherwise 2026-01-01.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 folder=${1:-$root/build}
@@ -14,7 +15,7 @@ trap 'rm -rf "$tmp"' EXIT
 mkdir -p "$tmp/apps" "$tmp/share"
 cp -r "$root/apps/python" "$tmp/apps"
 cp -r "$root/share/lcm" "$root/share/eds" "$tmp/share"
-rm -rf "$tmp/apps/python/takt/__pycache__"  # nothing else is in the file than what pyproject.toml and setup.py name
+rm -rf "$tmp/apps/python/takt/__pycache__"  # the wheel contains only what pyproject.toml and setup.py name
 find "$tmp" -type d -exec chmod 755 {} + -o -type f -exec chmod 644 {} +
 
 cd "$tmp/apps/python"

@@ -15,8 +15,8 @@ install(FILES apps/python/takt_axes.py DESTINATION ${CMAKE_INSTALL_DATADIR}/takt
 install(DIRECTORY apps/python/takt DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY share/devices share/eds share/demo DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)
 
-# The pages link only to each other and to CHANGELOG.md, which is installed beside them: the installed index has another link
-# to it. COMPONENT: they can be installed without a build.
+# The pages link only to each other and to CHANGELOG.md. CHANGELOG.md is installed beside the pages, so the installed index has
+# another link to this file. COMPONENT: they can be installed without a build.
 install(DIRECTORY share/doc/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc
         FILES_MATCHING PATTERN *.md PATTERN *.svg PATTERN index.md EXCLUDE)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS share/doc/index.md)
@@ -65,7 +65,7 @@ write_basic_package_version_file(takt-config-version.cmake COMPATIBILITY SameMin
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/takt-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/takt-config-version.cmake
         DESTINATION ${package_dir})
 
-# A static library stands before those it needs: the reverse of the order in which they are defined.
+# A static library comes before the libraries that it needs, in the reverse order of their definitions.
 list(REVERSE libraries)
 set(TAKT_PC_LIBS "")
 foreach(library IN LISTS libraries)

@@ -1,5 +1,5 @@
 # takt_precompile(TARGET OWNER HEADERS...): parses HEADERS once, for OWNER and for all targets that name it; these have equal
-# flags. Sources include what they use all the same.
+# flags. Sources still include every header that they use.
 function(takt_precompile target owner)
   if(NOT TAKT_PCH)
     return()
@@ -16,15 +16,15 @@ set(TAKT_STD_HEADERS <algorithm> <array> <atomic> <bit> <charconv> <chrono> <cma
 set(TAKT_PCH_OWNER takt_table)
 
 if(TAKT_PCH)
-  add_compile_options(-pthread)  # LCM asks for it; it has to be the same everywhere
+  add_compile_options(-pthread)  # LCM needs this option; it has to be the same in all targets
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # GCC 12 takes a precompiled header for no system header and warns of what it sees wrongly inside std::string and
-    # std::optional (bug 105651).
+    # GCC 12 does not treat a precompiled header as a system header, and prints false warnings about std::string and std::optional
+    # (bug 105651).
     add_compile_options(-Wno-stringop-overflow -Wno-array-bounds -Wno-maybe-uninitialized)
   else()
-    add_compile_options("SHELL:-Xclang -fno-pch-timestamp")  # or ccache takes every precompiled header for a new one
+    add_compile_options("SHELL:-Xclang -fno-pch-timestamp")  # otherwise ccache regards every precompiled header as new
   endif()
-  if(CCACHE)  # caches sources behind a precompiled header only when told so
+  if(CCACHE)  # ccache caches sources with a precompiled header only with this setting
     set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
   endif()
 endif()

@@ -1,6 +1,6 @@
 # takt_unite(LIST NAME): with TAKT_UNITY, replaces the test files (*_test.cpp) of the list variable LIST by generated files
-# that have several of them each. GCC then needs a third of the time: it makes each template of the standard library, of
-# GoogleTest and of takt once for all of them.
+# that have several of them each. GCC then needs a third of the time, because it instantiates each template of the standard
+# library, of GoogleTest and of takt once for all these files.
 function(takt_unite united_list name)
   if(NOT TAKT_UNITY)
     return()
@@ -9,7 +9,7 @@ function(takt_unite united_list name)
   list(FILTER singles EXCLUDE REGEX "_test\\.cpp$")
   set(tests ${${united_list}})
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
-  set(group_size 16)  # as many as a compiler takes without more than 1 GB of memory
+  set(group_size 16)  # the number of files that a compiler reads with at most 1 GB of memory
   set(united)
   list(LENGTH tests left)
   while(left GREATER 0)
@@ -30,7 +30,7 @@ function(takt_unite united_list name)
   set(${united_list} ${singles} ${united} PARENT_SCOPE)
 endfunction()
 
-# takt_united(): the target of all generated files. It depends on nothing, so none of them waits for a library.
+# takt_united(): the target of all generated files. This target depends on nothing, so no generated file waits for a library.
 function(takt_united)
   get_property(united GLOBAL PROPERTY TAKT_UNITED)
   add_custom_target(takt_united DEPENDS ${united})

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""unite.py OUT SOURCE... - writes a source that has the text of several test files, which then compile together.
+"""unite.py OUT SOURCE... - writes a source that has the text of several test files, so that these files compile
+together.
 
 Each file gets a namespace of its own inside the namespace that it opens, so that equal names of two files do not collide:
 `namespace takt {` becomes `namespace takt::united_0 {`. Messages and failures name the file and line of the original.

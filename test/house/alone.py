@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """alone.py BUILD JOBS - proves that each production source includes what it uses: the compiler reads each of them alone, without
-a precompiled header. Needs a BUILD without TAKT_UNITY, TAKT_GROUPS and TAKT_PCH. Exit code 1: a source misses something."""
+a precompiled header. Needs a BUILD without TAKT_UNITY, TAKT_GROUPS and TAKT_PCH. Exit code 1: a source lacks an
+include."""
 import shlex
 import sys
 

@@ -44,7 +44,7 @@ def text_of(element):
 
 
 def parameters(member):
-    """Types and default values. Names of parameters are no part of the promise."""
+    """Types and default values. Names of parameters are not part of the promise."""
     for parameter in member.findall("param"):
         default = text_of(parameter.find("defval"))
         yield text_of(parameter.find("type")) + (f" = {default}" if default else "")
@@ -118,7 +118,7 @@ def words(code):
 
 
 def uncompiled(root):
-    """A sentence for each C++ example of a page that is not in one of the programs, comments and spaces aside."""
+    """A sentence for each C++ example of a page that is in none of the programs. Comments and spaces do not count."""
     programs = [words(path.read_text(encoding="utf-8")) for path in pathlib.Path(root, PROGRAMS).glob("*.cpp")]
     for page in PAGES:
         for example in EXAMPLE.findall(pathlib.Path(root, page).read_text(encoding="utf-8")):
@@ -131,7 +131,7 @@ def checksum(text):
 
 
 def check(root, update=False):
-    """What breaks a rule, in sentences."""
+    """The violations of the rules, as sentences."""
     with tempfile.TemporaryDirectory() as folder:
         complaints = document(root, folder)
         if complaints:
@@ -178,7 +178,7 @@ GOOD = {
 
 
 def self_test():
-    """Changes a copy of this checkout in each way."""
+    """Makes each of the changes in a copy of this checkout, and checks that a rule fails."""
     here = pathlib.Path(__file__).resolve().parents[2]
     complaints = []
     for what, (path, old, new, *part) in {**BAD, **GOOD}.items():

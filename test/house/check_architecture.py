@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Compares share/doc/architecture.md with the tree and fails on what differs.
+"""Compares share/doc/architecture.md with the tree, and fails on differences.
 
 check_architecture.py [ROOT]       checks ROOT (default: this checkout)
 check_architecture.py --self-test  shows that each rule can fail
 
-Rules: the tables of the rooms are those of `check_rooms.py --table`; each path in code style exists; each function that stands
-beside a file is in that file: in a table row that begins with a file and a function, and in text of the form "`function` in
-`file`".
+Rules: the tables of the rooms are those of `check_rooms.py --table`; each path in code style exists; each function that
+is named beside a file is in that file: in a table row that begins with a file and a function, and in text of the form
+"`function` in `file`".
 """
 import pathlib
 import re

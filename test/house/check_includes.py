@@ -30,7 +30,7 @@ WORD = re.compile(r"(?<![.\w>:])(?:[a-z]\w*::)*([A-Z]\w*)\b")
 
 
 def headers_of_names():
-    """For each name of the table the headers that give it."""
+    """The headers that declare each name of the table."""
     headers = collections.defaultdict(set)
     header = None
     for word in " ".join(line for line in TABLE.read_text().splitlines() if not line.startswith("#")).split():
@@ -77,7 +77,8 @@ class Tree:
 
     @functools.cache
     def reached(self, file):
-        """All files of the tree that `file` includes, directly or not, and itself; and all headers of others that these name."""
+        """`file`, all files of the tree that it includes, directly or not, and all foreign headers that these files
+        name."""
         files, others, left = set(), set(), [file]
         while left:
             one = left.pop()

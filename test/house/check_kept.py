@@ -1,6 +1,6 @@
-"""Every field of a machine with a keep() is named in it, or below with the reason why not.
+"""Checks that keep() of each machine names every field of the machine, or that the list below gives the reason why not.
 
-A field that is neither would be forgotten in checkpoints: a replay that begins at one would go another way.
+A field in neither place would be missing in checkpoints: a replay from a checkpoint could then make other decisions.
 Usage: check_kept.py SOURCE_FOLDER | --self-test
 """
 import pathlib
@@ -77,7 +77,7 @@ def without_comments(text):
 
 
 def end_of_block(text, begin):
-    """`begin` is behind the opening brace; returns the place of the closing one."""
+    """`begin` is behind the opening brace; returns the place of the closing brace."""
     depth = 1
     for at in range(begin, len(text)):
         depth += {"{": 1, "}": -1}.get(text[at], 0)
@@ -87,7 +87,7 @@ def end_of_block(text, begin):
 
 
 def classes(text):
-    """("Outer::Name", body) of every class and struct, those inside others too."""
+    """("Outer::Name", body) of every class and struct, also of those inside others."""
     spans = []
     for head in re.finditer(r"\b(?:class|struct)\s+(\w+)(?:\s+final)?(?:\s*:[^;{]*)?\s*\{", text):
         if re.search(r"\benum\s+$", text[:head.start()]):
@@ -99,7 +99,8 @@ def classes(text):
 
 
 def statements(body):
-    """Those of the class itself; what stands in braces is left out, bodies of functions end one."""
+    """The fields of the class itself. The content of braces is left out, and the body of a function ends a
+    declaration."""
     out, depth, text = [], 0, ""
     for at, char in enumerate(body):
         if char == "{":
@@ -141,7 +142,7 @@ def keep_bodies(text):
 
 
 def own_keep(body):
-    """keep() of this class, not of one inside it; None: it has none."""
+    """keep() of this class, not of a class inside it; None: the class has no keep()."""
     for found in re.finditer(r"\bvoid\s+keep\(Archive& state\)\s*noexcept\s*(\{|;)", body):
         depth = body[:found.start()].count("{") - body[:found.start()].count("}")
         if depth == 0:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads the includes and the types of the tree and fails on what breaks the rules of the house.
+"""Reads the includes and the types of the tree, and fails on violations of the rules for rooms.
 
 check_rooms.py [ROOT]       checks ROOT (default: this checkout)
 check_rooms.py --self-test  shows that each rule can fail
@@ -22,8 +22,8 @@ SIM = "master/sim master/sim/bus"
 LCM = "eds_parser/lcm master/lcm master/lcm/envelope master/lcm/link"
 EDS = "eds_parser/report eds_parser/dictionary eds_parser/ini eds_parser/read"
 
-# Room: what it is about, and what it may include besides itself and `eds_parser/table`: rooms that stand above it in this table,
-# and single headers of any room.
+# Each room with its subject, and what the room may include besides itself and `eds_parser/table`: rooms above it in
+# this table, and single headers of any room.
 ROOMS = {
     TABLE: ("compiled tables: all that the master knows of a network", ""),
     "eds_parser/lcm": ("names, URLs and message types of a bus on LCM", ""),
@@ -323,7 +323,7 @@ NOISE = re.compile(  # raw strings, comments, strings, characters, lines of the 
 
 
 def types_of(text):
-    """(qualified name, line, is anonymous) of each type that has its definition in `text`, those within functions left out."""
+    """(qualified name, line, is anonymous) of each type that has its definition in `text`, outside of functions."""
     text = NOISE.sub(lambda found: "\n" * found[0].count("\n"), text)
     scopes = []  # None: a block
     for token in TOKEN.finditer(text):
@@ -342,7 +342,8 @@ def types_of(text):
 
 
 def doubles(types):
-    """(path, line, what) of each type that has a definition before it. `types`: of all files, (path, name, line, anonymous)."""
+    """(path, line, what) of each type that has an earlier definition. `types` has (path, name, line, anonymous) of all
+    files."""
     first = {}
     for path, name, line, anonymous in types:
         if anonymous:
@@ -353,7 +354,7 @@ def doubles(types):
 
 
 def equal_names(paths):
-    """(path, 1, what) of each header whose library has another one of its name."""
+    """(path, 1, what) of each header whose library has another header of the same name."""
     first = {}
     for path in paths:
         library, name = path.split("/")[0], path.rsplit("/", 1)[1]
@@ -373,7 +374,8 @@ def unmirrored(root):
 
 
 def upward(rooms):
-    """(room, 1, what) of each room of the table that may include one which is not above it: arrows never make a circle."""
+    """(room, 1, what) of each room of the table that may include a room which is not above it. This rule excludes
+    circles."""
     above = set()
     for room, (_, may) in rooms.items():
         for other in may.split():
@@ -390,7 +392,7 @@ def sources(root, tops):
 
 
 def check(root):
-    """All (path, line, what) that break a rule, and notes."""
+    """All violations of rules, and all notes, as (path, line, what)."""
     errors, notes, types, sizes = list(upward(ROOMS)), [], [], collections.Counter()
     for path, text in sources(root, (*LIBRARIES, "test")):
         lines = text.splitlines()

@@ -1,8 +1,9 @@
 """Runs a check over the sources of eds_parser/, master/ and apps/, with the commands of a build folder.
 
-A source that was good is not read again as long as nothing has changed that decides the result: the source and the files of the
-tree that it includes, its compile command, and what the check names as common (its settings, the version of its program). The
-keys of good sources are kept in $XDG_CACHE_HOME/takt/CHECK. Headers of the system are not part of the key.
+A source that has passed is not read again until something changes that decides the result: the source and the files of
+the tree that it includes, its compile command, and what the check names as common (its settings, the version of its
+program). The keys of good sources are kept in $XDG_CACHE_HOME/takt/CHECK. Headers of the system are not part of the
+key.
 """
 import concurrent.futures
 import functools

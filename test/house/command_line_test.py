@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""command_line_test.py BIN: what takt and taktd say to a user who is wrong, and to one who asks."""
+"""command_line_test.py BIN: checks the messages of takt and taktd to a user who makes a mistake, or who asks for
+help."""
 import pathlib
 import socket
 import struct

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""completion_test.py BIN: what bash, zsh and fish propose for takt and its programs. zsh and fish only if they are installed."""
+"""completion_test.py BIN: checks what bash, zsh and fish propose for takt and its programs. It tests zsh and fish only
+if they are installed."""
 import os
 import pathlib
 import shutil

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """dbc_judge.py BIN SOURCE - cantools loads what `takt export dbc` writes and decodes frames as takt does.
 
-A simulated run of each demo is recorded; of each PDO the newest frames are decoded by both. The words of
+A simulated run of each demo is recorded; cantools and takt decode the newest frames of each PDO. The words of
 `takt dump` and the signals of the DBC must have equal values, statuswords and controlwords bit by bit.
 """
 import collections
@@ -41,7 +41,7 @@ def values_of_dbc(message, data):
 
 
 def recorded(takt, demo, folder):
-    """The newest PDOs of each identifier in a simulated run, as `takt dump` tells them."""
+    """The newest PDOs of each identifier in a simulated run, as `takt dump` prints them."""
     log = folder / "demo.log"
     run(takt, "simulate", demo, "--for", "3s", "--move", "--candump", str(log))
     newest = {}

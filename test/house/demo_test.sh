@@ -1,5 +1,5 @@
 #!/bin/sh
-# demo_test.sh BIN - the demo of the README, in a network of its own without a route where that is possible.
+# demo_test.sh BIN - runs the demo of the README. If possible, the demo runs in a separate network namespace without a route.
 set -eu
 cd "$(dirname "$0")/../.."
 export TAKT_DEMO_BIN="$1" DEMO_SECONDS=5
@@ -11,7 +11,7 @@ log=$(mktemp)
 fake=$(mktemp -d)
 trap 'rm -rf "$log" "$fake"' EXIT
 
-# A network and programs may be named from where the user is.
+# The paths of a network file and of programs may be relative to the folder of the user.
 mkdir "$fake/bin" && touch "$fake/net.yaml"
 cat >"$fake/bin/taktd" <<'EOF'
 #!/bin/sh

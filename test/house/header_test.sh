@@ -1,5 +1,6 @@
 #!/bin/sh
-# header_test.sh BIN - what `takt export header` writes compiles without a warning and names the right places.
+# header_test.sh BIN - checks that the header from `takt export header` compiles without a warning and has the right places of
+# signals.
 set -eu
 here=$(cd "$(dirname "$0")/../.." && pwd)
 tmp=$(mktemp -d)

@@ -1,6 +1,6 @@
 #!/bin/sh
-# install_test.sh BUILD - installs BUILD below a temporary prefix: the public headers compile alone, and the programs outside the
-# tree build against it, by find_package and by pkg-config, and run. The example of the README waits for its bus.
+# install_test.sh BUILD - installs BUILD below a temporary prefix. Then the public headers compile alone, and the programs outside the
+# tree build against the installation, by find_package and by pkg-config, and run. The example of the README waits for its bus.
 set -eu
 build=$1
 here=$(cd "$(dirname "$0")" && pwd)
@@ -22,16 +22,16 @@ for file in bin/takt bin/taktd bin/takt-follow bin/takt-home bin/takt-jog bin/ta
 done
 ! grep -n '](\.\./' "$prefix"/share/doc/takt/*.md >&2 || { echo "an installed page links to a file of the tree" >&2; exit 1; }
 
-# The installed Python package needs only the types of lcm-gen, as the one of the tree does.
+# The installed Python package needs only the types of lcm-gen, like the package in the tree.
 lcm-gen -p --ppath "$tmp/python" "$prefix"/share/takt/lcm/*.lcm
 mkdir "$tmp/double" && echo 'class LCM: pass' >"$tmp/double/lcm.py"
 (cd / && PYTHONPATH=$prefix/share/takt/python:$tmp/python:$tmp/double python3 -c 'import takt; takt.Axes, takt.Bus, takt.image_t().encode()')
 
-# A program finds its files relative to itself: nothing that is installed knows where the sources were.
+# A program finds its files relative to its own path: no installed file contains the path of the sources.
 root=$(cd "$here/../.." && pwd)
 ! grep -rlF "$root" "$prefix" >&2 || { echo "the path of the sources is in these files" >&2; exit 1; }
 
-# systemd tries a taktd again without limit, and understands each line.
+# systemd understands each line of the unit, and restarts taktd without a limit.
 unit="$prefix/lib/systemd/system/taktd@.service"
 sed '/^\[Service\]/,$d' "$unit" | grep -qx 'StartLimitIntervalSec=0' || { echo "taktd@.service gives up" >&2; exit 1; }
 if command -v systemd-analyze >/dev/null; then
@@ -46,7 +46,8 @@ fi
   sort >"$tmp/public"
 diff "$tmp/public" "$tmp/installed" >&2 || { echo "these are not the public headers" >&2; exit 1; }
 
-# Each public header compiles alone, without a warning: the tree is not to be found from here. (The LCM types are made by lcm-gen.)
+# Each public header compiles alone, without a warning. The compiler does not find the tree from this folder. (The LCM types are made
+# by lcm-gen.)
 pc=$(dirname "$(find "$prefix" -name takt.pc)")
 flags=$(PKG_CONFIG_PATH=$pc pkg-config --cflags takt)
 mkdir -p "$tmp/types/takt"
@@ -76,7 +77,7 @@ c++ "$tmp/outside/in_process.cpp" -o "$tmp/by_pkg_config" $flags
 export LCM_DEFAULT_URL=tcpq://127.0.0.1:$((20000 + $$ % 12000))
 demo=$prefix/share/takt/demo/two_axes.yaml
 sed "s#\.\./eds/#$prefix/share/takt/eds/#; s/name: demo/name: other/" "$demo" >"$tmp/other.yaml"
-"$prefix/bin/taktd" "$tmp/other.yaml" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/hub" &  # the others talk by way of it
+"$prefix/bin/taktd" "$tmp/other.yaml" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/hub" &  # the other programs use this hub
 hub=$!
 started=$hub
 until grep -q 'the network is ready' "$tmp/hub"; do kill -0 "$hub"; sleep 0.1; done
@@ -88,7 +89,8 @@ sleep 2
 "$prefix/bin/taktd" "$demo" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/demo_log" &
 demo_bus=$!
 started="$example $demo_bus $hub"  # the hub last
-# The example ends where its newest image is stale, as it is on a busy machine after any pause of 10 ms. It is started again then.
+# The example ends if its newest image is stale. On a busy machine this happens after any pause of 10 ms, and the test then starts the
+# example again.
 for _ in $(seq 400); do
   if "$prefix/bin/takt" status --bus-name demo 2>"$tmp/status_log" | grep -q 'shoulder.*example [0-9a-f]*$'; then
     "$tmp/by_cmake/over_lcm" | grep -q '^shoulder position_actual_value .* rad$' && exit 0

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""json_doc_test.py BIN: every key of the JSON documents of takt plan, budget, import and smooth is in share/doc/json.md."""
+"""json_doc_test.py BIN: checks that every key of the JSON documents of takt plan, budget, import and smooth is in
+share/doc/json.md."""
 import json
 import pathlib
 import re

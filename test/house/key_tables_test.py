@@ -25,7 +25,7 @@ def renewed(page, reference):
 
 
 def differences(page, reference):
-    """What is wrong with a page, as lines."""
+    """The faults of a page, as lines."""
     wrong = [f"no table for the keys of `{section}`" for section in reference if section not in tables(page)]
     new = renewed(page, reference)
     return wrong + list(difflib.unified_diff(page.splitlines(), new.splitlines(), "page", "takt reference", "", "", 0, ""))

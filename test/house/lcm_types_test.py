@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""lcm_types_test.py BIN SOURCE - lcm-gen takes what `takt export lcm` writes, and its C++, Python and Java code have
-the fingerprints that takt computes."""
+"""lcm_types_test.py BIN SOURCE - checks that lcm-gen accepts the output of `takt export lcm`, and that its C++, Python
+and Java code have the fingerprints that takt computes."""
 import importlib
 import pathlib
 import re
@@ -37,7 +37,7 @@ def words_eds(text):
 
 
 def told(files):
-    """{package.type: fingerprint} as the comments of the .lcm files say."""
+    """{package.type: fingerprint} from the comments of the .lcm files."""
     found = {}
     for file in files:
         text = file.read_text()
@@ -71,7 +71,8 @@ def of_cpp(types, folder):
 
 
 def of_java(types, folder):
-    """Java computes from the constant that the class carries; the rule is that of its _hashRecursive."""
+    """Java computes the fingerprint from the constant of the class; this function has the rule of its
+    _hashRecursive."""
     found = {}
     for name in types:
         text = (folder / (name.replace(".", "/") + ".java")).read_text()

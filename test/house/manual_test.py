@@ -21,7 +21,7 @@ def run(*command, **options):
 
 
 def named_in(help_text):
-    """The names that a help text lists: options, arguments and commands, but not its notes."""
+    """The names that a help text lists: options, arguments and commands, but not the notes of the text."""
     names = set()
     for part in re.findall(r"^[A-Z][^\n]*:\n((?:  .*\n)+)", help_text, re.M):
         for entry in ENTRY.findall(part):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""mcap_judge.py BIN SOURCE - the official reader of MCAP reads what `takt log` writes.
+"""mcap_judge.py BIN SOURCE - checks that the official reader of MCAP reads the files of `takt log`.
 
 A simulated run of a demo is recorded as candump writes it and converted to .mcap and .csv. The reader finds the same
 messages with the index and without it, all checksums are right, times and counts are those of the recording, and the
@@ -147,7 +147,7 @@ def some_signals(made):
 
 
 def full_disk(made, all_messages):
-    """The limit of the size of files stands for a full disk."""
+    """The limit of the size of files imitates a full disk."""
     for ending, most in ((".mcap", 10 << 20), (".csv", 1 << 20), (".mcap", 1 << 10)):
         name = f"full_{most}{ending}"
         limited = lambda most=most: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))

@@ -1,7 +1,7 @@
 #!/bin/sh
 # package_test.sh FOLDER [BASE.tar] - installs the Debian packages in FOLDER (share/package.sh) into a new Debian 12, runs the demo,
-# upgrades from an older version, removes and purges them, and looks that nothing is left. Needs root and mmdebstrap, and downloads
-# about 60 MB. BASE.tar: a Debian that exists already (mmdebstrap --variant=apt bookworm BASE.tar).
+# upgrades from an older version, removes and purges them, and checks that nothing is left. The test needs root and mmdebstrap, and
+# downloads about 60 MB. BASE.tar is an existing Debian system (mmdebstrap --variant=apt bookworm BASE.tar).
 set -eu
 folder=$(cd "$1" && pwd)
 sh "$(dirname "$0")/../../share/install_packages.sh" chroot
@@ -26,7 +26,7 @@ check() { # NAME COMMAND...
 }
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
 apt() { inside apt-get -qy -o Dpkg::Options::=--force-confold "$@"; }
-# The files of the system, without what dpkg and apt note about themselves. ldconfig writes its cache anew.
+# Lists the files of the system without the records of dpkg and apt. ldconfig rewrites its cache.
 files() {
   (cd "$root" && find . -xdev \( -path ./proc -o -path ./sys -o -path ./dev -o -path ./run -o -path ./tmp -o -path ./packages \
     -o -path ./var/cache -o -path ./var/log -o -path ./var/lib/apt -o -path ./var/lib/dpkg \) -prune -o -print | sort)
@@ -41,7 +41,7 @@ cp /etc/resolv.conf "$root/etc"
 apt update >"$tmp/log" 2>&1 || { cat "$tmp/log" >&2; exit 1; }
 mkdir "$root/packages"
 cp "$folder"/*.deb "$root/packages"
-# An older version: the same files, another number.
+# An older version has the same files and another version number.
 for package in takt libtakt-dev takt-doc; do
   dpkg-deb -R "$folder/$package"_*.deb "$tmp/old"
   sed -i 's/^Version: .*/Version: 0.0.1/; s/takt (= [^)]*)/takt (= 0.0.1)/' "$tmp/old/DEBIAN/control"

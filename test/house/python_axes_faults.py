@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""python_axes_faults.py TYPES - apps/python/axes.py on a bus of two drives in this process, where things go wrong.
-TYPES: folder of what `lcm-gen -p` made."""
+"""python_axes_faults.py TYPES - tests apps/python/axes.py with faults, on a bus of two drives in this process. TYPES:
+folder with the output of `lcm-gen -p`."""
 import contextlib
 import hashlib
 import io
@@ -45,7 +45,7 @@ def status(session, holders):
 
 
 class Bus:
-    """In the place of module lcm; `fault(bus, cycle)` may change anything before an image."""
+    """Replaces the module lcm; `fault(bus, cycle)` may change anything before an image."""
     unit, schema, most_cycles = "", 2, 5000
 
     def __init__(self, fault):
@@ -110,7 +110,7 @@ class Bus:
 
 
 def run(fault=lambda bus, cycle: None, kind=Bus, options=()):
-    """The bus afterwards, the exit code of axes.py and what it said on stderr."""
+    """Returns the bus after the run, the exit code of axes.py and its stderr."""
     bus, said = kind(fault), io.StringIO()
     sys.modules["lcm"], sys.argv = bus, ["axes.py", "demo", "2", *options]
     usual = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
@@ -224,7 +224,7 @@ def block(axis):
 
 
 def lag(bus, cycle):
-    """The first axis is 150 counts behind its target, while it moves forth."""
+    """The first axis is 150 counts behind its target while it moves forward."""
     bus.values[POSITION] = max(1000, bus.values[POSITION] - 150) if bus.values[POSITION] > 1000 else bus.values[POSITION]
 
 
@@ -348,7 +348,7 @@ check("and nothing is commanded there", not bus.commands, bus.commands[:1])
 
 
 def reads_keys(name, message, change):
-    """What axes.py says to a key file that `change` has made of a good one."""
+    """The message of axes.py about a key file that `change` has made from a valid one."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "bus.keys"
         file.write_text("# of this plant\nplant " + "5a" * 32 + "\n")
@@ -368,7 +368,8 @@ def seal(daemon, channel, data, counter, secret="5a" * 32, age=0):
 
 
 def checks_images(name, forge):
-    """axes.py on a bus that signs, where `forge` makes what a stranger sends after each image; it comes to its end."""
+    """Runs axes.py on a bus that signs its messages. `forge` makes what a stranger sends after each image. axes.py must
+    come to its end."""
     class Signing(Bus):
         def __init__(self, fault):
             super().__init__(fault)
@@ -403,7 +404,7 @@ def checks_images(name, forge):
 
 
 def restarted(data):
-    """The same message, but of another session: whoever believes it ends."""
+    """The same message of another session: a program that accepts it ends."""
     kind = next(kind for kind in (takt.image_t, takt.layout_t, takt.status_t) if data[:8] == kind().encode()[:8])
     message = kind.decode(data)
     message.session += 1

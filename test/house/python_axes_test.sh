@@ -1,5 +1,5 @@
 #!/bin/sh
-# python_axes_test.sh BIN PYTHON - the Python examples move axes of the demo.
+# python_axes_test.sh BIN PYTHON - checks that the Python examples move axes of the demo.
 . "$(dirname "$0")/python_on_bus.sh"
 start_taktd "$here/share/demo/two_axes.yaml"
 PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/axes.py" demo 2 >"$tmp/said" 2>&1 || fails
@@ -19,7 +19,7 @@ with Axes("demo", "shoulder", "elbow") as axes:
     print(axes.homed)' >"$tmp/said" 2>&1 && grep -q '^\[True, True\]' "$tmp/said"
 }
 homes || fails
-# An inverter is an axis too. Its program stops it, and so does taktd when the program is gone.
+# An inverter is an axis, too. Its program stops the inverter, and taktd stops it when the program has ended.
 start_taktd "$here/share/demo/astraada_drv28.yaml"
 runs() {
   PYTHONPATH=$tmp timeout 240 "$python" "$here/apps/python/first_speed.py" >"$tmp/said" 2>&1

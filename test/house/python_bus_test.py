@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""python_bus_test.py TYPES - takt.Bus on the bus of python_daemon.py: the image, set-points, events, nodes, SDO by names,
-NMT, keys. And what the pages say about the package."""
+"""python_bus_test.py TYPES - tests takt.Bus on the bus of python_daemon.py (the image, set-points, events, nodes, SDO
+by names, NMT, keys), and the pages about the package."""
 import collections.abc
 import pathlib
 import re
@@ -40,7 +40,7 @@ check("and gives nothing up", daemon.released == 0)
 
 
 class InParts(Daemon):
-    """Its images come in two parts; `drops` says which parts are lost."""
+    """A daemon whose images come in two parts; `drops` names the parts that are lost."""
     @staticmethod
     def drops(cycle, part):
         return False

@@ -1,5 +1,5 @@
-"""A taktd of two simple drives and an I/O node in this process, in the place of LCM. The first argument of the program
-is the folder of what `lcm-gen -p` made."""
+"""Imitates a taktd with two simple drives and an I/O node in this process, and replaces LCM. The first argument of the
+program is the folder with the output of `lcm-gen -p`."""
 import math
 import pathlib
 import sys
@@ -66,13 +66,13 @@ class Drive:
         self.way = [target] if self.controlword & 0x20 else [*self.way, target]
 
     def bits(self):
-        """What the modes show in the statusword while the drive is enabled."""
+        """The bits of the modes in the statusword while the drive is enabled."""
         if self.statusword != 0x237 or self.mode != 1:
             return 0
         return (0 if self.way else 0x400) | (0x1000 if self.controlword & 0x10 or len(self.way) > 1 else 0)
 
     def drive_itself(self):
-        """One cycle in a mode in which the drive makes its motions."""
+        """One cycle in a mode in which the drive itself makes the motions."""
         self.way = self.way if self.statusword == 0x237 else []
         if self.statusword != 0x237 or self.controlword & 0x100:
             return
@@ -108,7 +108,7 @@ class Stream:
         self.nodes = [goal.node for goal in message.goals]
 
     def add(self, message, cycle):
-        """Returns why it takes not all of the points."""
+        """Returns the reason why it does not accept all points."""
         if message.first_point > len(self.points):
             return f"its point {len(self.points)} is missing: the message begins with {message.first_point}"
         for point in message.points[len(self.points) - message.first_point:]:
@@ -132,7 +132,7 @@ class Stream:
 
 
 class Daemon:
-    """In the place of the modules lcm and time: each wait for messages is a cycle."""
+    """Replaces the modules lcm and time: each wait for messages is a cycle."""
 
     def __init__(self):
         self.drives, self.handlers, self.waiting, self.cycle = [Drive(5), Drive(6)], {}, [], 0

@@ -1,5 +1,5 @@
 #!/bin/sh
-# python_libraries_test.sh PYTHON - the Python package and axes.py on buses in the process of the test, where things go wrong.
+# python_libraries_test.sh PYTHON - tests the Python package and axes.py on buses in the process of the test, with many faults.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 python=$1

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""python_motions_test.py TYPES - the motions of takt.Axes on the bus of python_daemon.py."""
+"""python_motions_test.py TYPES - tests the motions of takt.Axes on the bus of python_daemon.py."""
 import math
 import sys
 
@@ -73,7 +73,7 @@ check("the end of the block disables them", daemon.drives[1].statusword == 0x250
 
 
 def loses_first(number, kind):
-    """What loses the first messages of this kind."""
+    """A daemon that loses the first messages of this kind."""
     left = [number]
 
     def loses(command):
@@ -83,7 +83,7 @@ def loses_first(number, kind):
 
 
 def stays(axes, after=0.0):
-    """Whether the axes stand after so many seconds, and go on doing so."""
+    """Whether the axes are at standstill after so many seconds, and stay there."""
     axes.run(after)
     before = axes.positions
     axes.run(2.0)
@@ -259,7 +259,7 @@ def path(end, step):
 
 
 def streams(points, loses=None):
-    """Enabled axes that are given points, two at a time."""
+    """Enabled axes that get two points at a time."""
     daemon, axes = on_a_bus()
     daemon.loses = loses or daemon.loses
     axes.enable()

@@ -12,7 +12,7 @@ export LCM_DEFAULT_URL=tcpq://127.0.0.1:$((20000 + $$ % 12000))
 
 fails() { cat "$tmp"/log "$tmp"/said >&2; exit 1; }
 
-# start_taktd NETWORK: the one before ends. The new one is ready when this returns.
+# start_taktd NETWORK - ends the previous taktd and starts another one, which is ready when the function returns.
 start_taktd() {
   end_taktd
   "$bin/taktd" "$1" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/log" &

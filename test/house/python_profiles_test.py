@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""python_profiles_test.py TYPES - takt.Axes in the modes in which drives make their motions, on the bus
-of python_daemon.py."""
+"""python_profiles_test.py TYPES - tests takt.Axes in the modes in which the drives themselves make the motions, on the
+bus of python_daemon.py."""
 import itertools
 import sys
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""python_speed_test.py TYPES - the words that takt.speed computes for speed axes."""
+"""python_speed_test.py TYPES - tests the words that takt.speed computes for speed axes."""
 import pathlib
 import sys
 import types
@@ -17,7 +17,8 @@ def pattern(mask=0, *values):
 
 
 def words(**changes):
-    """Those of a DRV-28: signals 0 and 1 are its status word and frequency, 2 and 3 its control word and set frequency."""
+    """The words of a DRV-28: signals 0 and 1 are its status word and frequency, 2 and 3 its control word and set
+    frequency."""
     axis = types.SimpleNamespace(
         node="pump", node_id=4, sequence=0, fault_reset=0, status=0, actual_speed=1, control=2, set_speed=3, off=5, stop=5, run=1,
         run_reverse=2, quick_stop=6, reset=7, ready=pattern(0xFF, 1, 2, 3), running=pattern(0xFF, 1, 2), reverse=pattern(0xFF, 2),
@@ -28,7 +29,7 @@ def words(**changes):
 
 
 class Drive:
-    """An axis, and the images that it is given."""
+    """An axis, and the images that it gets."""
 
     def __init__(self, data_type=6, **changes):
         signal = types.SimpleNamespace(data_type=data_type, bits=16)

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""python_verbs_on_bus.py - the verbs of takt_axes.Axes on taktd with the simulated devices of python_verbs.yaml."""
+"""python_verbs_on_bus.py - tests the calls of takt_axes.Axes with taktd and the simulated devices of
+python_verbs.yaml."""
 import sys
 
 from takt_axes import Axes, Obstacle

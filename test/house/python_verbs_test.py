@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""python_verbs_test.py TYPES - what takt.Axes does beside motions, on the bus of python_daemon.py: Halt,
-quick stop, touch probe, SDO, inputs and outputs."""
+"""python_verbs_test.py TYPES - tests the functions of takt.Axes other than motions, on the bus of python_daemon.py:
+Halt, quick stop, touch probe, SDO, inputs and outputs."""
 import sys
 
 from python_daemon import PERIOD, SHORT, check, failures, jogs, obstacle, on_a_bus

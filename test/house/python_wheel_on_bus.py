@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""python_wheel_on_bus.py BUS [KEYS] - the installed package on a taktd with the simulated devices of two_axes.yaml. With KEYS,
-the bus accepts only messages with the key, and this program only signed ones."""
+"""python_wheel_on_bus.py BUS [KEYS] - tests the installed package on a taktd with the simulated devices of
+two_axes.yaml. With KEYS, the bus accepts only messages with the key, and this program accepts only signed messages."""
 import os
 import sys
 import time

@@ -1,6 +1,6 @@
 #!/bin/sh
-# python_wheel_test.sh BIN PYTHON - the wheel of the Python package: the same bytes twice, without network; installed in a virtual
-# environment, programs outside the tree use it beside taktd. PYTHON has the module lcm.
+# python_wheel_test.sh BIN PYTHON - tests the wheel of the Python package. Two builds without network give the same bytes. Programs
+# outside the tree use the wheel, installed in a virtual environment, with a taktd. PYTHON has the module lcm.
 . "$(dirname "$0")/python_on_bus.sh"
 wheel=$(sh "$here/share/wheel.sh" "$tmp/first")
 again=$(umask 077 && sh "$here/share/wheel.sh" "$tmp/second")
@@ -19,7 +19,7 @@ run "$tmp/programs/first_bus.py"
 grep -q '^vendor 0x0000ABCD$' "$tmp/said" || fails
 run "$tmp/programs/python_wheel_on_bus.py" demo
 
-# A bus with keys, whose images are signed: without the key nothing is answered, with it everything.
+# On a bus with keys, whose images are signed, taktd answers nothing without the key, and everything with the key.
 "$bin/takt" keys new "$tmp/plant.keys" --name plant >/dev/null
 sed "s#\.\./eds/#$here/share/eds/#; s/{name: demo/{name: secret/" "$here/share/demo/two_axes.yaml" >"$tmp/secret.yaml"
 echo "lcm: {keys: plant.keys, authenticate: images}" >>"$tmp/secret.yaml"

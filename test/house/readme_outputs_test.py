@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""readme_outputs_test.py BIN [--update]: README.md and the pages of share/doc show what files contain and what commands print.
+"""readme_outputs_test.py BIN [--update]: checks that README.md and the pages of share/doc show what files contain and
+what commands print.
 
-A block that begins with `$ takt simulate` (or another of COMMANDS) and names only files of the tree must repeat lines of
-the stdout of that command; `$ taktd FILE --check` too. A block that begins with `# share/...` must repeat lines of that
-file. A line of three points matches any number of lines. --update corrects the blocks in which nothing but numbers has
-changed. The commands of the tutorial run in a folder that has the files which the tutorial makes.
+A block that begins with `$ takt simulate` (or another of COMMANDS) and names only files of the tree must repeat lines
+of the stdout of that command; `$ taktd FILE --check` too. A block that begins with `# share/...` must repeat lines of
+that file. A line of three points matches any number of lines. --update corrects the blocks in which only numbers have
+changed. The commands of the tutorial run in a folder that has the files of the tutorial.
 
 Each relative link must lead to a file that exists, and to a heading where it has an anchor. The index must name every
 page. README.md must not be longer than LONGEST_README lines.
@@ -41,7 +42,7 @@ def parts_of(lines):
 
 
 def place(part, lines, start, same):
-    """Where `part` stands in `lines` from `start` on; None: nowhere."""
+    """The place of `part` in `lines` from `start` on; None: `lines` does not contain it."""
     for i in range(start, len(lines) - len(part) + 1):
         if all(same(a, b) for a, b in zip(part, lines[i:])):
             return i
@@ -49,7 +50,7 @@ def place(part, lines, start, same):
 
 
 def compare(shown, real, same):
-    """The parts of `shown` as `real` has them, None; or None and the first part that is not there."""
+    """(The parts of `shown` as `real` has them, None), or (None, the first part that `real` does not have)."""
     real, found, at = [line.rstrip() for line in real], [], 0
     parts = parts_of(shown)
     for i, part in enumerate(parts):
@@ -77,7 +78,7 @@ def real_lines(title, tools, folder):
     files = [word for word in words if word.endswith((".yaml", ".eds", ".dcf", ".bin"))]
     if not is_checked(words):
         return None
-    # A page may name a file of the tree although its commands run elsewhere.
+    # A page may name a file of the tree although its commands run in another folder.
     places = [place for place in (folder, ROOT) if all((place / file).exists() for file in files)]
     if not places:
         return None

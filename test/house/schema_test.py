@@ -20,7 +20,8 @@ DRIVE = str(ROOT / "share/eds/takt_drive402.eds")
 FINDING = re.compile(r"^[^\n:]*:(\d+):\d+: (error|warning): .*\[([a-z-]+)\]$", re.M)
 # What a schema can express. Other rules compare keys with each other, with devices, or read the text of a value.
 KINDS = {"unknown-key", "wrong-type", "out-of-range", "unknown-value", "not-a-number", "not-a-version", "missing-key", "octal"}
-# Keys whose readers know more than the schema: what they refuse depends on other keys or files, or is a hole in a range.
+# Keys whose readers check more than the schema: what they refuse depends on other keys or files, or is a gap in a
+# range.
 BEYOND = {
     "sync_overflow": "0 or 2..240: 1 is reserved",
     "sync_source": "needs sync_period",

@@ -1,10 +1,10 @@
 /* Preloaded into the programs of a user-mode-linux guest: most of their readings of the clock cost
  * no system call.
  *
- * A program of the host reads a clock from memory. In a guest that is a system call, and it was two
- * of three. A reading that follows another within a few microseconds of the processor gives the
- * same time here. No other system call can have been between them, because each takes the guest
- * longer.
+ * On the host, a program reads a clock from memory. In a guest, each reading is a system call, and
+ * two of three system calls were such readings. With this library, a reading that follows another
+ * one within a few microseconds of the processor gives the same time. The guest can have made no
+ * other system call between the two readings, because each call takes longer than that.
  */
 #include <sys/syscall.h>
 #include <time.h>

@@ -1,8 +1,8 @@
-/* Preloaded into user-mode-linux by its test: a host whose register state is 11 kB, as with AMX, on
- * any processor.
+/* Preloaded into user-mode-linux by its test. It imitates, on any processor, a host whose register
+ * state is 11 kB, as with AMX.
  *
- * A caller may read as much of the state as it likes. What it sets has to be all of it, as in the
- * host's own check.
+ * A caller may read any part of the state. A caller that sets the state has to set the whole state;
+ * the host checks this, too.
  */
 #include <dlfcn.h>
 #include <elf.h>

@@ -6,7 +6,7 @@
 
 namespace takt::test {
 
-/// While it lives, this process can open no file and accept no connection (EMFILE).
+/// While this object exists, the process can open no file and accept no connection (EMFILE).
 class NoDescriptorLeft {
  public:
   NoDescriptorLeft() {

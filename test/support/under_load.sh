@@ -1,5 +1,5 @@
 #!/bin/sh
-# Repeats tests of a build beside busy processes and counts what fails: no test may fail because the machine is busy.
+# Repeats tests of a build beside busy processes and counts the failures: no test may fail because the machine is busy.
 #
 #   test/support/under_load.sh [-n TIMES] [-b BUSY] [-d BUILD] [CTEST OPTION...]
 #
@@ -11,7 +11,7 @@
 #   sh test/support/under_load.sh -n 50 -L 'vcan|e2e|threaded'
 #   sh test/support/under_load.sh -n 5 -j 2
 #
-# Exit code 0: nothing failed. What the tests that failed have said is in BUILD/under_load.log.
+# Exit code 0: no test failed. BUILD/under_load.log has the output of the failed tests.
 set -u
 times=50 busy=4 build=build/release
 while [ $# -gt 1 ]; do

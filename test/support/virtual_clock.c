@@ -1,4 +1,4 @@
-/* Preloaded into user-mode-linux: the guest has a clock of its own, which a busy host does not
+/* Preloaded into user-mode-linux. It gives the guest a separate clock, which a busy host does not
  * disturb.
  *
  * The guest's time is the processor time that it has used, divided by `speed`, plus the time that
@@ -31,11 +31,12 @@ static int (*host_sigsuspend)(const sigset_t*);
 static pid_t (*host_waitpid)(pid_t, int*, int);
 static int (*host_clone)(int (*)(void*), void*, int, void*, ...);
 
-/* An alarm makes UML look at its clock after `look_again` of the host's time, so a look finds
- * little more than that of processor time. Where it finds more than `longest_step`, the machine has
- * stood still under the host, which counts that as processor time, or a host process has got the
- * number of a process of the guest that has ended: nobody in the guest has worked in this time.
- * What is counted of it is 1.5 ms of the guest, less than a cycle of the buses in the tests. */
+/* An alarm makes UML read its clock after `look_again` of the host's time, so a reading finds little
+ * more processor time than that. If a reading finds more than `longest_step`, there are two possible
+ * causes: the machine was paused below the host, which counts the pause as processor time, or a host
+ * process has got the process id of a guest process that has ended. In both cases no process of the
+ * guest has worked in this time. It then counts as 1.5 ms of the guest, which is less than a cycle
+ * of the buses in the tests. */
 static const Nanoseconds look_again = 5000000;
 static const Nanoseconds longest_step = 12000000;
 

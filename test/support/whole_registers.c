@@ -2,11 +2,12 @@
  * (AMX, since Intel's Sapphire Rapids: 11 kB).
  *
  * UML 6.1 keeps the registers of its processes in a buffer of a fixed size and moves them with
- * PTRACE_GETREGSET and PTRACE_SETREGSET of NT_X86_XSTATE. The host gives a part where only a part
- * is asked for, but it refuses to set less than the whole: UML then panics in put_fp_registers
- * before its first process runs. So a part is set here in two steps: the whole state is read from
- * the host, UML's part replaces its beginning, and the whole is set. What UML does not know of (the
- * AMX tiles) stays as it was, which is right as long as no program in the guest uses it.
+ * PTRACE_GETREGSET and PTRACE_SETREGSET of NT_X86_XSTATE. The host returns a part of the state on
+ * request, but refuses to set less than the whole state: UML then panics in put_fp_registers before
+ * its first process runs. Therefore this library sets a part in two steps: it reads the whole state
+ * from the host, replaces its beginning by UML's part, and sets the whole state. The registers that
+ * UML does not know (the AMX tiles) keep their values, which is right as long as no program in the
+ * guest uses them.
  *
  * On a processor without AMX the same path works too, and costs one more system call each time.
  */

@@ -1,7 +1,7 @@
 #!/bin/bash
-# clock_test.sh WITH_VCAN LIBRARIES PROBE - the clock that with-vcan -v gives to a guest: it goes on by itself while the guest
-# has nothing to do, it stands still while the host stops the guest, and it advances while the guest computes.
-# Exit code 77: this is no x86 processor, and user-mode-linux is not there.
+# clock_test.sh WITH_VCAN LIBRARIES PROBE - tests the clock that with-vcan -v gives to a guest. The clock advances while
+# the guest is idle and while the guest computes, and does not advance while the host stops the guest. Exit code 77:
+# this is no x86 processor, and user-mode-linux is not there.
 set -u
 case $(uname -m) in x86_64 | i?86) ;; *) exit 77 ;; esac
 with_vcan=$1 probe=$3
@@ -18,7 +18,7 @@ check() { # WHAT TEST...
   failures=$((failures + 1))
 }
 
-# The host stops the guest for three seconds while that looks for gaps in its clock.
+# The host stops the guest for three seconds while the guest looks for gaps in its clock.
 cat >"$folder/clock.sh" <<END
 sleep 5000 && echo "it slept"
 "$probe" compute && echo "it computed"

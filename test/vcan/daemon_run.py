@@ -10,7 +10,7 @@ from dissector import judge_dissector
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 NMT, SYNC = 0x000, 0x080
-PATIENCE = 180  # s; what does not happen within these does not happen
+PATIENCE = 180  # s; an event that has not come within this time counts as missing
 failures = []
 
 
@@ -105,7 +105,7 @@ class DaemonRun:
         return [event for event in told if event["kind"] == kind and node in (None, event["node"])]
 
     def await_event(self, kind, node=None, count=1):
-        """The `count`th such event. False: taktd has ended, or it takes too long."""
+        """Waits for the `count`th such event. Returns False if taktd has ended, or after the time limit."""
         soon(lambda: len(self.events(kind, node)) >= count or self.taktd.poll() is not None)
         good = len(self.events(kind, node)) >= count
         return check(good, f"{kind}{f' of node {node}' if node else ''} is told, number {count}")
@@ -127,6 +127,7 @@ class DaemonRun:
         return sum(frame.standard(identifier) for frame in self.frames()[begin:end])
 
     def await_frames(self, identifier, count, begin):
-        """Until there are so many of them from `begin` on. False: taktd has ended, or they do not come."""
+        """Waits until there are so many such frames from `begin` on. Returns False if taktd has ended, or if the frames
+        do not come."""
         soon(lambda: self.count(identifier, begin) >= count or self.taktd.poll() is not None)
         return self.count(identifier, begin) >= count

@@ -20,8 +20,8 @@ class DiagnosticOnVcan : public testing::Test {
       : port_{*SocketCanPort::open("vcan0", plan_, {}, sent_.get())},
         socket_{*DiagnosticSocket::open("vcan0", plan_, *sent_)} {}
 
-  /// Events until this many frames were heard since the begin of the test, error frames included.
-  /// The kernel may hand them over later than they were sent.
+  /// Collects events until this many frames were received since the beginning of the test, error
+  /// frames included. The kernel may deliver the frames later than they were sent.
   std::vector<Event> events(std::size_t frames) {
     const Time limit = monotonic_now() + test::time_limit;
     while (true) {

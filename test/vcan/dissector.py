@@ -1,4 +1,4 @@
-"""What Wireshark's CANopen dissector makes of the traffic on vcan0.
+"""Checks the frames on vcan0 with Wireshark's CANopen dissector.
 
 tshark is slow in user-mode-linux. So a judge that guest_tests.py has started leaves its recordings in a folder, and the
 dissector reads them when the guest has ended.
@@ -19,7 +19,7 @@ REMOTE = "Remote Transmission Request"
 
 @contextlib.contextmanager
 def recording(log):
-    """candump writes what is on the bus into `log`."""
+    """Runs candump, which writes the frames on the bus to `log`."""
     with open(log, "w") as out:
         candump = subprocess.Popen(["candump", "-L", "-r", "8000000", "vcan0"], stdout=out)
         try:
@@ -30,7 +30,8 @@ def recording(log):
 
 
 def without(log, foreign, rest):
-    """Writes to `rest` what is left of `log` when each frame of `foreign` is taken out once; how many were there."""
+    """Writes `log` without one copy of each frame of `foreign` to `rest`; returns the number of these frames that were
+    found."""
     left, taken = collections.Counter(foreign), 0
     with open(log) as lines, open(rest, "w") as out:
         for line in lines:
@@ -44,10 +45,10 @@ def without(log, foreign, rest):
 
 
 def judge_dissector(check, log, least, remote=(), foreign=(), unread=()):
-    """Each of at least so many frames is CANopen, well formed, and of a kind that the dissector knows. It leaves a
-    remote request to plain CAN: only those for the identifiers in `remote` are right. `foreign`: the frames, as
-    frame_of() has them, that the judge sent itself and that may be anything. `unread`: what the dissector says of
-    frames that are right and that it does not know."""
+    """Each of at least so many frames is CANopen, well formed, and of a kind that the dissector knows. The dissector
+    treats a remote request as plain CAN: only requests for the identifiers in `remote` are right. `foreign`: the
+    frames, as frame_of() has them, that the judge sent itself and that may be anything. `unread`: the words of the
+    dissector for frames that are right but unknown to it."""
     case = {"least": least, "remote": list(remote), "unread": list(unread),
             "foreign": [(number, payload.hex()) for number, payload in foreign]}
     folder = os.environ.get("JUDGE_RECORDINGS")

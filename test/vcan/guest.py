@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""guest.py RESULTS COMMAND... - runs COMMAND, which is guest_tests.py by way of with-vcan, and sorts what it prints.
+"""guest.py RESULTS COMMAND... - runs COMMAND, which starts guest_tests.py by with-vcan, and sorts its output.
 
-RESULTS/NAME.out is what the test NAME has printed, and RESULTS/NAME.code its exit code. A test that the guest has not
-finished has no code. RESULTS/guest.out and guest.code are those of COMMAND itself. Exit code: 0, whatever the tests say,
-because result.py says it for each test.
+RESULTS/NAME.out is the output of the test NAME, and RESULTS/NAME.code its exit code. A test that the guest has not
+finished has no code. RESULTS/guest.out and guest.code are those of COMMAND itself. Exit code: always 0, because
+result.py gives the result of each test.
 """
 import pathlib
 import re

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""guest_tests.py TESTS RESULTS - runs tests one after the other, each in a network of its own. Runs inside with-vcan.
+"""guest_tests.py TESTS RESULTS - runs tests one after the other, each in a separate network namespace. Runs inside
+with-vcan.
 
 A line of the file TESTS is a test: its name and its command, separated by tabs. A command that is a script of Python is
 run by a copy of this process, which has read the libraries already. A judge leaves its recordings in RESULTS/NAME. The
-variable VCAN_TESTS may have the names of those that shall run alone. guest.py reads what is printed.
+variable VCAN_TESTS may have the names of the tests to run alone. guest.py reads the output.
 """
 import ctypes
 import gc
@@ -30,12 +31,12 @@ libc = ctypes.CDLL(None, use_errno=True)
 
 
 def become(command, recordings):
-    """In the process of the test: what a shell would do for it."""
+    """Prepares the process of the test, as a shell would."""
     os.dup2(sys.stdout.fileno(), sys.stderr.fileno())
     if libc.unshare(CLONE_NEWNET) != 0:
         raise OSError(ctypes.get_errno(), "no network namespace")
     subprocess.run(["ip", "-batch", "-"], input=NETWORK, text=True, check=True)
-    time.sleep(0.1)  # the kernel has done its work for the network of the last test, and hands over frames at once
+    time.sleep(0.1)  # the kernel has finished its work for the network of the last test, and delivers frames at once
     os.environ["JUDGE_RECORDINGS"] = str(recordings)
     os.setsid()
     signal.alarm(LIMIT)
@@ -76,7 +77,7 @@ def children():
 
 
 def end_what_is_left():
-    """Whoever has lost its parent is a child of this process."""
+    """A process that has lost its parent becomes a child of this process."""
     while left := list(children()):
         for process in left:
             os.kill(process, signal.SIGKILL)

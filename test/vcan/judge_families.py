@@ -2,8 +2,8 @@
 """judge_families.py BIN: the device families of the PDO matrix on vcan0.
 
 The course of test/virtual/pdo_matrix_cells.hpp, 20 times as slow, for all families at once: this script is their
-master. Then taktd is, with other types. Wireshark's dissector reads all of it. Runs inside with-vcan. Where that has no
-virtual time, a run has another try, three in all. Exit code 1: a check failed.
+master. Then taktd is the master, with other types. Wireshark's dissector reads all frames. Runs inside with-vcan. If
+with-vcan has no virtual time, a failed run is repeated, up to three runs in all. Exit code 1: a check failed.
 """
 import collections
 import pathlib
@@ -24,7 +24,7 @@ REFUSED = 0x06090030
 COURSE = {"E": [(12, 1), (14, 0), (33, 2)], "R": (5, 15, 17, 37), "S": (10, 20, 30, 40, 50), "P": (11, 26)}
 END, INHIBIT, TIMER = 103, 1800, 480
 
-# Types, letters of what happens as in the matrix, and the frames of each family that has that type.
+# Types, letters of what happens as in the matrix, and the frames of each family that has this type.
 RUNS = [
     (0, "ETIRS", {"301": [10, 20, 40], "ars": [10, 20, 40], "Lenze": [10, 20, 30, 40, 50], "Beckhoff": [10, 40]}),
     (1, "ETIRS", dict.fromkeys(("301", "ars", "Lenze", "Beckhoff", "DRV-28"), [10, 20, 30, 40, 50])),
@@ -70,7 +70,7 @@ FAMILIES = {
     "Beckhoff": (8, 1, (0x6200, 1), 1),
     "DRV-28": (9, 2, (0x2101, 3), 2),
 }
-ASKED = (0x185, 0x285, 0x186, 0x187, 0x188, 0x289)  # by remote requests; 0x285 by taktd alone
+ASKED = (0x185, 0x285, 0x186, 0x187, 0x188, 0x289)  # sent on remote request; only taktd requests 0x285
 
 
 def course(devices, letters):

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """judge_garbage.py BIN [SEED]: thousands of random frames on vcan0 against a running taktd and its two nodes.
 
-taktd lives, and when the bus is quiet again its nodes are operational and it ends in order. What takt's programs
-sent to all that is well formed. Runs inside with-vcan.
+taktd continues to run. When the bus is quiet again, its nodes are operational and taktd stops in order. All frames that
+takt's programs sent meanwhile are well formed. Runs inside with-vcan.
 Exit code 1: a check failed.
 
-NMT commands that stop or reset the nodes are among them, and a second SYNC: taktd takes the nodes back. Only error
-frames are not: they come from a driver, never from the bus.
+Among the frames are NMT commands that stop or reset the nodes, and a second SYNC: taktd then boots or starts the nodes
+again. Error frames are not among them, because they come from a driver, never from the bus.
 """
 import json
 import random
@@ -37,7 +37,7 @@ def bytes_of(dice, first=None):
 
 
 def garbage(dice):
-    """(identifier with flags, data): some that means nothing, more that nearly does."""
+    """(identifier with flags, data): some frames without meaning, and more that are nearly valid."""
     node = dice.choice(NODES)
     kind = dice.randrange(13)
     if kind == 0:
@@ -66,7 +66,7 @@ def garbage(dice):
 
 
 def pour(dice, count):
-    """Sends it; what a candump log has of it."""
+    """Sends the frame; returns it as a candump log has it."""
     sent = []
     with socket.socket(socket.PF_CAN, socket.SOCK_RAW, socket.CAN_RAW) as bus:
         bus.bind(("vcan0",))
@@ -80,14 +80,14 @@ def pour(dice, count):
 
 
 def states(run):
-    """What taktd says of its nodes, by name; empty where it does not answer."""
+    """The states of the nodes that taktd reports, by name; empty if taktd does not answer."""
     status = subprocess.run([run.binaries / "takt", "status", "--json"], capture_output=True, text=True)
     buses = json.loads(status.stdout)["buses"] if status.returncode == 0 else []
     return {node["name"]: node["nmt_state"] for bus in buses for node in bus["nodes"]}
 
 
 def exchange(run):
-    """To the last SYNCs: how many there were, and the answers of each node."""
+    """The number of the last SYNCs, and the answers of each node to them."""
     syncs = [frame.number for frame in run.frames() if frame.standard(SYNC)][-ENOUGH:]
     return len(syncs), [run.count(0x180 + node, syncs[0]) for node in NODES] if syncs else []
 

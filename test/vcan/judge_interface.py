@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """judge_interface.py BIN: vcan0 goes down and comes up again under a running taktd and its two nodes.
 
-Both are told, the nodes are booted again, and SYNC comes back in its beat: never two for one period, whatever
-waited meanwhile. Runs inside with-vcan. Exit code 1: a check failed.
+taktd reports both events and boots the nodes again, and SYNC comes back in its raster: never two SYNCs in one period,
+whatever waited meanwhile. Runs inside with-vcan. Exit code 1: a check failed.
 """
 import subprocess
 import sys
@@ -23,8 +23,8 @@ def set_link(state):
 
 
 def judge_beat(run, down):
-    """taktd leaves out what is late by more than half a period. Only where its thread stood still between looking
-    at the clock and sending does the recording have a shorter distance: behind a gap, and once."""
+    """taktd leaves out a SYNC that is late by more than half a period. The recording has a shorter distance only if the
+    thread paused between reading the clock and sending: once, behind a gap."""
     times = [f.time for f in run.frames() if f.standard(SYNC)]
     steps = [b - a for a, b in zip(times, times[1:])]
     excused = lambda i: i > 0 and steps[i - 1] > 1.4 * PERIOD

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """judge_learn.py BIN: `takt learn` of a bus that python-canopen has booted and configured on vcan0.
 
-`takt sim` plays two drives, candump records, python-canopen is the master. What is learned is what python-canopen
-was told to do, and taktd boots the same devices by the learned file. Wireshark's dissector reads it all.
+`takt sim` plays two drives, candump records, python-canopen is the master. The learned file has the configuration that
+python-canopen has written, and taktd boots the same devices by this file. Wireshark's dissector reads all frames.
 Runs inside with-vcan. Exit code 1: a check failed.
 """
 import json

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """judge_loss.py BIN: one of two simulated nodes on vcan0 dies by SIGKILL under a running taktd and comes back.
 
-The loss is told, the other node answers every SYNC meanwhile, and the dead one is booted by its plan again. All is
-judged by counting recorded frames: a machine that stands still delays them and loses none. Runs inside with-vcan.
+taktd reports the loss, the other node answers every SYNC meanwhile, and taktd boots the dead node again by its plan.
+The test counts recorded frames, because a pause of the machine delays frames but loses none. Runs inside with-vcan.
 """
 import sys
 
@@ -15,7 +15,7 @@ EDGE = 2  # answers that may be under way
 
 
 def writes(frames):
-    """What a boot writes to the node: SDO download requests. Tried again it may write again."""
+    """The SDO download requests of a boot to the node. A boot that is tried again may write again."""
     return {f.data.hex() for f in frames if f.standard(0x600 + RIGHT) and f.data[0] >> 5 == 1}
 
 
@@ -42,8 +42,8 @@ def judge_boots(run, killed):
 
 
 def left_out(frames, node):
-    """How many SYNCs the node has not answered. Answers that come late, for the machine stood still, are still
-    answers: each half counts where it was least behind."""
+    """How many SYNCs the node has not answered. Answers that come late because the machine paused are answers: in each
+    half, the smallest backlog counts."""
     behind, after_sync = 0, []
     for frame in frames:
         behind -= frame.standard(0x180 + node)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """judge_lss.py BIN: LSS on vcan0. python-canopen's master against the devices of `takt sim`, `takt lss`
 against slaves written here from the standard, and taktd, which gives ids to nodes that have none.
-Wireshark's dissector reads it all.
+Wireshark's dissector reads all frames.
 
 Runs inside with-vcan, with the interpreter of the judges' environment. Exit code 1: a check failed.
 """
@@ -148,7 +148,7 @@ def judge_tool(binaries):
 
 
 def judge_talkative(tool):
-    """A device that answers fastscan in configuration state hides the others, and is told."""
+    """A device that answers fastscan in configuration state hides the others, and takt reports this."""
     bus = Slaves("vcan0", [Slave(3, always=True), Slave(4)])
     code, out, said = tool.run("find")
     check(code == 0 and out.count("vendor") == 1 and "0x00000003" in out, f"one device, no phantom: {out.strip()}")
@@ -179,7 +179,7 @@ def judge_addressed(bus, tool, slaves):
 
 
 def judge_daemon(binaries):
-    """Nodes of the network file that have no id get it and are booted."""
+    """Nodes of the network file that have no node id get one from taktd, and are booted."""
     simulation = subprocess.Popen([binaries / "takt", "sim", NETWORK, "--bus", "vcan0"])
     with tempfile.TemporaryDirectory() as folder:
         events = pathlib.Path(folder) / "events.jsonl"

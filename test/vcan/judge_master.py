@@ -31,7 +31,7 @@ def check(good, what):
 
 
 def abort_of(call, *arguments):
-    """The abort code, 0 where the device took it, None where it was silent."""
+    """The abort code; 0 if the device accepted the write, None if it did not answer."""
     try:
         call(*arguments)
     except canopen.SdoAbortedError as error:
@@ -42,7 +42,7 @@ def abort_of(call, *arguments):
 
 
 def frames_of(network, identifier, seconds, action=lambda: None):
-    """[(time, payload)] of what comes after `action`."""
+    """[(time, payload)] of the frames that come after `action`."""
     seen = []
     collect = lambda _, data, stamp: seen.append((stamp, bytes(data)))
     network.subscribe(identifier, collect)
@@ -57,7 +57,7 @@ def states_of(network, node_id, seconds):
 
 
 def judge_dictionary(node):
-    """What the EDS lists is there, as wide as it says, and refuses writes where it says so."""
+    """The device has the objects that the EDS lists, with the widths and the access of the EDS."""
     wrong = []
     objects = [o for entry in node.object_dictionary.values() for o in ([entry] if isinstance(entry, canopen.objectdictionary.ODVariable) else entry.values())]
     for variable in objects:

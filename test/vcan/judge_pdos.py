@@ -2,8 +2,8 @@
 """judge_pdos.py BIN: a part of the PDO matrix on vcan0, by frames that this script writes itself.
 
 First it is the master of a simulated device (`takt sim`): each transmission type, inhibit time, event
-timer, remote requests, frames of wrong length. Then taktd is: remote requests and type 0 on the wire. The families of
-devices: judge_families.py. Wireshark's dissector reads all of it.
+timer, remote requests, frames of wrong length. Then taktd is the master: remote requests and type 0 on the wire.
+judge_families.py tests the device families. Wireshark's dissector reads all frames.
 Runs inside with-vcan. Exit code 1: a check failed.
 """
 import pathlib
@@ -42,7 +42,7 @@ class Bus:
         self.socket.send(struct.pack("<IB3x8s", identifier, size, data))
 
     def frames(self, seconds):
-        """Yields (time, identifier, payload) of what comes within `seconds`."""
+        """Yields (time, identifier, payload) of the frames that come within `seconds`."""
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
             self.socket.settimeout(left)
@@ -58,7 +58,7 @@ class Bus:
         return [(when, data) for when, can_id, data in self.frames(seconds) if can_id == identifier]
 
     def sdo(self, index, sub, value, size):
-        """Expedited download; the abort code, 0 where it was taken, None where nothing came."""
+        """Expedited download; returns the abort code, 0 if the device accepted the value, None without an answer."""
         command = 0x23 | (4 - size) << 2
         self.send(0x600 + self.node, struct.pack("<BHBI", command, index, sub, value))
         for _, can_id, data in self.frames(2):

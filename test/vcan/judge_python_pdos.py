@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """judge_python_pdos.py BIN: taktd and a device whose PDOs python-canopen sends and receives, on vcan0.
 
-TPDOs of type 5, of type 255 as an event and by its event timer; RPDOs of type 5 and 255. The device leaves some out.
-The frames that candump saw tell what has to be in the image and in the counts of taktd.
+TPDOs of type 5, of type 255 as an event and by its event timer; RPDOs of type 5 and 255. The device leaves out some
+TPDOs. The frames that candump has recorded determine the expected image and counts of taktd.
 Runs inside with-vcan, with the interpreter of the judges' environment. Exit code 1: a check failed.
 """
 import itertools
@@ -99,7 +99,7 @@ def due(frames, identifier, left_out=()):
 
 
 def in_order(seen, sent):
-    """Every value of `seen` is one of `sent`, none before the one it follows."""
+    """Every value of `seen` is in `sent`, and no value comes before the one that precedes it there."""
     rest = iter(sent)
     return all(value in rest for value in seen)
 
@@ -109,7 +109,7 @@ def without_repeats(values):
 
 
 def judge_each_nth(frames, cob_ids):
-    """Both directions of type 5, and what the device made of its RPDO."""
+    """Both directions of type 5, and the values that the device has taken from its RPDO."""
     syncs = [f[0] for f in frames if f[1] == SYNC]
     inputs, outputs = due(frames, cob_ids[False, 1], LEFT_OUT), due(frames, cob_ids[True, 2])
     for name, found in (("TPDO1", inputs), ("RPDO2", outputs)):
@@ -145,7 +145,7 @@ def judge_timer(frames, cob_ids):
 
 
 def tardy(frames, cob_ids, key):
-    """How often python, on a busy machine, sent a TPDO later than it should have. Its pause is not meant."""
+    """How often python, on a busy machine, has sent a TPDO too late. The intended pause does not count."""
     if key[1] == 1:
         syncs = [f[0] for f in frames if f[1] == SYNC]
         return sum(when - syncs[k * N - 1] > 0.020 for k, when, _ in due(frames, cob_ids[key], LEFT_OUT) if k * N <= len(syncs))

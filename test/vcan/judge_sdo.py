@@ -199,7 +199,8 @@ def main(binaries):
             time.sleep(0.2)
             simulation.terminate()
             simulation.wait()
-        # It keeps no state: the last segment of a block, with a number of 96 or more, is no SDO command to it.
+        # The dissector keeps no state: it regards the last segment of a block, with a number of 96 or more, as no SDO
+        # command.
         last_segment = [f"Default-SDO ({way}): Unknown (0x7)" for way in ("rx", "tx")]
         judge_dissector(check, log, 10000, unread=last_segment)
         read = subprocess.run([takt.program, "dump", NETWORK, log], capture_output=True, text=True)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """judge_simulation.py BIN: taktd on vcan0 against `takt sim` on vcan0, a node reset from outside.
 
-candump stands beside it; what it has recorded is judged: boot, SYNC, a node that leaves and comes back
+candump records the bus, and the test checks the recording: boot, SYNC, a node that leaves and comes back
 while the others keep cycling, and the ordered stop. Runs inside with-vcan. Exit code 1: a check failed.
 """
 import collections

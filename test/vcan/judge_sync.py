@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""judge_sync.py BIN: taktd follows the SYNC that python-canopen makes on vcan0, and sends TIME.
+"""judge_sync.py BIN: taktd follows the SYNC that python-canopen produces on vcan0, and sends TIME.
 
-The cycle begins with that SYNC, keeps to another period than ours, ends with a defined reaction when SYNC
-stays away, and goes on when it is back. The TIME frames are read with python-canopen's figures,
-and all frames by Wireshark's dissector.
+The cycle begins with that SYNC and follows its period, which differs from that of taktd. A defined reaction
+follows when SYNC is missing, and the cycle continues when SYNC is back. The test reads the TIME frames with the figures
+of python-canopen, and Wireshark's dissector reads all frames.
 Runs inside with-vcan. Exit code 1: a check failed.
 """
 import datetime
@@ -27,9 +27,9 @@ from dissector import judge_dissector, recording
 NETWORK = pathlib.Path(__file__).resolve().parent / "followed_sync.yaml"
 PERIOD, SLOWER = 0.020, 0.0205
 TICK, STALL = 0.002, 0.004
-LATE = 1.3  # periods; taktd takes it for lost after 1.5
+LATE = 1.3  # periods; taktd regards SYNC as lost after 1.5
 CALM = 12  # SYNCs until its node is surely back
-STANDSTILL = 0.5  # s that taktd, too, may stand still and then read a SYNC that waited for it
+STANDSTILL = 0.5  # s for which taktd may pause, too, and then read a SYNC that has waited
 ENOUGH = 80  # steady SYNCs that are judged
 PATIENCE = 180  # s for them
 START, STOP = b"\x01\x05", b"\x02\x05"
@@ -68,7 +68,7 @@ class Ear:
 
 
 class Ticks:
-    """When this machine stood still: every process on it, taktd too."""
+    """The times at which this machine paused, with every process on it, taktd too."""
 
     def __init__(self):
         self.stalls, self.running = [], True
@@ -97,8 +97,8 @@ def intervals(times):
 
 
 def steady(syncs, period, ticks):
-    """Indices of the SYNCs before which none has stayed away for a while, and behind which the machine went on
-    until the next: it may stand still, and what taktd does then is another question."""
+    """Indices of the SYNCs before which no SYNC was missing for a while, and after which the machine did not pause
+    until the next SYNC. What taktd does after a pause of the machine is not part of this check."""
     found, calm = [], 0
     for i, gap in enumerate(intervals(syncs)):
         calm = calm + 1 if gap < LATE * period else 0
@@ -112,7 +112,7 @@ def losses(syncs, period):
 
 
 class Source:
-    """The producer: python-canopen's, until enough has been seen of what follows it."""
+    """The producer of python-canopen, which runs until enough of the following cycles were recorded."""
 
     def __init__(self, network, ear):
         self.network, self.ear = network, ear
@@ -130,7 +130,7 @@ class Source:
 
 
 def judge_following(ear, ticks, syncs, period):
-    """Outputs stand at one place behind the SYNC of the other."""
+    """Outputs have a constant distance from the SYNC of the other producer."""
     followed = steady(syncs, period, ticks)
     check(len(followed) >= ENOUGH, f"{len(followed)} steady SYNCs of {period * 1e3} ms, none of them ours")
     outputs = [f[0] for f in ear.between(RPDO, syncs[0], syncs[-1])]

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """judge_taktd.py BIN: taktd on vcan0 against devices made with python-canopen.
 
-Nobody of this project wrote the devices, the LCM binding, candump or the dissector that judge here.
+The devices, the LCM binding, candump and the dissector of this test are not from this project.
 Runs inside with-vcan, with the interpreter of the judges' environment. Exit code 1: a check failed.
 """
 import collections
@@ -19,7 +19,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 NODES = (5, 6)
 PERIOD = 0.010
-SYNC_WINDOW = 0.005  # s; taktd tells TPDOs that come later
+SYNC_WINDOW = 0.005  # s; taktd reports TPDOs that come later
 TPDOS, RPDOS = {0x185, 0x186}, {0x205, 0x206}
 SYNC, NMT = 0x080, 0x000
 failures = []
@@ -132,7 +132,7 @@ def judge_cycles(frames):
 
 
 def judge_order(frames):
-    """Python's devices may answer late; what the master does is judged in cycles in which they did not."""
+    """Python's devices may answer late, so the test judges the master only in cycles in which they answered in time."""
     cycles, sync = [], None
     for when, identifier, _ in frames:
         if identifier == SYNC:

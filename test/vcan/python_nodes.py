@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """python_nodes.py INTERFACE EDS NODE...: CiA 402 axes on a CAN interface, made with python-canopen.
 
-SDO server, NMT slave, heartbeat and EMCY are python-canopen's; only the PDOs, which it leaves to the
-application, and a drive that reaches each set-point within one SYNC are written here.
+python-canopen has the SDO server, the NMT slave, heartbeat and EMCY. This file has only the PDOs, which python-canopen
+leaves to the application, and a drive that reaches each set-point within one SYNC.
 """
 import struct
 import sys

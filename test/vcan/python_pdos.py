@@ -1,7 +1,7 @@
 """A device whose PDOs python-canopen reads from its object dictionary, receives and sends.
 
-python-canopen knows no SYNC and no events on a device's side: when a PDO is due is decided here, from the
-transmission type that it has read. A PDO with event timer it repeats by itself.
+python-canopen knows no SYNC and no events on the side of a device, so this file decides when a PDO is due, by its
+transmission type. python-canopen itself repeats a PDO with event timer.
 """
 import struct
 import threading
@@ -14,7 +14,7 @@ COUNT = 0x60FD  # how many set-points came
 
 
 class Device:
-    """`left_out`: which of the times that a TPDO of type 1 to 240 is due it stays away, counted from 1.
+    """`left_out`: at which of the times when a TPDO of type 1 to 240 is due it is not sent, counted from 1.
     `pause`: (how many SYNCs after the start, seconds) of the PDOs with event timer."""
 
     def __init__(self, network, eds, node_id, left_out=(), pause=(0, 0)):

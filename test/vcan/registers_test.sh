@@ -1,7 +1,7 @@
 #!/bin/bash
-# registers_test.sh WITH_VCAN LIBRARIES PROBE - both ways in which user-mode-linux can set registers, on any processor: with
-# its own code, and with libwhole_registers.so preloaded. A host with the large state of AMX is imitated where there is none.
-# Exit code 77: this is no x86 processor, and user-mode-linux is not there.
+# registers_test.sh WITH_VCAN LIBRARIES PROBE - tests both ways in which user-mode-linux can set registers: with its own
+# code, and with libwhole_registers.so preloaded. On a processor without AMX, the test imitates a host with the large
+# state of AMX. Exit code 77: this is no x86 processor, and user-mode-linux is not there.
 set -u
 case $(uname -m) in x86_64 | i?86) ;; *) exit 77 ;; esac
 with_vcan=$1 libraries=$2 probe=$3
@@ -13,10 +13,10 @@ failures=0
 
 amx() { grep -qm1 amx_tile /proc/cpuinfo; }
 
-# guest [OPTION...]: the numbers in a guest.
+# guest [OPTION...] - runs the probe `numbers` in a guest.
 guest() { "$with_vcan" -m uml -t 1500 "$@" "$probe" numbers >"$folder/said" 2>&1; }
 
-# expect WORDS WHAT: the last guest has said so.
+# expect WORDS WHAT - fails unless the last guest has printed WORDS.
 expect() {
   if grep -q "$1" "$folder/said"; then echo "ok    $2"; return; fi
   echo "FAIL  $2"
@@ -30,7 +30,8 @@ guest -x plain
 if amx; then expect put_fp_registers "with -x plain it panics, as this processor has AMX"
 else expect "numbers are right" "with -x plain, on this processor"; fi
 
-# From here on with the state of AMX. The kernel's own preload comes first, as it has to cope with this one.
+# The following guests have the state of AMX. The library for the kernel is preloaded first, because it has to work with
+# this state.
 cat >"$folder/kernel" <<END
 #!/bin/sh
 LD_PRELOAD="\${LD_PRELOAD:+\$LD_PRELOAD:}$libraries/liblarge_registers.so" exec ${WITH_VCAN_KERNEL:-linux.uml} "\$@"

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""result.py RESULTS NAME [judge] - what the test NAME said in the guest that guest.py ran.
+"""result.py RESULTS NAME [judge] - prints the output of the test NAME in the guest that guest.py ran.
 
-Wireshark's dissector reads here what a judge has recorded there. Exit code: that of the test; 1: the dissector found
-something, or the guest ended before the test did; 77: this processor has no way to SocketCAN.
+Wireshark's dissector then reads the recordings of this test. Exit code: that of the test; 1: the dissector found a
+mistake, or the guest ended before the test; 77: this processor has no way to SocketCAN.
 """
 import pathlib
 import sys

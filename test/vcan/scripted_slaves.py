@@ -9,7 +9,7 @@ NONE = 255
 
 
 class Slave:
-    """`always`: it answers fastscan in configuration state too, whatever is asked, as some stacks do."""
+    """`always`: the slave also answers every question of fastscan in configuration state, as some stacks do."""
 
     def __init__(self, serial, node_id=NONE, store_error=0, always=False):
         self.always = always
@@ -83,7 +83,7 @@ class Slave:
 
 
 class Slaves:
-    """Each frame of the master reaches all of them."""
+    """Each frame of the master reaches all slaves."""
 
     def __init__(self, interface, slaves):
         self.slaves, self.commands = slaves, []

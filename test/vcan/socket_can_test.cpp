@@ -270,7 +270,7 @@ class SocketCanTrouble : public testing::Test {
   SocketCanTrouble() { run("ip link add vcan8 type vcan && ip link set vcan8 up"); }
   ~SocketCanTrouble() override { run("ip link del vcan8"); }
 
-  /// Filters and echo work again after trouble.
+  /// Filters and echo work again after a failure.
   void expect_working(SocketCanPort& port) {
     ASSERT_TRUE(soon(port, [&] { return !port.condition().interface_down; }));
     Peer peer{"vcan8"};

@@ -16,12 +16,12 @@
 
 namespace takt {
 
-/// Runs a command of the shell; the test fails where it fails.
+/// Runs a command of the shell. If the command fails, the test fails.
 inline void run(const std::string& command) {
   ASSERT_EQ(std::system(command.c_str()), 0) << command;
 }
 
-/// A plain CAN_RAW socket: the rest of the bus, written without the code under test.
+/// A plain CAN_RAW socket that stands for the rest of the bus. It uses no code under test.
 class Peer {
  public:
   explicit Peer(const char* interface)

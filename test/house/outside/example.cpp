@@ -1,4 +1,4 @@
-// The example of the README: all axes creep forward for as long as images come.
+// The example of the README: all axes move forward slowly while images come.
 #include <chrono>
 #include <takt/axis.hpp>
 #include <utility>
