@@ -9,6 +9,20 @@ namespace {
 
 double square(double value) noexcept { return value * value; }
 
+/// Returns the values in ascending order, after a number of instructions that does not depend on
+/// them. NaN stays among the values, at any place.
+std::array<double, 4> sorted(std::array<double, 4> values) noexcept {
+  constexpr std::array<std::array<std::size_t, 2>, 5> pairs{
+      {{0, 1}, {2, 3}, {0, 2}, {1, 3}, {1, 2}}};
+  for (const auto& [low, high] : pairs) {
+    // Both lines compare `high` with `low`. If one of the two is NaN, they thus stay in place.
+    const double less = std::min(values[low], values[high]);
+    values[high] = std::max(values[high], values[low]);
+    values[low] = less;
+  }
+  return values;
+}
+
 /// A change of the velocity to a higher one, at whose end the acceleration is 0. `peak` is the
 /// greatest acceleration, `hold` the time for which the axis keeps it.
 struct Rise {
@@ -137,10 +151,8 @@ std::array<double, 4> FarthestMotion::bends() const noexcept {
   const auto time = [&](double twice) {
     return twice - transfer_.start_acceleration + transfer_.end_acceleration;
   };
-  std::array bends{time(2 * std::sqrt(size / std::numbers::sqrt3)), time(2 * (limit - root)),
-                   time(2 * (limit + root)), time((square(0.75 * limit) + size) / limit)};
-  std::ranges::sort(bends);
-  return bends;
+  return sorted({time(2 * std::sqrt(size / std::numbers::sqrt3)), time(2 * (limit - root)),
+                 time(2 * (limit + root)), time((square(0.75 * limit) + size) / limit)});
 }
 
 bool FarthestMotion::rises_and_falls(double duration) const noexcept {
