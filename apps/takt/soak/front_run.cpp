@@ -44,9 +44,11 @@ std::vector<bool> every(std::size_t nodes, std::size_t first, std::size_t step) 
   return mine;
 }
 
-/// Motions need some time without faults until they end.
+/// Returns the factor by which the pauses between faults are longer. Motions need some time without
+/// faults until they end, and streams and gears need more to be compared with their paths.
 int slowness_of(const SoakOptions& options) {
-  return commanding_of(options) == Commanding::set_points ? 1 : 4;
+  if (commanding_of(options) == Commanding::set_points) return 1;
+  return options.seed % 3 == 1 ? 16 : 4;
 }
 
 /// Returns the number of programs. In two thirds of the runs with motions, it is one, which moves

@@ -22,6 +22,8 @@ constexpr double reach_time = 3.0;  // duration in s of a quick motion to the fa
 constexpr double part_of_range = 0.5;
 constexpr double near = 0.1;  // part of the reach within which most targets are
 constexpr Time longest_path = 8s;
+constexpr Time rest_time = 200ms;       // without a change of the target position
+constexpr Time longest_wait = 4s;       // for an axis to come to rest before its stream
 constexpr double part_of_leader = 0.6;  // part of the limits of the follower
 constexpr Time time_to_lock = 1s;       // from the command of a gear to the motion of its leader
 constexpr Time time_to_lead = 3s;       // from this motion to the next one
@@ -103,11 +105,15 @@ void MotionCommander::start(sim::Random random) {
   streams_ = gear_random_.chance(0.4);
   path_ = {};
   leading_.reset();
+  streaming_.reset();
 }
 
-void MotionCommander::see(SignalIndex target, std::int64_t counts) noexcept {
+void MotionCommander::see(SignalIndex target, std::int64_t counts, Time now) noexcept {
   for (Axis& axis : axes_) {
-    if (axis.signals.target == target) axis.position = static_cast<double>(counts);
+    if (axis.signals.target != target) continue;
+    const auto position = static_cast<double>(counts);
+    if (position != axis.position) axis.moved = now;
+    axis.position = position;
   }
 }
 
@@ -215,9 +221,16 @@ motion_gear_t MotionCommander::gear(const motion_command_t& command) const {
   return gear;
 }
 
+/// Chooses an axis for a stream. Most streams begin when their axis has come to rest; the others,
+/// which begin while it moves, are refused.
+void MotionCommander::choose_stream(Time now) {
+  const std::size_t axis = gear_random_.below(static_cast<std::uint32_t>(axes_.size()));
+  streaming_ = Streaming{.axis = axis, .until = now};
+  if (gear_random_.chance(0.8)) streaming_->until += longest_wait;
+}
+
 /// Returns nothing if the path would take too long, or if the limits are those of the file.
-std::optional<motion_command_t> MotionCommander::choose_stream(Time now) {
-  const Axis& axis = axes_[gear_random_.below(static_cast<std::uint32_t>(axes_.size()))];
+std::optional<motion_command_t> MotionCommander::begin_stream(const Axis& axis, Time now) {
   motion_goal_t goal = goal_of(axis);
   if (goal.max_velocity == 0) return std::nullopt;
   if (goal.max_jerk == 0) goal.max_jerk = goal.max_acceleration / jerk_rise;
@@ -272,6 +285,13 @@ std::optional<motion_command_t> MotionCommander::next(Time now) {
     command = stop_all();
   } else if (!path_.is_over()) {
     command = next_points(now);
+  } else if (streaming_) {
+    const Axis& axis = axes_[streaming_->axis];
+    if (now >= axis.moved + rest_time || now >= streaming_->until) {
+      streaming_.reset();
+      motion_due_ = now + random_.up_to(busy_pause);
+      if (auto stream = begin_stream(axis, now)) command = std::move(*stream);
+    }
   } else if (now >= motion_due_) {
     motion_due_ =
         now + (calm_ ? calm_pause + random_.up_to(calm_pause) : random_.up_to(busy_pause));
@@ -280,8 +300,11 @@ std::optional<motion_command_t> MotionCommander::next(Time now) {
       motion_due_ = now + time_to_lead;
     } else {
       auto other = gears_ && gear_random_.chance(0.4) ? choose_gear() : std::nullopt;
-      if (!other && streams_ && gear_random_.chance(0.4)) other = choose_stream(now);
-      command = other ? std::move(*other) : motion();
+      if (!other && streams_ && gear_random_.chance(0.4)) {
+        choose_stream(now);
+      } else {
+        command = other ? std::move(*other) : motion();
+      }
       if (leading_) motion_due_ = now + time_to_lock;
     }
   } else if (random_.chance(0.1)) {

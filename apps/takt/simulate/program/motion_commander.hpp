@@ -38,7 +38,7 @@ class MotionCommander {
   /// Returns the time of the newest point of the present stream, from its begin on.
   Time points_until() const noexcept { return path_.sent_until(); }
   /// Takes the present target position of the drive, in counts.
-  void see(SignalIndex target, std::int64_t counts) noexcept;
+  void see(SignalIndex target, std::int64_t counts, Time now) noexcept;
   /// From now on each message is a stop of all axes.
   void leave() noexcept { leaves_ = true; }
   bool has_axes() const noexcept { return !axes_.empty(); }
@@ -56,6 +56,7 @@ class MotionCommander {
     double reach = 0.0;         ///< farthest target, in counts
     bool limited = false;       ///< `limits:` has a velocity and an acceleration
     double position = 0.0;      ///< present target position, in counts
+    Time moved{};               ///< time of its newest change
     double pace = 1.0;          ///< part of the quick motion that this process chooses
   };
   /// An axis of the bus that may lead another one.
@@ -64,6 +65,11 @@ class MotionCommander {
     std::uint8_t number = 0;  ///< axis of the device, from 0
     std::string position{};   ///< name of its actual position
   };
+  /// A stream that begins when its axis has come to rest, and at this time at the latest.
+  struct Streaming {
+    std::size_t axis = 0;
+    Time until{};
+  };
   static Axis axis_of(const BusPlan& plan, const MotionAxis& signals);
   std::int64_t target_of(const Axis& axis);
   motion_goal_t goal_of(const Axis& axis);
@@ -71,7 +77,8 @@ class MotionCommander {
   std::optional<motion_command_t> choose_gear();
   void plan_leading(const motion_goal_t& follower, double ratio);
   motion_command_t lead();
-  std::optional<motion_command_t> choose_stream(Time now);
+  void choose_stream(Time now);
+  std::optional<motion_command_t> begin_stream(const Axis& axis, Time now);
   motion_command_t next_points(Time now);
   motion_command_t stop_all() const;
   void add_goals(motion_command_t& command, bool all);
@@ -92,6 +99,7 @@ class MotionCommander {
   motion_gear_t gear_{};                    ///< leader, phase and ratio of the newest gear
   std::optional<motion_goal_t> leading_{};  ///< next motion: the leader moves for the newest gear
   bool streams_ = false;                    ///< some of its motions are streams
+  std::optional<Streaming> streaming_{};
   StreamPath path_{};
   motion_goal_t path_goal_{};
   motion_stream_t stream_{};  ///< newest points of the path

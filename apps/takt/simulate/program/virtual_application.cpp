@@ -279,11 +279,11 @@ void VirtualApplication::count_on(command_t& command) {
 }
 
 /// Removes the outputs that the motions control.
-void VirtualApplication::leave_motions(command_t& command) {
+void VirtualApplication::leave_motions(command_t& command, Time now) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < command.signals.size(); ++i) {
     const auto signal = static_cast<SignalIndex>(command.signals[i]);
-    commander_.see(signal, command.values[i]);
+    commander_.see(signal, command.values[i], now);
     if (commander_.leads(signal)) continue;
     command.signals[kept] = command.signals[i];
     command.values[kept++] = command.values[i];
@@ -342,7 +342,7 @@ void VirtualApplication::send(Time now) {
   if (command.signals.empty()) return;
   count_on(command);
   if (turn_ != Turn::set_points) {
-    leave_motions(command);
+    leave_motions(command, now);
     send_motion(command, now);
     if (command.signals.empty() || !has_to_command(now)) return;
   }

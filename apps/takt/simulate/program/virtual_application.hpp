@@ -110,7 +110,7 @@ class VirtualApplication final : public Actor {
   bool has_push(AxisControl::Index axis) const;
   void judge_hearing(Time now);
   void take_turns(Time now);
-  void leave_motions(command_t& command);
+  void leave_motions(command_t& command, Time now);
   bool has_to_command(Time now) const;
   void send_motion(const command_t& command, Time now);
 
