@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "apps/axis/group/speed_pattern.hpp"
-#include "eds_parser/table/data_type.hpp"
+#include "eds_parser/values/data_type.hpp"
 
 namespace takt {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

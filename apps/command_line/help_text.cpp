@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 
 namespace takt {
 namespace {

@@ -1,7 +1,7 @@
 #include <array>
 #include <takt/drive402.hpp>
 
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/name_of.hpp"
 
 namespace takt {
 namespace {

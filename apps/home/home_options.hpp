@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/axis/axes_program.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

@@ -8,7 +8,7 @@
 
 #include "apps/logic/expression.hpp"
 #include "eds_parser/report/source.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/move/motion_limits.hpp"
+#include "apps/move/set_points/motion_limits.hpp"
 
 namespace takt {
 

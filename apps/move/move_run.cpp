@@ -8,7 +8,7 @@
 #include "apps/axis/not_ready.hpp"
 #include "apps/command_line/failure.hpp"
 #include "apps/move/held_axes.hpp"
-#include "apps/move/sine.hpp"
+#include "apps/move/set_points/sine.hpp"
 
 namespace takt {
 namespace {

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "apps/move/beat_move.hpp"
-#include "apps/move/following.hpp"
 #include "apps/move/move_options.hpp"
 #include "apps/move/move_sizes.hpp"
-#include "apps/move/paced_motion.hpp"
 #include "apps/move/progress.hpp"
-#include "apps/move/synchronised_move.hpp"
+#include "apps/move/set_points/following.hpp"
+#include "apps/move/set_points/paced_motion.hpp"
+#include "apps/move/set_points/synchronised_move.hpp"
 
 namespace takt {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <string>
 
-#include "apps/move/motion_limits.hpp"
 #include "apps/move/move_options.hpp"
+#include "apps/move/set_points/motion_limits.hpp"
 
 namespace takt {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/move/following.hpp"
+#include "apps/move/set_points/following.hpp"
 #include "apps/move/stop_reasons.hpp"
 
 namespace takt {

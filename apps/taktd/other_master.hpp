@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/wire/frame.hpp"
 
 namespace takt {

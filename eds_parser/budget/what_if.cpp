@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "eds_parser/report/message.hpp"
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 
 namespace takt {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "eds_parser/dictionary/boxed_text.hpp"
 #include "eds_parser/report/source.hpp"
-#include "eds_parser/table/data_type.hpp"
 #include "eds_parser/table/device_table.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/data_type.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

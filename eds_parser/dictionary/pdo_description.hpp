@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "eds_parser/dictionary/object_dictionary.hpp"
-#include "eds_parser/table/pdo_number.hpp"
+#include "eds_parser/values/pdo_number.hpp"
 
 namespace takt {
 

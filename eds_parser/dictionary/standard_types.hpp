@@ -1,6 +1,6 @@
 #pragma once
-#include "eds_parser/table/data_type.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/data_type.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

@@ -3,7 +3,7 @@
 #include "eds_parser/export/dbc_text.hpp"
 #include "eds_parser/export/export.hpp"
 #include "eds_parser/report/message.hpp"
-#include "eds_parser/table/word_list.hpp"
+#include "eds_parser/values/word_list.hpp"
 
 namespace takt {
 namespace {

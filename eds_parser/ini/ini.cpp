@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 namespace {

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <optional>
 
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 
 namespace takt {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "eds_parser/lcm/lcm_channel.hpp"
-#include "eds_parser/table/name_of.hpp"
-#include "eds_parser/table/word_list.hpp"
+#include "eds_parser/values/name_of.hpp"
+#include "eds_parser/values/word_list.hpp"
 
 namespace takt {
 namespace {

@@ -20,7 +20,7 @@
 #include "eds_parser/network_file/yaml/yaml_tree.hpp"
 #include "eds_parser/plan/network_compiler.hpp"
 #include "eds_parser/read/eds.hpp"
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt {
 namespace {

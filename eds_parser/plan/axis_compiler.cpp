@@ -8,8 +8,8 @@
 
 #include "eds_parser/plan/image/signal_rules.hpp"
 #include "eds_parser/plan/network_parts.hpp"
-#include "eds_parser/table/little_endian.hpp"
 #include "eds_parser/table/waits.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt {
 namespace {

@@ -7,7 +7,7 @@
 #include "eds_parser/plan/cycle_compiler.hpp"
 #include "eds_parser/print/names.hpp"
 #include "eds_parser/print/print_budget.hpp"
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/name_of.hpp"
 
 namespace takt {
 namespace {

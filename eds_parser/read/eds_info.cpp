@@ -6,7 +6,7 @@
 #include "eds_parser/ini/eds_section.hpp"
 #include "eds_parser/ini/section_keys.hpp"
 #include "eds_parser/report/text.hpp"
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 
 namespace takt {
 namespace {

@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "eds_parser/report/text.hpp"
-#include "eds_parser/table/data_type.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/data_type.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

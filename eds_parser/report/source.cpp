@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/name_of.hpp"
 
 namespace takt {
 

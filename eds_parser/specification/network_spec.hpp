@@ -12,10 +12,10 @@
 #include "eds_parser/specification/speed_axis_spec.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/firmware.hpp"
-#include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/mechanics.hpp"
 #include "eds_parser/table/run_options.hpp"
 #include "eds_parser/table/sdo_access.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

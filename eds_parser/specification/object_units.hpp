@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "eds_parser/specification/network_spec.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

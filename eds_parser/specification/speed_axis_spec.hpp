@@ -4,8 +4,8 @@
 #include <string>
 
 #include "eds_parser/report/source.hpp"
-#include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/speed_axis.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

@@ -9,14 +9,14 @@
 
 #include "eds_parser/table/boot_plan.hpp"
 #include "eds_parser/table/firmware.hpp"
-#include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/image_layout.hpp"
 #include "eds_parser/table/lss_plan.hpp"
 #include "eds_parser/table/output_limits.hpp"
 #include "eds_parser/table/pdo_table.hpp"
 #include "eds_parser/table/sdo_access.hpp"
 #include "eds_parser/table/speed_axis.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

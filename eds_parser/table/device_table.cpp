@@ -1,6 +1,6 @@
 #include "eds_parser/table/device_table.hpp"
 
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/name_of.hpp"
 
 namespace takt {
 

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/table/data_type.hpp"
-#include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/mechanics.hpp"
+#include "eds_parser/values/data_type.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

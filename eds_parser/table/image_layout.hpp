@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "eds_parser/table/data_type.hpp"
-#include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/pdo_table.hpp"
+#include "eds_parser/values/data_type.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

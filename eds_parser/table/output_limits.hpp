@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/pdo_table.hpp"
 #include "eds_parser/table/speed_axis.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

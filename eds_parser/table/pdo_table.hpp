@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

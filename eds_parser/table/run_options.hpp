@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

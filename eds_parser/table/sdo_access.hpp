@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

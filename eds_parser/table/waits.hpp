@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 /// How long the master waits if neither the network file nor a request sets a time. All these times
 /// are in one place: the plan prints them and the master uses them.

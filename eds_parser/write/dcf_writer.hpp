@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "eds_parser/report/source.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

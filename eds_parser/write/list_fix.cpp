@@ -7,7 +7,7 @@
 #include "eds_parser/ini/eds_lists.hpp"
 #include "eds_parser/ini/number.hpp"
 #include "eds_parser/report/text.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 namespace {

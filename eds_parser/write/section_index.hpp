@@ -5,7 +5,7 @@
 
 #include "eds_parser/ini/eds_section.hpp"
 #include "eds_parser/ini/ini.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/event.hpp"
 #include "master/rt/journal/journal.hpp"
 

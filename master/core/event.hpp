@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "eds_parser/table/boot_plan.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/node_status.hpp"
 
 namespace takt {

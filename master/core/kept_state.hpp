@@ -12,8 +12,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

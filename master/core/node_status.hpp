@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/wire/nmt.hpp"
 
 namespace takt {

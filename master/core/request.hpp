@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "eds_parser/table/boot_plan.hpp"
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/event.hpp"
 
 namespace takt {

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "eds_parser/table/pdo_number.hpp"
+#include "eds_parser/values/pdo_number.hpp"
 #include "master/explain/boot_remedy.hpp"
 #include "master/explain/report_text.hpp"
 #include "master/wire/bytes.hpp"

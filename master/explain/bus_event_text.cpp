@@ -2,7 +2,7 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/name_of.hpp"
 #include "master/core/event.hpp"
 #include "master/explain/boot_report.hpp"
 #include "master/explain/event_text.hpp"

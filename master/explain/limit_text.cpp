@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "eds_parser/table/output_limits.hpp"
-#include "eds_parser/table/raw_number.hpp"
+#include "eds_parser/values/raw_number.hpp"
 #include "master/explain/event_text.hpp"
 #include "master/wire/bytes.hpp"
 

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "eds_parser/table/bus_plan.hpp"
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

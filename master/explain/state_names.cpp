@@ -1,4 +1,4 @@
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/name_of.hpp"
 #include "master/explain/boot_report.hpp"
 
 namespace takt {

@@ -2,7 +2,7 @@
 #include <chrono>
 #include <functional>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/name_of.hpp"
 
 namespace takt {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt::sim {
 

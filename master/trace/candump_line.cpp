@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 #include "master/trace/words.hpp"
 
 namespace takt {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <string>
 
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 #include "master/trace/trace_line.hpp"
 #include "master/trace/words.hpp"
 

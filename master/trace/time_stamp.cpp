@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 
 namespace takt {
 namespace {

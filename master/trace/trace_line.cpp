@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 #include "master/trace/words.hpp"
 
 namespace takt {

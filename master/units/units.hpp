@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "eds_parser/table/raw_number.hpp"
+#include "eds_parser/values/raw_number.hpp"
 
 namespace takt {
 

@@ -4,8 +4,8 @@
 #include <initializer_list>
 #include <span>
 
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 #include "master/wire/bytes.hpp"
 #include "master/wire/frame.hpp"
 

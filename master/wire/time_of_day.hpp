@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/wire/bytes.hpp"
 #include "master/wire/frame.hpp"
 

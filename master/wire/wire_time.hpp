@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <span>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/wire/frame.hpp"
 
 namespace takt {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "apps/takt/soak/judge/homing_judge.hpp"
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt::soak {
 namespace {

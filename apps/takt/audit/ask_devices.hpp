@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/takt/audit/device_values.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

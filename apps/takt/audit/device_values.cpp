@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "apps/takt/audit/device_values.hpp"
 #include "eds_parser/table/bus_plan.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

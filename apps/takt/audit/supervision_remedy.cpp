@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "apps/takt/audit/supervision.hpp"
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt {
 namespace {

@@ -7,7 +7,7 @@
 #include "apps/takt/demo/child_program.hpp"
 #include "apps/takt/demo/demo_files.hpp"
 #include "apps/takt/demo/demo_output.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

@@ -10,7 +10,7 @@
 #include "eds_parser/network_file/keys/key_reference.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/network_file/yaml/yaml_tree.hpp"
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/name_of.hpp"
 
 namespace takt {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "apps/takt/learn/learned_pdos.hpp"
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt::learn {
 namespace {

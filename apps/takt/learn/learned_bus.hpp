@@ -7,7 +7,7 @@
 
 #include "apps/takt/learn/period_meter.hpp"
 #include "eds_parser/report/source.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 #include "master/trace/sdo_follower.hpp"
 
 namespace takt::learn {

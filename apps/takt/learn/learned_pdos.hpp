@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/takt/learn/learned_bus.hpp"
-#include "eds_parser/table/pdo_number.hpp"
+#include "eds_parser/values/pdo_number.hpp"
 
 namespace takt::learn {
 

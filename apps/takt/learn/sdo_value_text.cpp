@@ -5,8 +5,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "eds_parser/table/little_endian.hpp"
-#include "eds_parser/table/raw_number.hpp"
+#include "eds_parser/values/little_endian.hpp"
+#include "eds_parser/values/raw_number.hpp"
 
 namespace takt::learn {
 namespace {

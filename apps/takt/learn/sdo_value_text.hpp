@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "eds_parser/table/data_type.hpp"
+#include "eds_parser/values/data_type.hpp"
 
 namespace takt::learn {
 

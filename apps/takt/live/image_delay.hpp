@@ -1,7 +1,7 @@
 #pragma once
 #include <takt/histogram_t.hpp>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/lcm/messages.hpp"
 #include "master/rt/exchange/histogram.hpp"
 

@@ -10,7 +10,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 
 namespace takt {
 namespace {

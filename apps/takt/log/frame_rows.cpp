@@ -4,8 +4,8 @@
 #include <chrono>
 #include <span>
 
-#include "eds_parser/table/little_endian.hpp"
-#include "eds_parser/table/raw_number.hpp"
+#include "eds_parser/values/little_endian.hpp"
+#include "eds_parser/values/raw_number.hpp"
 
 namespace takt::logging {
 

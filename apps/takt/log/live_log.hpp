@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/command_line/live_arguments.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt::logging {
 

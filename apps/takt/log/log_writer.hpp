@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/takt/log/logged_signal.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt::logging {
 

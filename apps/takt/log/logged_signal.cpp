@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "eds_parser/report/suggest.hpp"
-#include "eds_parser/table/raw_number.hpp"
+#include "eds_parser/values/raw_number.hpp"
 
 namespace takt::logging {
 namespace {

@@ -6,7 +6,7 @@
 #include <takt/signal_t.hpp>
 #include <vector>
 
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 #include "master/units/units.hpp"
 
 namespace takt::logging {

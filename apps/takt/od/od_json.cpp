@@ -7,7 +7,7 @@
 #include "apps/takt/od/od_text.hpp"
 #include "apps/takt/od/value_meaning.hpp"
 #include "eds_parser/table/device_table.hpp"
-#include "eds_parser/table/raw_number.hpp"
+#include "eds_parser/values/raw_number.hpp"
 #include "master/gateway/message/value_text.hpp"
 #include "master/wire/bytes.hpp"
 

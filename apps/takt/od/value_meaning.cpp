@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "eds_parser/specification/object_units.hpp"
-#include "eds_parser/table/pdo_number.hpp"
-#include "eds_parser/table/raw_number.hpp"
+#include "eds_parser/values/pdo_number.hpp"
+#include "eds_parser/values/raw_number.hpp"
 #include "master/explain/emcy_text.hpp"
 #include "master/gateway/message/value_text.hpp"
 #include "master/wire/bytes.hpp"

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "apps/takt/objects/known_device.hpp"
-#include "eds_parser/table/data_type.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/data_type.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

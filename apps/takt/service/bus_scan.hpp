@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/machine.hpp"
 #include "master/core/sdo/sdo_client.hpp"
 #include "master/wire/nmt.hpp"

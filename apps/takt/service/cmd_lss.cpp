@@ -6,7 +6,7 @@
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/known_words.hpp"
 #include "apps/command_line/whole_number.hpp"
-#include "apps/takt/service/lss_verbs.hpp"
+#include "apps/takt/service/lss/lss_verbs.hpp"
 
 namespace takt {
 namespace {

@@ -10,8 +10,8 @@
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/whole_number.hpp"
 #include "apps/takt/live/screen.hpp"
-#include "apps/takt/live/view/node_words.hpp"
-#include "apps/takt/live/view/table.hpp"
+#include "apps/takt/live/text/node_words.hpp"
+#include "apps/takt/live/text/table.hpp"
 #include "apps/takt/service/scanned_devices.hpp"
 
 namespace takt {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/takt/live/daemon_client.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

@@ -5,7 +5,7 @@
 
 #include "apps/takt/learn/device_files.hpp"
 #include "apps/takt/service/bus_scan.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

@@ -6,7 +6,7 @@
 
 #include "apps/takt/live/daemon_client.hpp"
 #include "apps/takt/service/file_transfer.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 #include "master/linux/bus/frame_channel.hpp"
 
 namespace takt {

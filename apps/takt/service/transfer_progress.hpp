@@ -1,7 +1,7 @@
 #pragma once
 #include <cstddef>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

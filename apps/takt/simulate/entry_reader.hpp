@@ -5,7 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "eds_parser/report/source.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

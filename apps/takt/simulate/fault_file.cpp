@@ -13,7 +13,7 @@
 #include "apps/takt/simulate/motion_list_reader.hpp"
 #include "eds_parser/ini/number.hpp"
 #include "eds_parser/report/suggest.hpp"
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt {
 namespace {

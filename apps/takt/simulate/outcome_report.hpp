@@ -2,7 +2,7 @@
 #include <ostream>
 
 #include "apps/takt/simulate/simulation.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

@@ -8,7 +8,7 @@
 #include "apps/takt/smooth/judge/numbers.hpp"
 #include "apps/takt/smooth/judge/signals.hpp"
 #include "apps/takt/smooth/judge/wire_load.hpp"
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt::smooth {
 namespace {

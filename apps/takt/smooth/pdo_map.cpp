@@ -7,8 +7,8 @@
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/takt/learn/learned_pdos.hpp"
 #include "eds_parser/dictionary/pdo_description.hpp"
-#include "eds_parser/table/little_endian.hpp"
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/little_endian.hpp"
+#include "eds_parser/values/number_in.hpp"
 
 namespace takt::smooth {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/takt/learn/recording.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/wire/frame.hpp"
 
 namespace takt::smooth {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "apps/takt/spy/message_types.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 #include "master/lcm/big_endian.hpp"
 
 namespace takt::spy {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/takt/live/screen.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/lcm/messages.hpp"
 
 namespace takt::spy {

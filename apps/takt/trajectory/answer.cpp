@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "apps/takt/trajectory/trajectory_line.hpp"
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/name_of.hpp"
 
 namespace takt {
 namespace {

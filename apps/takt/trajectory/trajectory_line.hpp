@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/motion/trajectory.hpp"
 
 namespace takt {

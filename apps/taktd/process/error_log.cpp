@@ -11,7 +11,7 @@
 
 #include "apps/taktd/process/environment.hpp"
 #include "apps/taktd/process/open_again.hpp"
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 
 namespace takt {
 namespace {

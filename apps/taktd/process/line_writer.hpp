@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/linux/file_descriptor.hpp"
 
 namespace takt {

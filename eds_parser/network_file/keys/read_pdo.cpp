@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "eds_parser/network_file/keys/sections.hpp"
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 
 namespace takt {
 namespace {

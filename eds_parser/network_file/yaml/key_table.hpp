@@ -12,7 +12,7 @@
 
 #include "eds_parser/network_file/yaml/map_reader.hpp"
 #include "eds_parser/table/firmware.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

@@ -9,7 +9,7 @@
 
 #include "eds_parser/report/suggest.hpp"
 #include "eds_parser/report/text.hpp"
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 
 namespace takt {
 namespace {

@@ -12,7 +12,7 @@
 #include <yaml-cpp/mark.h>
 #include <yaml-cpp/parser.h>
 
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/name_of.hpp"
 
 namespace takt {
 namespace {

@@ -8,7 +8,7 @@
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/plan/boot/boot_sections.hpp"
 #include "eds_parser/specification/object_units.hpp"
-#include "eds_parser/table/data_type.hpp"
+#include "eds_parser/values/data_type.hpp"
 
 namespace takt {
 namespace {

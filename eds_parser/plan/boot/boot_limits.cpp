@@ -3,8 +3,8 @@
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/plan/boot/boot_sections.hpp"
 #include "eds_parser/plan/pdo/mapping_compiler.hpp"
-#include "eds_parser/table/little_endian.hpp"
-#include "eds_parser/table/raw_number.hpp"
+#include "eds_parser/values/little_endian.hpp"
+#include "eds_parser/values/raw_number.hpp"
 
 namespace takt {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "eds_parser/plan/boot/boot_compiler.hpp"
 #include "eds_parser/plan/boot/boot_steps.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

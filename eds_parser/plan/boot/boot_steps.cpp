@@ -2,7 +2,7 @@
 
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/table/device_table.hpp"
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt {
 

@@ -9,8 +9,8 @@
 #include "eds_parser/plan/boot/boot_sections.hpp"
 #include "eds_parser/specification/device_data.hpp"
 #include "eds_parser/specification/object_units.hpp"
-#include "eds_parser/table/data_type.hpp"
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/data_type.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt {
 namespace {

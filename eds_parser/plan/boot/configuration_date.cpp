@@ -1,7 +1,7 @@
 #include "eds_parser/plan/boot/configuration_date.hpp"
 
 #include "eds_parser/dictionary/integer_of.hpp"
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt {
 namespace {

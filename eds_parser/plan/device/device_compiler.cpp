@@ -7,7 +7,7 @@
 #include "eds_parser/dictionary/profile_of.hpp"
 #include "eds_parser/plan/device/device_mechanics.hpp"
 #include "eds_parser/specification/device_data.hpp"
-#include "eds_parser/table/pdo_number.hpp"
+#include "eds_parser/values/pdo_number.hpp"
 
 namespace takt {
 namespace {

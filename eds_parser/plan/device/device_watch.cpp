@@ -1,6 +1,6 @@
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/plan/device/node_objects.hpp"
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt {
 namespace {

@@ -5,7 +5,7 @@
 #include "eds_parser/dictionary/object_dictionary.hpp"
 #include "eds_parser/plan/pdo/effective_pdo.hpp"
 #include "eds_parser/table/bus_plan.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt {
 

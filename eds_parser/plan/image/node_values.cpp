@@ -3,7 +3,7 @@
 
 #include "eds_parser/plan/image/signal_rules.hpp"
 #include "eds_parser/plan/pdo/mapping_compiler.hpp"
-#include "eds_parser/table/data_type.hpp"
+#include "eds_parser/values/data_type.hpp"
 
 namespace takt {
 namespace {

@@ -2,7 +2,7 @@
 #include "eds_parser/plan/pdo/cob_ids.hpp"
 #include "eds_parser/report/network_report.hpp"
 #include "eds_parser/table/image_layout.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

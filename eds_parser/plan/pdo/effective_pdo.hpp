@@ -8,10 +8,10 @@
 
 #include "eds_parser/dictionary/object_dictionary.hpp"
 #include "eds_parser/specification/network_spec.hpp"
-#include "eds_parser/table/data_type.hpp"
 #include "eds_parser/table/firmware.hpp"
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/pdo_number.hpp"
+#include "eds_parser/values/data_type.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/pdo_number.hpp"
 
 namespace takt {
 

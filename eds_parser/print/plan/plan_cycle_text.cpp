@@ -5,7 +5,7 @@
 #include "eds_parser/plan/cycle_compiler.hpp"
 #include "eds_parser/print/plan/plan_names.hpp"
 #include "eds_parser/print/plan/plan_sections.hpp"
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/name_of.hpp"
 
 namespace takt {
 namespace {

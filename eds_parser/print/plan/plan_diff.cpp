@@ -10,7 +10,7 @@
 #include "eds_parser/print/plan/plan_sections.hpp"
 #include "eds_parser/report/text.hpp"
 #include "eds_parser/report/text_diff.hpp"
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/name_of.hpp"
 
 namespace takt {
 namespace {

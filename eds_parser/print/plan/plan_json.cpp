@@ -5,9 +5,9 @@
 #include "eds_parser/print/plan/plan_waits.hpp"
 #include "eds_parser/print/plan/print_plan.hpp"
 #include "eds_parser/print/plan/step_frames.hpp"
-#include "eds_parser/table/little_endian.hpp"
-#include "eds_parser/table/name_of.hpp"
 #include "eds_parser/table/output_limits.hpp"
+#include "eds_parser/values/little_endian.hpp"
+#include "eds_parser/values/name_of.hpp"
 
 namespace takt {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "eds_parser/lcm/lcm_channel.hpp"
 #include "eds_parser/lcm/typed_message.hpp"
-#include "eds_parser/table/little_endian.hpp"
 #include "eds_parser/table/motion_axes.hpp"
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/little_endian.hpp"
+#include "eds_parser/values/name_of.hpp"
 
 namespace takt {
 

@@ -6,8 +6,8 @@
 #include <set>
 #include <utility>
 
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt {
 namespace {

@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "eds_parser/table/lss_plan.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "eds_parser/table/bus_plan.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/machine.hpp"
 #include "master/wire/time_of_day.hpp"
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "eds_parser/table/bus_plan.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/event.hpp"
 #include "master/core/node/boot_runner.hpp"
 

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/pdo_number.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/pdo_number.hpp"
 
 namespace takt {
 

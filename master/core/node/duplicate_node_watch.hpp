@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/event.hpp"
 #include "master/wire/frame.hpp"
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "eds_parser/table/bus_plan.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/node_status.hpp"
 #include "master/core/request_table.hpp"
 #include "master/core/sdo/sdo_client.hpp"

@@ -3,7 +3,7 @@
 #include <optional>
 #include <utility>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/node_status.hpp"
 #include "master/wire/emcy.hpp"
 #include "master/wire/heartbeat.hpp"

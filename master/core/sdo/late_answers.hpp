@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/sdo/sdo_question.hpp"
 #include "master/wire/frame.hpp"
 

@@ -6,9 +6,9 @@
 #include <utility>
 #include <variant>
 
-#include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/sdo_access.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/event.hpp"
 #include "master/core/machine.hpp"
 #include "master/core/sdo/late_answers.hpp"

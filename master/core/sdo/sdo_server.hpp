@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "eds_parser/table/sdo_access.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/machine.hpp"
 #include "master/core/sdo/own_dictionary.hpp"
 #include "master/wire/frame.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "eds_parser/table/raw_number.hpp"
+#include "eds_parser/values/raw_number.hpp"
 #include "master/wire/bytes.hpp"
 
 namespace takt {

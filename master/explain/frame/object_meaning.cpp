@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
-#include "eds_parser/table/pdo_number.hpp"
+#include "eds_parser/values/pdo_number.hpp"
 #include "master/explain/frame/service_texts.hpp"
 #include "master/wire/bytes.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "eds_parser/table/boot_plan.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 #include "master/core/lss/lss_command.hpp"
 #include "master/gateway/ascii/ascii_value.hpp"
 

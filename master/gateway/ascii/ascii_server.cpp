@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <utility>
 
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 #include "master/gateway/ascii/ascii_command.hpp"
 #include "master/linux/left_socket.hpp"
 #include "master/linux/tcp_loopback.hpp"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <sodium.h>
 
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 #include "master/gateway/message/value_text.hpp"
 #include "master/lcm/messages.hpp"
 #include "master/wire/bytes.hpp"

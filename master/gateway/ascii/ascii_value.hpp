@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/table/data_type.hpp"
+#include "eds_parser/values/data_type.hpp"
 
 namespace takt {
 

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/name_of.hpp"
 #include "master/core/lss/lss_command.hpp"
 #include "master/gateway/command/lease.hpp"
 #include "master/gateway/notice/notice.hpp"

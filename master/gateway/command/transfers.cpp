@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "eds_parser/table/name_of.hpp"
 #include "eds_parser/table/waits.hpp"
+#include "eds_parser/values/name_of.hpp"
 #include "master/lcm/messages.hpp"
 
 namespace takt {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "eds_parser/table/number_in.hpp"
-#include "eds_parser/table/raw_number.hpp"
+#include "eds_parser/values/number_in.hpp"
+#include "eds_parser/values/raw_number.hpp"
 #include "master/lcm/messages.hpp"
 #include "master/wire/bytes.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/motion/beat/motion_message.hpp"
 #include "master/motion/planner/motion_planner.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/motion/beat/motion_order.hpp"
 
 namespace takt {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "eds_parser/table/number_in.hpp"
+#include "eds_parser/values/number_in.hpp"
 #include "master/wire/bytes.hpp"
 
 namespace takt {

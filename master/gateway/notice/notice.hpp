@@ -6,7 +6,7 @@
 #include <takt/event_t.hpp>
 
 #include "eds_parser/table/bus_plan.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/event.hpp"
 #include "master/lcm/weight.hpp"
 

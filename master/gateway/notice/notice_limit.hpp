@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/gateway/notice/notice.hpp"
 
 namespace takt {

@@ -5,7 +5,7 @@
 #include <takt/lcm.hpp>
 #include <vector>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/lcm/channel_pattern.hpp"
 #include "master/lcm/envelope/envelope.hpp"
 #include "master/lcm/envelope/key_file.hpp"

@@ -6,7 +6,7 @@
 #include <sodium.h>
 #include <utility>
 
-#include "eds_parser/table/name_of.hpp"
+#include "eds_parser/values/name_of.hpp"
 
 namespace takt {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/lcm/messages.hpp"
 
 namespace takt {

@@ -6,7 +6,7 @@
 #include <takt/lcm.hpp>
 #include <vector>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/lcm/envelope/key_file.hpp"
 
 namespace takt {

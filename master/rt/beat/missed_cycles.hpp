@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/event_queue.hpp"
 #include "master/rt/exchange/status_board.hpp"
 #include "master/rt/port.hpp"

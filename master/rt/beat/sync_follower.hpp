@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "eds_parser/table/bus_plan.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/event_queue.hpp"
 #include "master/core/node_status.hpp"
 #include "master/wire/frame.hpp"

@@ -1,8 +1,8 @@
 #pragma once
 #include <algorithm>
 
-#include "eds_parser/table/time.hpp"
 #include "eds_parser/table/waits.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/rt/port.hpp"
 
 namespace takt {

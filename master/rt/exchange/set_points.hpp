@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/set_point.hpp"
 
 namespace takt {

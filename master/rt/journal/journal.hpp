@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/core/event.hpp"
 #include "master/wire/frame.hpp"
 

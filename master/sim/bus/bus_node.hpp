@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/bus/frame_queue.hpp"
 #include "master/wire/frame.hpp"
 

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/bus/faults.hpp"
 
 namespace takt::sim {

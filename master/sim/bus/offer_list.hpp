@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/bus/wire_frame.hpp"
 
 namespace takt::sim {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/rt/port.hpp"
 #include "master/sim/bus/virtual_bus.hpp"
 #include "master/sim/random.hpp"

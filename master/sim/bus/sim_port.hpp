@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <span>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/rt/port.hpp"
 #include "master/sim/bus/remote_port.hpp"
 #include "master/sim/bus/world.hpp"

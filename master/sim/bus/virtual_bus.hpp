@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/bus/bus_node.hpp"
 #include "master/sim/bus/offer_list.hpp"
 #include "master/sim/bus/wire_frame.hpp"

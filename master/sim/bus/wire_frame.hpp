@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/wire/frame.hpp"
 
 namespace takt::sim {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "eds_parser/table/device_table.hpp"
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/bus/fault_schedule.hpp"
 #include "master/sim/bus/faults.hpp"
 #include "master/sim/bus/remote_port.hpp"

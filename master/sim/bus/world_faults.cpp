@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/little_endian.hpp"
 #include "master/sim/bus/hosted_device.hpp"
 #include "master/sim/bus/world.hpp"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "eds_parser/table/device_table.hpp"
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/device/device_faults.hpp"
 #include "master/sim/device/routes.hpp"
 #include "master/sim/dictionary/dictionary.hpp"

@@ -1,4 +1,4 @@
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/little_endian.hpp"
 #include "master/sim/device/device.hpp"
 #include "master/sim/dictionary/cob_rules.hpp"
 

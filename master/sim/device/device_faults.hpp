@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/dictionary/abort.hpp"
 #include "master/sim/service/guarding.hpp"
 #include "master/sim/service/sdo_faults.hpp"

@@ -1,4 +1,4 @@
-#include "eds_parser/table/pdo_number.hpp"
+#include "eds_parser/values/pdo_number.hpp"
 #include "master/sim/device/device.hpp"
 
 // The changes that LSS makes to a device.

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <vector>
 
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt::sim {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 
 namespace takt::sim {
 

@@ -2,8 +2,8 @@
 #include <cstddef>
 #include <span>
 
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/dictionary/abort.hpp"
 
 namespace takt::sim {

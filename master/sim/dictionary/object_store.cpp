@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt::sim {
 namespace {

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "eds_parser/table/data_type.hpp"
 #include "eds_parser/table/device_table.hpp"
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/data_type.hpp"
+#include "eds_parser/values/ids.hpp"
 #include "master/sim/dictionary/abort.hpp"
 
 namespace takt::sim {

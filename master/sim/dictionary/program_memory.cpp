@@ -1,6 +1,6 @@
 #include "master/sim/dictionary/program_memory.hpp"
 
-#include "eds_parser/table/little_endian.hpp"
+#include "eds_parser/values/little_endian.hpp"
 
 namespace takt::sim {
 namespace {

@@ -1,6 +1,6 @@
 #include "master/sim/family/lenze8400.hpp"
 
-#include "eds_parser/table/pdo_number.hpp"
+#include "eds_parser/values/pdo_number.hpp"
 #include "master/sim/dictionary/cob_rules.hpp"
 #include "master/sim/family/echo.hpp"
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "eds_parser/table/mechanics.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/mechanics/brake.hpp"
 #include "master/sim/mechanics/cascade.hpp"
 #include "master/sim/mechanics/encoder.hpp"

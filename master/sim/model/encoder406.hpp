@@ -1,5 +1,5 @@
 #pragma once
-#include "master/sim/model/axis_objects.hpp"
+#include "master/sim/axis/axis_objects.hpp"
 #include "master/sim/model/model.hpp"
 
 namespace takt::sim {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "eds_parser/table/device_table.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/dictionary/abort.hpp"
 #include "master/sim/dictionary/object_store.hpp"
 #include "master/sim/pdo/device_traits.hpp"

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/dictionary/object_store.hpp"
 #include "master/sim/pdo/pdo_record.hpp"
 #include "master/sim/service/emcy_producer.hpp"

@@ -1,6 +1,6 @@
 #include "master/sim/pdo/pdo_record.hpp"
 
-#include "eds_parser/table/pdo_number.hpp"
+#include "eds_parser/values/pdo_number.hpp"
 
 namespace takt::sim {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/dictionary/abort.hpp"
 #include "master/sim/dictionary/cob_rules.hpp"
 #include "master/sim/dictionary/object_store.hpp"

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/dictionary/abort.hpp"
 #include "master/sim/dictionary/dictionary.hpp"
 #include "master/sim/service/sdo_faults.hpp"

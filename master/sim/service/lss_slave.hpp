@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/dictionary/object_store.hpp"
 #include "master/sim/service/transmitter.hpp"
 

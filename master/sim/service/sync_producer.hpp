@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "eds_parser/table/ids.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/ids.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/sim/dictionary/object_store.hpp"
 #include "master/wire/frame.hpp"
 

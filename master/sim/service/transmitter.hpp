@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 #include "master/wire/frame.hpp"
 
 namespace takt::sim {

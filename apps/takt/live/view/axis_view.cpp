@@ -6,9 +6,9 @@
 
 #include "apps/axis/group/find_axes.hpp"
 #include "apps/axis/group/speed_pattern.hpp"
-#include "apps/takt/live/view/drive_words.hpp"
-#include "apps/takt/live/view/node_words.hpp"
-#include "eds_parser/table/raw_number.hpp"
+#include "apps/takt/live/text/drive_words.hpp"
+#include "apps/takt/live/text/node_words.hpp"
+#include "eds_parser/values/raw_number.hpp"
 #include "master/core/node_status.hpp"
 #include "master/explain/emcy_text.hpp"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/takt/live/view/line.hpp"
-#include "apps/takt/live/view/quantity.hpp"
+#include "apps/takt/live/text/line.hpp"
+#include "apps/takt/live/text/quantity.hpp"
 #include "master/gateway/message/bus_view.hpp"
 
 namespace takt {

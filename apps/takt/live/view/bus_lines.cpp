@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <sstream>
 
-#include "apps/takt/live/view/node_words.hpp"
+#include "apps/takt/live/text/node_words.hpp"
 #include "master/rt/exchange/status_board.hpp"
 
 namespace takt {

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "apps/takt/live/view/line.hpp"
+#include "apps/takt/live/text/line.hpp"
 #include "master/gateway/message/bus_view.hpp"
 
 namespace takt {

@@ -6,12 +6,12 @@
 #include <set>
 #include <utility>
 
+#include "apps/takt/live/text/character_width.hpp"
+#include "apps/takt/live/text/node_words.hpp"
+#include "apps/takt/live/text/signal_text.hpp"
 #include "apps/takt/live/view/axis_view.hpp"
 #include "apps/takt/live/view/bus_lines.hpp"
-#include "apps/takt/live/view/character_width.hpp"
-#include "apps/takt/live/view/node_words.hpp"
 #include "apps/takt/live/view/pdo_table.hpp"
-#include "apps/takt/live/view/signal_text.hpp"
 #include "apps/takt/live/view/timing_table.hpp"
 #include "master/lcm/printable_text.hpp"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/takt/live/view/table.hpp"
+#include "apps/takt/live/text/table.hpp"
 #include "master/gateway/message/bus_view.hpp"
 
 namespace takt {

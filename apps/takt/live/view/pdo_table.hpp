@@ -3,7 +3,7 @@
 #include <takt/pdo_status_t.hpp>
 #include <takt/status_t.hpp>
 
-#include "apps/takt/live/view/table.hpp"
+#include "apps/takt/live/text/table.hpp"
 
 namespace takt {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "apps/takt/live/view/table.hpp"
+#include "apps/takt/live/text/table.hpp"
 
 namespace takt {
 namespace {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/takt/live/view/line.hpp"
+#include "apps/takt/live/text/line.hpp"
 #include "master/lcm/messages.hpp"
 
 namespace takt {

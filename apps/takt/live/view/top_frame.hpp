@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "apps/takt/live/view/line.hpp"
+#include "apps/takt/live/text/line.hpp"
 #include "apps/takt/live/view/pages.hpp"
 #include "master/gateway/message/bus_view.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "apps/takt/simulate/motion/motion_script.hpp"
 #include "eds_parser/table/pdo_table.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

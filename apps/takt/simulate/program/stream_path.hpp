@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <takt/motion_stream_t.hpp>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt {
 

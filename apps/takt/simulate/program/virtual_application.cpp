@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "eds_parser/table/ids.hpp"
+#include "eds_parser/values/ids.hpp"
 #include "master/lcm/messages.hpp"
 
 namespace takt {

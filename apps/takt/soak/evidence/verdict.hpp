@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt::soak {
 

@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "apps/takt/soak/judge/motion/path_verdict.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt::soak {
 

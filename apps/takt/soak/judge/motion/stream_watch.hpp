@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/takt/soak/judge/motion/path_verdict.hpp"
-#include "eds_parser/table/time.hpp"
+#include "eds_parser/values/time.hpp"
 
 namespace takt::soak {
 
