@@ -122,7 +122,7 @@ TEST_F(MotionDefects, ASenderIsAName) {
   const auto same = [](unsigned program, std::int64_t own) {
     return program == 7 || program == 0 ? 1 : own;
   };
-  first = 45;
+  first = 130;
   EXPECT_TRUE(breaks({.instance = same}, "no sender moves what another holds")) << what;
 }
 

@@ -27,6 +27,8 @@ constexpr Time longest_wait = 4s;       // for an axis to come to rest before it
 constexpr double part_of_leader = 0.6;  // part of the limits of the follower
 constexpr Time time_to_lock = 1s;       // from the command of a gear to the motion of its leader
 constexpr Time time_to_lead = 3s;       // from this motion to the next one
+// The distance of a gear to its phase, as the time in which the axis moves as far at its velocity.
+constexpr double seconds_of_catch_up = 0.05;
 constexpr unsigned rival = 7;
 constexpr std::array<std::int32_t, 6> timeouts{0, 0, 100, 200, 1000, 3000};  // ms
 
@@ -185,14 +187,16 @@ std::optional<motion_command_t> MotionCommander::choose_gear() {
   gear_.numerator = {gear_random_.chance(0.5) ? ratio : -ratio};
   gear_.denominator = {1.0};
   gear_.max_phase_error = {gear_random_.chance(0.2) ? std::abs(axis.scale) * 1000 : 0.0};
-  if (gear_random_.chance(0.7)) plan_leading(command.goals.front(), gear_.numerator.front());
+  if (gear_random_.chance(0.7)) plan_leading(command.goals.front(), axis);
   return command;
 }
 
-/// Some leaders move next, so that the axis can follow within its limits.
-void MotionCommander::plan_leading(const motion_goal_t& follower, double ratio) {
-  const auto leader = std::ranges::find_if(axes_, [&](const Axis& axis) {
-    return axis.node == gear_.leader && axis.signals.number + 1 == gear_.leader_axis;
+/// Some leaders move next, so that the axis can follow within its limits. The phase of such a gear
+/// is near the present one, so that the axis is locked before its leader moves.
+void MotionCommander::plan_leading(motion_goal_t& follower, const Axis& axis) {
+  const double ratio = gear_.numerator.front();
+  const auto leader = std::ranges::find_if(axes_, [&](const Axis& other) {
+    return other.node == gear_.leader && other.signals.number + 1 == gear_.leader_axis;
   });
   if (leader == axes_.end() || follower.max_velocity == 0 || ratio == 0) return;
   motion_goal_t goal = goal_of(*leader);
@@ -204,6 +208,8 @@ void MotionCommander::plan_leading(const motion_goal_t& follower, double ratio) 
   goal.max_acceleration = std::min(goal.max_acceleration, part * follower.max_acceleration);
   goal.max_jerk = std::min(goal.max_acceleration / jerk_rise, part * jerk);
   leading_ = goal;
+  const double way = (2 * share(0) - 1) * seconds_of_catch_up * follower.max_velocity;
+  follower.position = axis.place() - ratio * leader->place() + way;
 }
 
 motion_command_t MotionCommander::lead() {
@@ -235,7 +241,7 @@ std::optional<motion_command_t> MotionCommander::begin_stream(const Axis& axis, 
   if (goal.max_velocity == 0) return std::nullopt;
   if (goal.max_jerk == 0) goal.max_jerk = goal.max_acceleration / jerk_rise;
   const StreamPath path{
-      axis.position * axis.scale + axis.offset,
+      axis.place(),
       goal.position,
       {.velocity = goal.max_velocity, .acceleration = goal.max_acceleration, .jerk = goal.max_jerk},
       now};

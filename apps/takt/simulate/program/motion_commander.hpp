@@ -58,6 +58,9 @@ class MotionCommander {
     double position = 0.0;      ///< present target position, in counts
     Time moved{};               ///< time of its newest change
     double pace = 1.0;          ///< part of the quick motion that this process chooses
+
+    /// Returns the present target position in units.
+    double place() const noexcept { return position * scale + offset; }
   };
   /// An axis of the bus that may lead another one.
   struct Leader {
@@ -75,7 +78,7 @@ class MotionCommander {
   motion_goal_t goal_of(const Axis& axis);
   motion_command_t motion();
   std::optional<motion_command_t> choose_gear();
-  void plan_leading(const motion_goal_t& follower, double ratio);
+  void plan_leading(motion_goal_t& follower, const Axis& axis);
   motion_command_t lead();
   void choose_stream(Time now);
   std::optional<motion_command_t> begin_stream(const Axis& axis, Time now);
