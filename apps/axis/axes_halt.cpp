@@ -47,7 +47,7 @@ Done Axes::State::halt() {
         Obstacle::Kind::time_over,
         text_of_each(
             axes,
-            "{} does not obey the Halt, or does not come to rest: its statusword is 0x{:04X}"));
+            "{} does not follow the Halt, or does not come to rest: its statusword is 0x{:04X}"));
   }
   if (all_enabled()) return {};
   return obstacle(Obstacle::Kind::blocked, why_not_ready_text());

@@ -72,7 +72,7 @@ std::string blocking_bits(std::uint16_t statusword) {
     text += "; bit 4 (voltage enabled) is 0: is its power supply on?";
   }
   if ((statusword & remote) == 0) {
-    text += "; bit 9 (remote) is 0: the drive does not obey the controlword from the bus";
+    text += "; bit 9 (remote) is 0: the drive ignores the controlword; is it in local control?";
   }
   return text;
 }

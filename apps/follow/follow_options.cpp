@@ -62,11 +62,11 @@ ParsedFollow parse_follow(int argc, char** argv) {
       "--axis", [&](const std::string& name) { options.program.axes = {name}; },
       "axis that follows (default: the only axis of the bus)");
   app.add_option("--leader", options.leader,
-                 "axis that leads, or the node whose input --signal names")
+                 "axis to follow, or the node whose input --signal names")
       ->required();
   app.add_option("--signal", options.signal,
                  "input of the leader to follow, for example position_value (default: the "
-                 "commanded position of the axis that leads)");
+                 "commanded position of the leader)");
   app.add_option_function<std::string>(
          "--ratio",
          [&](const std::string& text) { options.ratio = ratio_of(text).value_or(options.ratio); },

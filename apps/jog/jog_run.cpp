@@ -67,7 +67,7 @@ Done JogRun::jog_by_keys() {
       keyboard.forget();  // keys that have come meanwhile may be older than the release
       last_look_ = now();
     }
-    show(direction_ == 0 ? "stands" : "moves");
+    show(direction_ == 0 ? "is stopped" : "moves");
     if (done) continue;
     const bool goes_on = done.error().kind == Obstacle::Kind::refused ||
                          done.error().kind == Obstacle::Kind::stopped;

@@ -62,7 +62,7 @@ std::string others_text(const std::vector<std::string>& others) {
   if (others.size() > most_named) {
     text += " and " + std::to_string(others.size() - most_named) + " more nodes";
   }
-  return text + ", which share this line";
+  return text + (others.size() == 1 ? ", which shares this line" : ", which share this line");
 }
 
 }  // namespace

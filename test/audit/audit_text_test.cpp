@@ -23,18 +23,19 @@ TEST(Audit, ReportsAMachineBuilderWhatEachDeviceDoes) {
 
   EXPECT_EQ(
       text_of(audit_of(network)),
-      "bus 'lift' without its master (node 127, heartbeat every 100 ms): 1 safe by "
-      "themselves, 1 with their last set-points for ever\n"
-      "devices as takt boots them, by EDS and network file\n"
+      "bus 'lift' without its master (node 127, heartbeat every 100 ms): 1 safe "
+      "without the master, 1 held at the last set-points\n"
+      "values after the boot, by EDS and network file\n"
       "\n"
-      "node 5 axis (drive): KEEPS ITS LAST SET-POINTS for ever: the device does not notice\n"
+      "node 5 axis (drive): KEEPS ITS LAST SET-POINTS: it does not notice the loss of the "
+      "master\n"
       "  master dies  never noticed: the device watches neither heartbeat nor guarding of the "
       "master\n"
-      "    drive      KEEPS its last set-points for ever\n"
+      "    drive      KEEPS its last set-points without a time limit\n"
       "  cable cut    the same: the device receives nothing from the master\n"
       "  bus-off      goes to PRE-OPERATIONAL (1029:01 = 0); fault (6007 = 1), along the "
       "quick-stop ramp (605E = 2)\n"
-      "  besides      the device expects SYNC every 10000 us (1006); for the effect of a missing "
+      "  note         the device expects SYNC every 10000 us (1006); for the effect of a missing "
       "SYNC see the manual\n"
       "  remedy       in the network file:\n"
       "    axis:\n"
@@ -46,7 +47,7 @@ TEST(Audit, ReportsAMachineBuilderWhatEachDeviceDoes) {
       "    outputs    6200:01..02 goes to 0x00 (6206 = 0xFF); 6411:01..02 goes to 0 (6443 = "
       "1)\n"
       "  cable cut    the same: the device receives nothing from the master\n"
-      "  bus-off      the same, at once\n");
+      "  bus-off      the same reaction, at once\n");
 }
 
 TEST(Audit, IsOneJsonDocument) {
@@ -96,7 +97,7 @@ TEST(Audit, NamesWhatWorksWhereTheHeartbeatConsumerHoldsNoNodeId) {
     EXPECT_EQ(line.find("heartbeat_consumer"), std::string::npos) << line;
   }
   const bool reported = std::ranges::any_of(drive.besides, [](const std::string& text) {
-    return text.find("does not hold the master's node id and a time") != std::string::npos;
+    return text.find("exclude a value with the master's node id and a time") != std::string::npos;
   });
   EXPECT_TRUE(reported);
   const bool guards = std::ranges::any_of(drive.remedy, [](const std::string& line) {
@@ -123,7 +124,7 @@ TEST(Audit, NamesAnotherEntryWhereOnlyTheFirstOneHoldsNoNodeId) {
   EXPECT_EQ(drive.remedy,
             std::vector<std::string>{"sdo: [{index: 0x1016, sub_index: 2, value: 0x7F012C}]   # "
                                      "watches the master"});
-  EXPECT_NE(text_of(audit_of(network)).find("entry 1016:01 can't be written, or by the limits"),
+  EXPECT_NE(text_of(audit_of(network)).find("entry 1016:01 can't be written, or its limits"),
             std::string::npos);
 }
 

@@ -56,13 +56,13 @@ class Jog : public ::testing::Test {
 
 TEST_F(Jog, MovesWhileTheKeyIsRepeatedAndStopsAfterwards) {
   Terminal terminal{jog(daemon_, {"--first", "2s", "--dead-man", "1s"})};
-  ASSERT_TRUE(shows(terminal, "shoulder stands at 0.0000 rad"));
+  ASSERT_TRUE(shows(terminal, "shoulder is stopped at 0.0000 rad"));
   const std::int64_t begin = position();
 
   EXPECT_TRUE(
       daemon_.work([&] { terminal.press("\033[C"); }, [&] { return position() > begin + 200; }));
   EXPECT_TRUE(shows(terminal, "shoulder moves at"));
-  EXPECT_TRUE(shows(terminal, "shoulder stands at")) << "nobody presses a key";
+  EXPECT_TRUE(shows(terminal, "shoulder is stopped at")) << "nobody presses a key";
   EXPECT_TRUE(comes_to_rest());
   EXPECT_TRUE(is_enabled());
 
@@ -78,7 +78,7 @@ TEST_F(Jog, MovesWhileTheKeyIsRepeatedAndStopsAfterwards) {
 
 TEST_F(Jog, EndsWithASignalAndStopsTheAxisFirst) {
   Terminal terminal{jog(daemon_, {"--first", "100s", "--dead-man", "100s"})};
-  ASSERT_TRUE(shows(terminal, "shoulder stands at"));
+  ASSERT_TRUE(shows(terminal, "shoulder is stopped at"));
   terminal.press("l");
   EXPECT_TRUE(shows(terminal, "shoulder moves at"));
   terminal.signal(SIGINT);
@@ -106,7 +106,7 @@ TEST_F(Jog, MovesForATimeWithoutAKeyboard) {
 TEST_F(Jog, StopsWithoutTheProgram) {
   {
     Terminal terminal{jog(daemon_, {"--first", "100s", "--dead-man", "100s"})};
-    ASSERT_TRUE(shows(terminal, "shoulder stands at"));
+    ASSERT_TRUE(shows(terminal, "shoulder is stopped at"));
     EXPECT_TRUE(daemon_.work([&] { terminal.press("l"); }, [&] { return position() > 50; }));
   }
   EXPECT_TRUE(daemon_.hear([&] { return daemon_.events("motion_stopped") > 0; }));

@@ -36,7 +36,7 @@ daemon, axes = jogs()
 axes._link.longest = SHORT
 daemon.each_cycle = lambda daemon: setattr(daemon.drives[0], "position", daemon.drives[0].position + 0.01)
 kind, text = obstacle(axes.halt)
-check("a drive that goes on is named", kind == "time over" and "shoulder does not obey the Halt" in text, (kind, text))
+check("a drive that goes on is named", kind == "time over" and "shoulder does not follow the Halt" in text, (kind, text))
 daemon, axes = jogs()
 axes._link.longest, daemon.stubborn = SHORT, True
 kind, text = obstacle(axes.quick_stop)

@@ -167,14 +167,14 @@ TEST(MotionGear, WhatIsWrongWithAGearIsSaid) {
     EXPECT_NE(bus.axis(1).state, moving) << why;
   };
   refusal([](motion_gear_t& gear) { gear.leader = "none"; }, "'none' is no node of the bus");
-  refusal([](motion_gear_t& gear) { gear.leader = "elbow"; }, "an axis can't lead itself");
+  refusal([](motion_gear_t& gear) { gear.leader = "elbow"; }, "an axis can't follow itself");
   const auto follows = [](const char* node, const char* signal) {
     return [=](motion_gear_t& gear) {
       gear.leader = node;
       gear.signal = signal;
     };
   };
-  refusal(follows("elbow", "position_actual_value"), "an axis can't lead itself");
+  refusal(follows("elbow", "position_actual_value"), "an axis can't follow itself");
   refusal([](motion_gear_t& gear) { gear.leader_axis = 3; }, "has no axis 3 that taktd can move");
   refusal([](motion_gear_t& gear) { gear.signal = "light"; }, "has no input 'light'");
   refusal([](motion_gear_t& gear) { gear.phase = "there"; }, "its phase is neither");

@@ -88,12 +88,12 @@ TEST_F(SimulatedMotions, TheNextEntryOfAProgramEndsAMotion) {
 
   ASSERT_EQ(outcome.motions.size(), 6u);
   EXPECT_EQ(outcome.motions[1].result, "replaced");
-  EXPECT_EQ(outcome.motions[1].text, "line 4 of the program has ended it");
+  EXPECT_EQ(outcome.motions[1].text, "the entry in line 4 ended it");
   EXPECT_EQ(outcome.motions[2].result, "stopped");
   EXPECT_NEAR(seconds(outcome.motions[2].end), 4.0, 0.01);
   EXPECT_EQ(outcome.motions[3].result, "done");
   EXPECT_EQ(outcome.motions[4].result, "stopped") << outcome.motions[4].text;
-  EXPECT_EQ(outcome.motions[4].text, "line 11 of the program has ended it");
+  EXPECT_EQ(outcome.motions[4].text, "the entry in line 11 ended it");
   EXPECT_EQ(outcome.motions[5].result, "done");
 }
 

@@ -126,5 +126,6 @@ class Axis:
         if not self.statusword & 0x0010:
             text += "; bit 4 (voltage enabled) is 0: is its power supply on?"
         if not self.statusword & 0x0200:
-            text += "; bit 9 (remote) is 0: the drive does not obey the controlword from the bus"
+            text += ("; bit 9 (remote) is 0: the drive ignores the controlword; "
+                     "is it in local control?")
         return text

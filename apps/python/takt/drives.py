@@ -117,8 +117,8 @@ class Drives:
         self.words, self.readiness = KEEPING, HALTED
         if not self.wait_for_rest(link.axes):
             raise Obstacle("time over", "; ".join(
-                f"{axis.name} does not obey the Halt, or does not come to rest: its statusword is "
-                f"0x{axis.statusword:04X}" for axis in link.axes))
+                f"{axis.name} does not follow the Halt, or does not come to rest: its statusword "
+                f"is 0x{axis.statusword:04X}" for axis in link.axes))
 
     def end_halt(self) -> None:
         link = self._link

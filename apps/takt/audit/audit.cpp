@@ -50,10 +50,10 @@ class NodeAuditor {
       return;
     }
     if (!out_.drive) keep_in_operational(reaction);
-    out_.bus_off = out_.notices ? "the same, at once" : state_text_ + "; " + reaction.text;
+    out_.bus_off = out_.notices ? "the same reaction, at once" : state_text_ + "; " + reaction.text;
     const bool notices = !out_.how.empty();
     out_.verdict = notices ? reaction.verdict : Failsafe::goes_on;
-    out_.outputs = notices ? reaction.text : "KEEPS its last set-points for ever";
+    out_.outputs = notices ? reaction.text : "KEEPS its last set-points without a time limit";
     if (!notices) advise_supervision();
     advise_values(reaction);
   }

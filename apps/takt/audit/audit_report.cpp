@@ -19,13 +19,16 @@ std::string ms_text(Time time) { return std::to_string(time / milliseconds{1}) +
 std::string words(const NodeAudit& node) {
   using enum Failsafe;
   if (node.verdict == harmless) return "has no outputs";
-  if (node.verdict == unspecified) return "notices it; the EDS does not say what the outputs do";
+  if (node.verdict == unspecified) {
+    return "notices the loss of the master; the EDS does not say what the outputs do";
+  }
   if (node.verdict == stops) {
     return (node.drive ? "stops" : "its outputs go to their error values") +
            (node.notices ? ", at the latest " + ms_text(*node.notices) + " later" : std::string{});
   }
-  if (node.how.empty()) return "KEEPS ITS LAST SET-POINTS for ever: the device does not notice";
-  return "KEEPS ITS LAST SET-POINTS for ever, although the device notices";
+  if (node.how.empty())
+    return "KEEPS ITS LAST SET-POINTS: it does not notice the loss of the master";
+  return "KEEPS ITS LAST SET-POINTS, although it notices the loss of the master";
 }
 
 std::string notice_text(const NodeAudit& node) {
@@ -55,7 +58,7 @@ void print(std::ostream& out, const NodeAudit& node, Colour colour) {
   line(out, node.drive ? "  drive      " : "  outputs    ", node.outputs);
   line(out, "cable cut    ", "the same: the device receives nothing from the master");
   line(out, "bus-off      ", node.bus_off);
-  for (const std::string& text : node.besides) line(out, "besides      ", text);
+  for (const std::string& text : node.besides) line(out, "note         ", text);
   print_remedy(out, node);
 }
 
@@ -77,14 +80,14 @@ Json json_of(const NodeAudit& node) {
   return json;
 }
 
-/// Returns the number of devices for each verdict, for example "2 safe by themselves, 1 with their
-/// last set-points for ever".
+/// Returns the number of devices for each verdict, for example "2 safe without the master, 1 held
+/// at the last set-points".
 std::string summary(const Audit& audit) {
   std::array<unsigned, 4> count{};
   for (const NodeAudit& node : audit.nodes) ++count[std::to_underlying(node.verdict)];
-  constexpr std::array<const char*, 4> texts{"without outputs", "safe by themselves",
-                                             "described only in the manual",
-                                             "with their last set-points for ever"};
+  constexpr std::array<const char*, 4> texts{"without outputs", "safe without the master",
+                                             "with a reaction that only the manual describes",
+                                             "held at the last set-points"};
   std::string text;
   for (std::size_t i = 0; i < count.size(); ++i) {
     if (count[i] == 0) continue;
@@ -100,8 +103,8 @@ void print_audit(std::ostream& out, const Audit& audit, Colour colour) {
   out << (audit.heartbeat > Time{} ? "heartbeat every " + ms_text(audit.heartbeat)
                                    : "no heartbeat");
   out << "): " << summary(audit) << '\n'
-      << (audit.asked ? "devices as they are now, read by SDO\n"
-                      : "devices as takt boots them, by EDS and network file\n");
+      << (audit.asked ? "present values of the devices, read by SDO\n"
+                      : "values after the boot, by EDS and network file\n");
   for (const NodeAudit& node : audit.nodes) {
     out << '\n';
     print(out, node, colour);

@@ -48,8 +48,8 @@ class Adviser {
           "each entry of 1016 watches another node: the device can't watch the master's heartbeat";
     } else if (values_.has(0x1016)) {
       remedy_.why =
-          "1016 can't be written, or by the limits of the EDS does not hold the master's node id "
-          "and a time: the device can't watch the master's heartbeat";
+          "1016 can't be written, or its limits in the EDS exclude a value with the master's node "
+          "id and a time: the device can't watch the master's heartbeat";
     }
     watch_guarding();
     return std::move(remedy_);
@@ -172,9 +172,10 @@ class Adviser {
         [this](auto sub) { return use_of(sub) == Entry::watches_nobody && takes_master(sub); });
     if (!wide) return false;
     if (plan_.master_heartbeat == Time{}) remedy_.master = master_line;
-    remedy_.why = "entry " + chosen +
-                  " can't be written, or by the limits of the EDS does not hold the master's node "
-                  "id and a time, but another entry does: name that entry, or correct the EDS";
+    remedy_.why =
+        "entry " + chosen +
+        " can't be written, or its limits in the EDS exclude a value with the master's node "
+        "id and a time, but another entry can hold it: name that entry, or correct the EDS";
     remedy_.node.push_back(fmt::format(
         "sdo: [{{index: 0x1016, sub_index: {}, value: 0x{:06X}}}]   # watches the master", *wide,
         consumer_entry()));

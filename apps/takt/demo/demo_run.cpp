@@ -155,8 +155,8 @@ int DemoRun::sum_up(int taktd, int takt_move) {
     return 0;
   }
   output_.say(fmt::format(
-      "\nNOT good: takt-move ended with {}, taktd with {}. If lines above say that cycles were "
-      "missed, this\nmachine had too much to do: try again when it has less.",
+      "\nThe demo failed: takt-move ended with exit code {}, taktd with exit code {}.\nIf lines "
+      "above report missed cycles, this computer was too busy: end other programs and try again.",
       takt_move, taktd));
   return taktd != 0 ? taktd : 1;
 }

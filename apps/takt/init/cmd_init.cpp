@@ -96,7 +96,7 @@ void choose_bitrate(const InitArguments& options, InitFacts& facts) {
     facts.bitrate_kbit = *link->bitrate / 1000;
     facts.bitrate_source = "the bit rate of " + options.bus;
   } else {
-    facts.bitrate_source = "check: the interface does not tell its bit rate";
+    facts.bitrate_source = "check: the interface reports no bit rate, so takt assumes this one";
   }
 }
 
@@ -218,11 +218,11 @@ void add_init(CLI::App& app, int& exit_code) {
       ->type_name("MS");
   verb.add_flag("--force", options.force, "overwrite the network file if it exists");
   verb.footer(
-      "takt init scans the bus as `takt scan` does and changes nothing on it. It finds the device\n"
-      "file of each device by vendor id, product code and revision. The network file has PDOs by\n"
-      "the profile of each device, limits with their source, and a SYNC period that leaves room\n"
-      "on the bus. Comments say what to check, and what is missing for devices without a file.\n"
-      "`taktd` must not run on the bus meanwhile.\n"
+      "takt init scans the bus as `takt scan` does and changes nothing on it. Stop taktd before.\n"
+      "takt init finds the device file of each device by vendor id, product code and revision.\n"
+      "The network file contains PDOs that fit the profile of each device, limits with their\n"
+      "source, and a SYNC period that leaves room on the bus. Its comments say what to check, and\n"
+      "what is missing for devices without a file.\n"
       "Examples:\n  takt init --bus can0 --eds-dir vendor/ -o machine.yaml\n"
       "  takt plan machine.yaml");
 }

@@ -53,7 +53,7 @@ std::string units_text(const DeviceToWrite& device) {
       "    units:",
       turns ? fmt::format("{} counts a turn of the shaft: 608F and 6091, read from the device",
                           *device.counts_a_turn)
-            : "608F and 6091 of the device do not tell the counts of a turn: enter the scale");
+            : "608F and 6091 of the device do not give the counts of a turn: enter the scale");
   text += line("position", "") + '\n';
   text += commented(line("velocity", "/s"), "check: some drives count rpm");
   text += commented(line("acceleration", "/s^2"), "check");
@@ -78,8 +78,8 @@ std::string object_of(const ProposedLimit& limit) {
 std::string limits_text(const std::vector<ProposedLimit>& limits) {
   if (limits.empty()) return {};
   const bool any = std::ranges::any_of(limits, &ProposedLimit::has_numbers);
-  std::string text =
-      commented(any ? "    limits:" : "    # limits:", "a command beyond is not sent");
+  std::string text = commented(any ? "    limits:" : "    # limits:",
+                               "takt does not send a command outside these limits");
   for (const ProposedLimit& limit : limits) {
     if (!object_of(limit).empty()) continue;
     const std::string line = (limit.has_numbers() ? "      " : "      # ") + limit.entry;
@@ -90,7 +90,7 @@ std::string limits_text(const std::vector<ProposedLimit>& limits) {
   const bool active = std::ranges::any_of(
       limits, [&](const ProposedLimit& limit) { return is_object(limit) && limit.has_numbers(); });
   text += commented(active ? "      objects:" : "      # objects:",
-                    "enter ... for numbers; bit fields need no limit");
+                    "replace ... by numbers; objects that are bit fields need no limits");
   for (const ProposedLimit& limit : limits) {
     if (!is_object(limit)) continue;
     const std::string line =
@@ -161,7 +161,8 @@ std::string device_entry(const DeviceToWrite& device, Detail detail,
     text += commented("    heartbeat_producer: 100", "ms");
   } else {
     text +=
-        "    # The device file has no 0x1017: without a heartbeat nobody sees the device die.\n";
+        "    # The device file has no 0x1017, so no heartbeat shows that the device is lost.\n"
+        "    # If the device has 0x100C, set `guard_time`: the master then guards the device.\n";
   }
   const ProposedPdos pdos = detail == Detail::whole ? proposed_pdos(dictionary, device.data)
                                                     : pdos_of_file(dictionary, device.data);

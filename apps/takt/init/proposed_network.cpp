@@ -127,8 +127,8 @@ class Proposer {
       if (line.axis > 1 || line.kind == LimitKind::step) continue;
       if (line.source == LimitSource::device) {
         limits_[id].push_back({std::string{name(line.kind)} + ": ...",
-                               "until then " + to_string(line.object) +
-                                   " of the device limits it, which each boot reads"});
+                               "without it, " + to_string(line.object) +
+                                   " of the device applies, which takt reads in each boot"});
       } else if (line.source == LimitSource::none && !line.proposal.empty()) {
         limits_[id].push_back({line.proposal, line.because});
       }

@@ -144,9 +144,9 @@ void add_top(CLI::App& app, int& exit_code) {
                                                      "shows a live view of a running daemon", run);
   verb.footer(
       "Pages: axes, words (statuswords and controlwords), io (all values), pdos, timing, nodes.\n\n"
-      "Keys: 1 to 6, Tab and the arrows to the sides choose a page; the other arrows, space and b\n"
-      "scroll; a acknowledges the events shown; q quits. Without a terminal, or with TERM=dumb,\n"
-      "takt top prints the view once.\n\n"
+      "Keys: 1 to 6, Tab and the left and right arrow keys choose a page; the up and down arrow\n"
+      "keys, space and b scroll; a acknowledges the events that are shown; q quits. Without a\n"
+      "terminal, or with TERM=dumb, takt top prints the view once.\n\n"
       "Following errors are those of the drive (0x60F4), else those of its motion, else the\n"
       "target minus the actual position. Values without units are counts (cnt).\n\n"
       "Examples:\n  takt top\n"

@@ -125,8 +125,10 @@ class LiveLog {
     const std::int64_t missed = bus->status()->cycles_missed - status_.cycles_missed;
     const std::int64_t dropped = bus->status()->image_overruns - status_.image_overruns;
     if (missed <= 0 && dropped <= 0) return;
-    std::fprintf(stderr, "takt: meanwhile taktd missed %lld cycles and sent no image of %lld\n",
-                 static_cast<long long>(missed), static_cast<long long>(dropped));
+    std::fprintf(
+        stderr,
+        "takt: during this recording, taktd missed %lld cycles and did not publish %lld images\n",
+        static_cast<long long>(missed), static_cast<long long>(dropped));
   }
 
   const LiveLogOptions& options_;

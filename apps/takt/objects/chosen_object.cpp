@@ -56,7 +56,9 @@ Failure ambiguous(const std::string& word, const std::set<ObjectKey>& found,
     const std::string_view name = names == nullptr ? std::string_view{} : names->name_of(key);
     if (!name.empty()) list.append(" ").append(name);
   }
-  return Failure{"'" + word + "' stands for several objects: " + list, exit_wrong_use};
+  return Failure{
+      "'" + word + "' is the name of several objects; give the index of one of them: " + list,
+      exit_wrong_use};
 }
 
 }  // namespace

@@ -49,15 +49,15 @@ int show(const KnownDevice& device, std::vector<OdEntry> entries, OdReader* read
   }
   if (json) std::puts(od_json(device, entries, reader != nullptr).c_str());
   if (reader == nullptr || !reader->silent()) return 0;
-  return complain("the device has stopped to answer, so the last objects were not read", 1);
+  return complain("the device stopped answering, so takt did not read the remaining objects", 1);
 }
 
 /// Throws a Failure if no device file is at hand.
 void demand_dictionary(const KnownDevice& device) {
   if (device.dictionary) return;
   throw Failure{device.file.empty()
-                    ? "the daemon does not tell the device file of this node: name it with --eds "
-                      "FILE or --network FILE"
+                    ? "the daemon does not report the device file of this node: name the file with "
+                      "--eds FILE or --network FILE"
                     : "the device file " + device.file +
                           " of this node is on the machine of the daemon; name a copy with --eds "
                           "FILE",
@@ -139,11 +139,10 @@ void add_od(CLI::App& app, int& exit_code) {
   add_device_files(verb, options.device_files);
   add_live_options(verb, options.live);
   verb.footer(
-      "takt od only reads. It leaves out objects that are write-only, files, and objects whose\n"
-      "reading has an effect, and says so in their place. The column PDO names the PDOs that "
-      "carry\n"
-      "an object (T1: TPDO1, device to master; a dot: a PDO can carry it). Values have the units\n"
-      "of the network file. The names are those that `takt sdo` takes.\n"
+      "takt od writes nothing to the device. It does not read objects that are write-only, files,\n"
+      "and objects whose reading has an effect; their value column gives this reason. The column\n"
+      "PDO names the PDOs that carry an object (T1: TPDO1, device to master; a dot: a PDO can\n"
+      "carry it). Values have the units of the network file. `takt sdo` accepts the same names.\n"
       "Examples:\n  takt od shoulder\n  takt od shoulder --search position\n"
       "  takt od shoulder 6040..6064 --json\n"
       "  takt od --bus can0 --node 5 --eds drive.eds\n"

@@ -176,8 +176,8 @@ void add_sdo(CLI::App& app, int& exit_code) {
       "--bus can0\n"
       "  takt sdo download 5 1F50:1 firmware.bin --timeout 10000\n"
       "Names are those of the EDS in small letters, as `takt od` lists them: statusword,\n"
-      "identity_object.vendor_id; those of the second axis of a drive end in _2. The type of a\n"
-      "named object is known. With a daemon its network file tells the EDS.\n"
+      "identity_object.vendor_id; those of the second axis of a drive end in _2. The EDS also\n"
+      "gives the type of the object. The daemon reports which EDS the network file names.\n"
       "Files have at most 16 MiB; Ctrl-C aborts a transfer on the bus.\n"
       "Types: bool, i8..i64, u8..u64, f32, f64, string, hex.");
   auto [reading, read_options] = add_verb(*sdo, exit_code, "read", "prints one value", read);

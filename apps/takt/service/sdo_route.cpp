@@ -51,8 +51,10 @@ const KnownDevice& SdoRoute::device() {
   } else if (files.given()) {
     device_ = device_of_files(files, options_.node);
   } else {
-    throw Failure{"without a daemon, --network FILE or --eds FILE tells names and types of objects",
-                  2};
+    throw Failure{
+        "without a daemon, takt does not know the names and types of objects: give "
+        "--network FILE or --eds FILE",
+        2};
   }
   return *device_;
 }

@@ -170,7 +170,7 @@ void add_soak(CLI::App& app, int& exit_code) {
       "clock, no axis moves without a command of a living program, motions keep their limits and\n"
       "end along them, groups begin together, no program moves what another one holds, no output\n"
       "leaves `limits:`, no wait of the front thread is too long, every program receives its\n"
-      "messages, no stop confirms more than the drives did.\n"
+      "messages, no stop confirms an axis that did not come to rest or was not disabled.\n"
       "The homing part runs taktd with programs that home axes and move them, while drives lose\n"
       "power, reset or report errors, SYNC is missing, and programs die. takt checks: no\n"
       "set-point jumps, an axis is homed only after a good run, and no axis goes to a position\n"

@@ -45,10 +45,11 @@ constexpr Key<MasterSpec> master_keys[] = {
     key<with<read_consumer, &MasterSpec::heartbeat_consumer>>(
         "heartbeat_consumer", {.type = KeyType::boolean}, "true", "The master watches the nodes.",
         bus_yml),
-    key<&MasterSpec::heartbeat_multiplier>("heartbeat_multiplier", "from `options`",
-                                           "The silence after which a device misses the master, "
-                                           "in heartbeat periods.",
-                                           bus_yml),
+    key<&MasterSpec::heartbeat_multiplier>(
+        "heartbeat_multiplier", "from `options`",
+        "The silence after which a device reports the loss of the master, "
+        "in heartbeat periods.",
+        bus_yml),
     key<&MasterSpec::start_nodes>("start_nodes", "true",
                                   "The master sends NMT start after each boot.", bus_yml),
     key<&MasterSpec::start_all_nodes>("start_all_nodes", "false",

@@ -273,10 +273,11 @@ constexpr Key<NodeSpec> node_keys[] = {
                                      "0x100D: the device reports loss of the master after this "
                                      "number of guard times. 0: it does not watch.",
                                      bus_yml),
-    key<&NodeSpec::retry_factor>("retry_factor", whole(0, 255), "from `options`, otherwise 0x100D",
-                                 "The master misses the device after this number of guard times. "
-                                 "0: it does not guard.",
-                                 bus_yml),
+    key<&NodeSpec::retry_factor>(
+        "retry_factor", whole(0, 255), "from `options`, otherwise 0x100D",
+        "The master reports the loss of the device after this number of guard times. "
+        "0: it does not guard.",
+        bus_yml),
     key<&NodeSpec::emcy_cob_id>("emcy_cob_id", whole(0x001, 0x7FF), "from the EDS",
                                 "The COB-ID of EMCY (0x1014)."),
     key<&NodeSpec::emcy_inhibit_time>("emcy_inhibit_time", whole(0, 65535, "x 100 us"), "unchanged",

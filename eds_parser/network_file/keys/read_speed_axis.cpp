@@ -73,7 +73,7 @@ void check_pattern(const KeyInput& in, WordPattern& pattern) {
 
 constexpr Key<SpeedStates> state_keys[] = {
     map_key<&SpeedStates::ready, pattern_keys, check_pattern>(
-        "ready", "not shown", "The drive obeys the command to run."),
+        "ready", "not shown", "The drive executes the command to run."),
     map_key<&SpeedStates::running, pattern_keys, check_pattern>("running", "not shown",
                                                                 "The motor is under power."),
     map_key<&SpeedStates::reverse, pattern_keys, check_pattern>(
@@ -109,8 +109,8 @@ constexpr Key<SpeedAxisSpec> speed_axis_keys[] = {
     map_key<&SpeedAxisSpec::states, state_keys>("states", "not shown",
                                                 "What the status word shows."),
     key<read_word<&SpeedAxisSpec::fault_reset>>("fault_reset", word_of(fault_reset_words), "`edge`",
-                                                "`edge`: the drive obeys the change to `reset`. "
-                                                "`level`: the drive obeys the value `reset`."),
+                                                "`edge`: the change to `reset` resets the fault. "
+                                                "`level`: the value `reset` resets the fault."),
     key<&SpeedAxisSpec::ramps>("ramps", "none",
                                "Where the ramps of the drive are set: text for `takt plan`."),
     key<&SpeedAxisSpec::source>("source", "none",

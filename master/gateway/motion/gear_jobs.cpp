@@ -43,7 +43,7 @@ Task commanded_leader(const motion_gear_t& gear, std::size_t node,
                     gear.leader, number + 1));
   }
   const auto place = static_cast<std::size_t>(found - known.axes.begin());
-  if (std::ranges::find(axes, place) != axes.end()) return refused("an axis can't lead itself");
+  if (std::ranges::find(axes, place) != axes.end()) return refused("an axis can't follow itself");
   const Signal& target = known.plan.layout.signals[found->target];
   const Turn turn = found->turn.in_unit(target.scale, target.offset);
   return motion::GearTask{.kind = motion::LeaderKind::commanded,
@@ -83,7 +83,7 @@ Task measured_leader(const motion_gear_t& gear, std::size_t node, std::span<cons
                                gear.signal));
   }
   const auto leads_itself = [&](std::size_t axis) { return is_of(*found, known.axes[axis]); };
-  if (std::ranges::any_of(axes, leads_itself)) return refused("an axis can't lead itself");
+  if (std::ranges::any_of(axes, leads_itself)) return refused("an axis can't follow itself");
   const auto signal = static_cast<SignalIndex>(found - inputs.begin());
   motion::GearTask task{
       .kind = motion::LeaderKind::measured,

@@ -15,14 +15,14 @@ namespace {
 constexpr std::chrono::seconds retry_pause{5};
 
 constexpr const char* by_environment =
-    ". LCM_DEFAULT_URL names it: the program that serves this port sees and can change every "
-    "message. --lcm-url or `lcm: {url: ...}` names it without this warning";
+    ". LCM_DEFAULT_URL names this hub. The program that serves it can read and change every "
+    "message. If you trust it, name the hub with --lcm-url or `lcm: {url: ...}` instead";
 
 std::string port_is_taken(std::uint16_t port) {
   return fmt::format(
-      "port {0} of loopback is used by another program, and no setting tells taktd to trust it: "
-      "taktd serves no hub there and tries again every 5 s. To use the hub of that program: "
-      "--lcm-url tcpq://127.0.0.1:{0}, or `lcm: {{url: ...}}` without `broker`",
+      "port {0} of loopback is used by another program, so taktd can't serve a hub there; it tries "
+      "again every 5 s. End that program; or, if you trust its hub, name this hub: --lcm-url "
+      "tcpq://127.0.0.1:{0}, or `lcm: {{url: ...}}` without `broker`",
       port);
 }
 

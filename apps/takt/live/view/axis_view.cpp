@@ -169,7 +169,7 @@ PaintedText speed_state(const speed_axis_t& axis, std::uint16_t word, double spe
   if (shows(axis.fault, word)) return {"fault", Paint::bad};
   if (axis.ready.mask != 0 && !shows(axis.ready, word)) return {"not ready", Paint::plain};
   const bool runs = axis.running.mask != 0 ? shows(axis.running, word) : speed != 0.0;
-  if (shows(axis.standstill, word) || !runs) return {"stands", Paint::good};
+  if (shows(axis.standstill, word) || !runs) return {"standstill", Paint::good};
   return {speed < 0.0 ? "runs backward" : "runs", Paint::good};
 }
 

@@ -93,7 +93,7 @@ void MotionProgram::wait_for_end() {
 void MotionProgram::take(const MotionEntry& entry, MotionOutcome& outcome) {
   outcome.begin = program_time();
   outcome.result = "running";
-  const std::string next = fmt::format("line {} of the program has ended it", entry.pos.line);
+  const std::string next = fmt::format("the entry in line {} ended it", entry.pos.line);
   if (goes_on(entry.kind)) {
     end_newest("replaced", next);
   } else if (entry.kind != MotionKind::enable && entry.kind != MotionKind::reset) {
@@ -160,8 +160,7 @@ Done MotionProgram::stream(const MotionEntry& entry, MotionOutcome& outcome) {
   interrupt_.reset();
   if (!given && given.error().kind == Obstacle::Kind::interrupted) {
     outcome.by_script = true;
-    given.error().text =
-        fmt::format("line {} of the program has ended it", entries_[next_ + 1].pos.line);
+    given.error().text = fmt::format("the entry in line {} ended it", entries_[next_ + 1].pos.line);
   }
   return given;
 }

@@ -151,11 +151,11 @@ void MotionPrograms::kill(Program& program, Time now) {
   const auto outcomes = std::span{outcomes_}.subspan(program.first_outcome, program.next + 1);
   for (MotionOutcome& outcome : outcomes) {
     if (!outcome.begin) {
-      outcome.text = "the program was killed before";
+      outcome.text = "the program was killed before this entry began";
     } else if (!outcome.end) {
       outcome.end = now;
       outcome.result = "killed";
-      outcome.text = "the program was killed meanwhile";
+      outcome.text = "the program was killed during this entry";
       outcome.by_script = true;
     }
   }

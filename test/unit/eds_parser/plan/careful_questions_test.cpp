@@ -249,6 +249,14 @@ TEST_F(Careful, AMistakeUnderAnAnchorIsOneErrorForAllNodesThatMergeIt) {
                               HasSubstr("; the same applies to `b`, `c`, which share this line")));
 }
 
+TEST_F(Careful, OneOtherNodeSharesTheLine) {
+  EXPECT_THAT(reported_of("bus: {name: lift}\nmaster: {sync_period: 10000}\n.axis: &axis\n  " +
+                          std::string{drive} +
+                          "\n  sdo: [{index: 0x6060, value: 300}]\n"
+                          "nodes:\n  a: {<<: *axis, node_id: 1}\n  b: {<<: *axis, node_id: 2}\n"),
+              HasSubstr("; the same applies to `b`, which shares this line"));
+}
+
 TEST_F(Careful, TwoMistakesOfOneNodeInOneLineStayTwo) {
   const std::string reported =
       of_drive("sdo: [{index: 0x6060, value: 300}, {index: 0x6060, value: 301}]");

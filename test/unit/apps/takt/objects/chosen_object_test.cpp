@@ -49,7 +49,7 @@ TEST(ChosenObject, IsAmbiguousIfLayoutAndDeviceFileDisagree) {
   device.signals = {{.name = "statusword", .object = {0x6841, 0}}};
 
   EXPECT_THAT(complaint(device, "statusword"),
-              HasSubstr("stands for several objects: 6041:00 statusword, 6841:00"));
+              HasSubstr("give the index of one of them: 6041:00 statusword, 6841:00"));
 }
 
 TEST(ChosenObject, IsAmbiguousIfSeveralEntriesHaveItsName) {

@@ -67,7 +67,7 @@ TEST_F(LcmLinkTest, WarnsOfAHubThatOnlyTheEnvironmentNames) {
 
   EXPECT_EQ(link.url(), other->url());
   EXPECT_THAT(declared, ElementsAre(AllOf(StartsWith("warning: LCM: "),
-                                          HasSubstr(". LCM_DEFAULT_URL names it: the program"))));
+                                          HasSubstr(". LCM_DEFAULT_URL names this hub. The"))));
 }
 
 }  // namespace
