@@ -20,7 +20,9 @@ std::string finite(const std::string& text) {
 CLI::Validator positive() { return CLI::PositiveNumber & CLI::Validator{finite, ""}; }
 
 void add_motion_options(CLI::App& app, MoveOptions& options) {
-  app.add_option("--amplitude", options.amplitude, "amplitude of the sine")->check(positive());
+  app.add_option("--amplitude", options.amplitude,
+                 "amplitude of the sine, in the unit of each axis")
+      ->check(positive());
   app.add_option("--frequency", options.frequency, "frequency of the sine, Hz")->check(positive());
   app.add_option("--velocity", options.velocity, "velocity limit, unit/s")->check(positive());
   app.add_option("--acceleration", options.acceleration, "acceleration limit, unit/s^2")
@@ -29,7 +31,8 @@ void add_motion_options(CLI::App& app, MoveOptions& options) {
   app.add_option("--following-limit", options.following_limit,
                  "largest following error for exit code 0")
       ->check(positive());
-  app.add_option("--stale", options.stale_cycles, "hold if the image is older than this, cycles")
+  app.add_option("--stale", options.stale_cycles,
+                 "hold the motion while the newest image is older than this, cycles")
       ->check(CLI::Range(1, 100000));
 }
 

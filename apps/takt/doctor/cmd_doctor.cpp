@@ -130,7 +130,8 @@ void add_doctor(CLI::App& app, int& exit_code) {
              "bit rate that the interface must have, kbit/s")
       ->check(CLI::Range(10, 1000))
       ->type_name("KBIT");
-  add_number(verb, "--priority", options.priority, "priority of the bus thread")
+  add_number(verb, "--priority", options.priority,
+             "SCHED_FIFO priority that takt tries to get (80)")
       ->check(CLI::Range(1, 99))
       ->type_name("N");
   verb.add_option("--lcm-url", options.lcm_url,

@@ -73,10 +73,13 @@ void add_simulate(CLI::App& app, int& exit_code) {
              "run the whole taktd, and this many programs that move the axes")
       ->check(CLI::Range(std::size_t{1}, most_applications))
       ->excludes(move);
-  command.add_option("--jitter", arguments.jitter, "how late the simulated master's thread wakes")
+  command
+      .add_option("--jitter", arguments.jitter,
+                  "longest delay of each wake-up of the simulated bus thread")
       ->check(duration_error)
       ->capture_default_str();
-  command.add_option("--candump", arguments.simulation.candump, "write all frames to this file");
+  command.add_option("--candump", arguments.simulation.candump,
+                     "write all frames to this file, as candump -L does");
   command.add_flag("--json", arguments.json,
                    "print one JSON document, which is equal for equal seeds");
   command.footer(
