@@ -42,8 +42,12 @@ Done Axes::State::gear(const Gear& gear, const MotionBounds& bounds) {
   if (!spread(gear.ratio, size(), 1.0, message.numerator) ||
       !spread(gear.max_phase_error, size(), 0.0, message.max_phase_error) ||
       !spread(gear.phase, size(), 0.0, phases)) {
-    return obstacle(Obstacle::Kind::wrong_use,
-                    fmt::format("the numbers of a gear do not fit {} axes", size()));
+    return obstacle(
+        Obstacle::Kind::wrong_use,
+        fmt::format(
+            "the ratio, the phase and the largest phase error of a gear need one value for each "
+            "of {} axes, or one for all",
+            size()));
   }
   if (Done ready = wait_for_begin(bounds); !ready) return ready;
   if (gear.signal.empty()) {

@@ -67,8 +67,10 @@ Done Axes::State::wait_for_begin(const MotionBounds& bounds) {
   for (const Eigen::VectorXd* bound :
        {&bounds.velocity, &bounds.acceleration, &bounds.jerk, &bounds.following_error}) {
     if (bound->size() <= 1 || bound->size() == size()) continue;
-    return obstacle(Obstacle::Kind::wrong_use,
-                    fmt::format("{} bounds for {} axes", bound->size(), size()));
+    return obstacle(
+        Obstacle::Kind::wrong_use,
+        fmt::format("expected one bound for each of {} axes, or one for all, got {} bounds", size(),
+                    bound->size()));
   }
   if (!is_current()) return restarted();
   if (readiness_ == Readiness::not_enabled) return not_enabled();
@@ -102,7 +104,8 @@ Done Axes::State::begin(const std::string& kind, const Values& values, const Mot
   jog_goes_on_ = false;
   if (values.size() != size()) {
     return obstacle(Obstacle::Kind::wrong_use,
-                    fmt::format("{} values for {} axes", values.size(), size()));
+                    fmt::format("expected one value for each of {} axes, got {} values", size(),
+                                values.size()));
   }
   if (Done ready = wait_for_begin(bounds); !ready) return ready;
   motion_command_t command{};

@@ -40,8 +40,8 @@ struct Axes::State::SetPoints {
 Done Axes::State::check_set_points(const Values& values, const SetPoints& kind) {
   if (values.size() != size() || !values.allFinite()) {
     return obstacle(Obstacle::Kind::wrong_use,
-                    fmt::format("{} values for {} axes, or one of the values is not finite",
-                                values.size(), size()));
+                    fmt::format("expected one finite value for each of {} axes, got {} values",
+                                size(), values.size()));
   }
   if (!is_current()) return restarted();
   if (readiness_ == Readiness::not_enabled) return not_enabled();
@@ -179,8 +179,10 @@ std::optional<std::size_t> Axes::State::place_of(const Object& object, Signals a
 Done Axes::State::write_profile(std::uint16_t index, const Eigen::VectorXd& values) {
   if (values.size() == 0) return {};
   if (values.size() != 1 && values.size() != size()) {
-    return obstacle(Obstacle::Kind::wrong_use,
-                    fmt::format("{} bounds for {} axes", values.size(), size()));
+    return obstacle(
+        Obstacle::Kind::wrong_use,
+        fmt::format("expected one bound for each of {} axes, or one for all, got {} bounds", size(),
+                    values.size()));
   }
   for (Index i = 0; i < size(); ++i) {
     const AxisSignals& known = group.axes().signals(in_group(i));

@@ -92,7 +92,8 @@ bool MoveRun::fits() {
   }
   const auto targets = static_cast<AxisControl::Index>(options_.to.size());
   if (targets <= 1 || targets == axes_.size()) return true;
-  progress_.say(fmt::format("--to has {} values for {} axes", targets, axes_.size()));
+  progress_.say(fmt::format("--to has {} values for {} axes: give one each, or one for all",
+                            targets, axes_.size()));
   return false;
 }
 

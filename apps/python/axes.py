@@ -443,7 +443,7 @@ def held_by_others(bus, axes):
 
 
 def enable(bus, axes, stop):
-    """Leads all axes to Operation enabled, each at its actual position, and holds them."""
+    """Brings all axes to Operation enabled, each at its actual position, and holds them."""
     waited, held = 0.0, 0.0
     while True:
         step = bus.next_image()

@@ -68,7 +68,7 @@ int run(int argc, char** argv) {
       "`takt help plan` prints the help of one command, as `takt plan --help` does.\n\n"
       "Exit codes: 0 good, 1 a negative result, 2 wrong use or\n"
       "invalid network file, 3 bus error, 4 a mandatory node is missing, 5 a real-time limit\n"
-      "was broken, 6 the ordered stop was not confirmed.");
+      "was exceeded, 6 the ordered stop was not confirmed.");
   int exit_code = 0;
   for (const auto& [group, add] : commands) {
     add(app, exit_code);

@@ -30,8 +30,8 @@ starts the ordered stop: it brings the axes to rest and the nodes to pre-operati
 SYNC. A second signal stops taktd at once.
 
 Exit codes: 0 good, 1 refused (real time under --rt enforce), 2 wrong use or network file,
-3 bus error, 4 a mandatory node is missing or failed its boot, 5 real-time limit broken,
-6 the ordered stop was not confirmed.)";
+3 bus error, 4 a mandatory node is missing or failed its boot, 5 a real-time limit was
+exceeded, 6 the ordered stop was not confirmed.)";
 
 const std::map<std::string, RtMode> rt_modes{
     {"enforce", RtMode::enforce}, {"try", RtMode::attempt}, {"off", RtMode::off}};

@@ -28,7 +28,7 @@ class Timeline {
   void run() {
     out_ << fmt::format(
         "\none cycle, {:.0f} us per column: `.` the frame may wait, `#` latest time on the wire,\n"
-        "`+` behind SYNC, which may be late by that, `!` too late; `:` see below\n",
+        "`+` time on the wire after SYNC is due, `!` the frame is too late; `:` see below\n",
         us(picture_.end) / static_cast<double>(columns_));
     print("us", axis(), "latest", "margin");
     for (const auto& bar : picture_.bars) {

@@ -159,7 +159,7 @@ std::string against_short_answer(const BootFailure& failure) {
   if (!empty && (frame.length == 0 || frame.length >= sdo_answer_bytes(frame))) return {};
   return fmt::format(
       "the device answers with {}: its SDO server is faulty. Look for other firmware, or for "
-      "whatever cuts the frames on their way",
+      "an adapter or a gateway that cuts the frames",
       empty ? "an empty frame instead of 8 bytes"
             : fmt::format("{} bytes instead of 8, so that a part of the answer is missing",
                           frame.length));

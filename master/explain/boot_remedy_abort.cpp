@@ -46,8 +46,8 @@ constexpr std::string_view older_firmware =
     "the device has no object {object}: its firmware is older than the EDS; take the object out of "
     "the mapping of {pdo}";
 constexpr std::string_view two_clients =
-    "the device complains about the SDO protocol: a second SDO client may be using the SDO server "
-    "at the same time (stop other masters and tools)";
+    "the device reports a violation of the SDO protocol: a second SDO client may use the SDO "
+    "server at the same time (stop other masters and tools)";
 constexpr std::string_view missing =
     "the device has no {object}, although {eds} may list it: compare the firmware with the EDS, or "
     "remove the entry from the network file";
@@ -167,7 +167,7 @@ std::string against_self_start(const BootFailure& failure) {
   return fmt::format(
       "the device refuses {} because of its state, although it was sent to PRE-OPERATIONAL (NMT "
       "0x80) twice: it {} PRE-OPERATIONAL by itself. Switch its automatic start off (set bit 2 of "
-      "its 0x1F80, or use the tool of its maker), or stop whoever starts it",
+      "its 0x1F80, or use the tool of its manufacturer), or stop the master or tool that starts it",
       to_string(failure.object),
       failure.node_state == NmtState::operational ? "leaves" : "probably leaves");
 }

@@ -143,7 +143,7 @@ ROOMS = {
                          "master/core master/explain master/trace master/linux master/rt master/rt/journal"),
 
     "apps/command_line": ("options, numbers, durations and suggestions of all command lines", "eds_parser/report master/lcm"),
-    "apps/drive402": ("leads one CiA 402 drive through its states", ""),
+    "apps/drive402": ("takes one CiA 402 drive through its states", ""),
     "apps/axis/stream": ("which points of a stream to send when", ""),
     "apps/axis/group": ("the messages of all axes of a bus as vectors: images in, set-points and motions out",
                         "apps/drive402 master/units master/lcm master/lcm/link master/lcm/envelope"),

@@ -16,7 +16,7 @@ drives take the fallback of `on_timeout` in the network file. A program that has
 run() instead of time.sleep(). A jog goes on until stop(), until another motion, or until an
 exception ends a wait.
 
-Inverters, and CiA 402 drives in velocity mode, are speed axes: they obey the same calls except
+Inverters, and CiA 402 drives in velocity mode, are speed axes. They have the same calls except
 those that need a position, and taktd --no-motions runs them, too. All axes of an object are of one
 kind. See share/doc/speed.md.
 
@@ -66,7 +66,7 @@ class Axes(View, Bus):
     # What the drives do.
 
     def enable(self) -> None:
-        """Leads all axes to Operation enabled, or makes speed axes ready to run. A fault is an
+        """Brings all axes to Operation enabled, or makes speed axes ready to run. A fault is an
         obstacle: see reset()."""
         if self._profiles:
             self._profiles.stop()
@@ -77,7 +77,7 @@ class Axes(View, Bus):
             raise Obstacle("blocked", self._link.refused_envelope("COMMAND") or why)
 
     def disable(self) -> None:
-        """Stops the axes, leads them to Switch on disabled, and releases their nodes, and those
+        """Stops the axes, brings them to Switch on disabled, and releases their nodes, and those
         whose outputs were set by set() or command()."""
         if not self._link.commanding:
             if self._outputs.drop():

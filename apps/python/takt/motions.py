@@ -181,7 +181,8 @@ class Motions:
 
     def _check(self, values) -> None:
         if len(values) != len(self._link.axes):
-            raise Obstacle("wrong use", f"{len(values)} values for {len(self._link.axes)} axes")
+            raise Obstacle("wrong use", f"expected one value for each of {len(self._link.axes)} "
+                                        f"axes, got {len(values)} values")
 
     def _ready_goals(self, kind: str, values, limits: dict) -> list[motion_goal_t]:
         """The goals of a motion, which may begin now."""

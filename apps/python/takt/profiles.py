@@ -171,7 +171,8 @@ class Profiles:
     def _check(self, modes: tuple[int, ...], values) -> None:
         link = self._link
         if len(values) != len(link.axes):
-            raise Obstacle("wrong use", f"{len(values)} values for {len(link.axes)} axes")
+            raise Obstacle("wrong use", f"expected one value for each of {len(link.axes)} axes, "
+                                        f"got {len(values)} values")
         self._drives.check_may_move()
         link.step()  # after a long silence, the messages that wait tell that the drives stopped
         self._check_enabled("blocked", link.axes)

@@ -106,7 +106,8 @@ class SpeedAxes:
         asked = acceleration if many else [acceleration] * len(speeds)
         for values in (speeds, asked):
             if len(values) != len(link.axes):
-                raise Obstacle("wrong use", f"{len(values)} values for {len(link.axes)} axes")
+                raise Obstacle("wrong use", f"expected one value for each of {len(link.axes)} "
+                                            f"axes, got {len(values)} values")
         speeds, asked = list(map(float, speeds)), list(map(float, asked))
         for axis, speed, acceleration in zip(drives.axes, speeds, asked):
             self._check_limits(axis, speed, acceleration)

@@ -317,7 +317,7 @@ class NodeText {
       return fmt::format("{:08X} {}", *write.transfer.abort_code,
                          abort_text(*write.transfer.abort_code));
     });
-    comment_writes(node_.later, "written while OPERATIONAL, so not part of the boot",
+    comment_writes(node_.later, "sent while OPERATIONAL, so not part of the boot",
                    [](const LearnedWrite&) { return std::string{}; });
     if (!node_.boots.empty() && !node_.boots.back().started && !node_.boots.back().writes.empty()) {
       announce(
@@ -339,7 +339,8 @@ class NodeText {
     }
     if (writes.size() > most_comments) line("#   and {} more", writes.size() - most_comments);
     announce(Severity::note, "no-part-of-the-boot", writes.front().line,
-             fmt::format("{} SDO writes {} (comments of the network file)", writes.size(), what));
+             fmt::format("{} SDO write{} {}: see the comments in the network file", writes.size(),
+                         writes.size() == 1 ? "" : "s", what));
   }
 
   const NodeToWrite& what_;

@@ -182,9 +182,9 @@ void add_emcy(CLI::App& app, int& exit_code) {
   auto [verb, options] = add_command<EmcyOptions>(
       app, exit_code, "emcy", "prints the EMCYs that nodes have sent, with their meaning", run);
   verb.footer(
-      "--acknowledge notes in ~/.local/state/takt/acknowledged (or in XDG_STATE_HOME) which EMCYs\n"
-      "were printed. takt emcy leaves them out from then on. The daemon does not know it, so it\n"
-      "changes nothing for other users and resets no error.\n"
+      "--acknowledge writes to ~/.local/state/takt/acknowledged (or in XDG_STATE_HOME) which\n"
+      "EMCYs were printed. Later calls of takt emcy leave these EMCYs out. The daemon does not\n"
+      "know this file: other users still see the EMCYs, and no error of a device is reset.\n"
       "Examples:\n  takt emcy                 the newest 32 EMCYs of each node\n"
       "  takt emcy --acknowledge   the same, and not again\n"
       "  takt emcy shoulder --json\n  takt emcy --follow        also those that arrive later");

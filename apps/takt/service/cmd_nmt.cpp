@@ -64,8 +64,9 @@ void add_nmt(CLI::App& app, int& exit_code) {
   auto [verb, options] =
       add_command<NmtOptions>(app, exit_code, "nmt", "starts, stops and resets nodes", run);
   verb.footer(
-      "Before stop and preop the daemon stops the enabled axes in order; the command lasts until\n"
-      "then. A reset is sent at once. With --bus every command is sent at once.\n\n"
+      "Before it sends stop or preop, the daemon stops the enabled axes of the nodes in order;\n"
+      "takt nmt waits for this. The daemon sends the other commands at once. With --bus, takt nmt\n"
+      "sends every command at once.\n\n"
       "Examples:\n  takt nmt reset 5\n  takt nmt preop all --bus-name lift\n"
       "  takt nmt start 5 --bus can0      needs no daemon");
   verb.add_option("COMMAND", options.command, "start, stop, preop, reset, reset-comm")

@@ -36,7 +36,7 @@ boot, if the recording has them, otherwise from --network, --eds or --pdo. A rec
 box names its network file.
 
 `live` listens to the running daemon over LCM and judges the values; `live --bus can0` listens to
-the bus and judges the times of the frames as well. Let the axes move meanwhile.
+the bus and judges the times of the frames as well. Let the axes move while takt listens.
 
 Exit codes: 0 no error was found, 1 an axis is rough, 2 the recording has no set-points that takt
 understands, 3 bus trouble.

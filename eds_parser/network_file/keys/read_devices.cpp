@@ -40,8 +40,8 @@ constexpr KeyValue object_index = whole(0x1000, 0xFFFF);
 /// Makes the row `reason` of a section or of an entry.
 template <class T>
 constexpr Key<T> reason_key() {
-  return key<&T::fact, &DeviceFact::reason>("reason", "none",
-                                            "Quoted when a configuration is refused.");
+  return key<&T::fact, &DeviceFact::reason>(
+      "reason", "none", "takt prints this text when it refuses a configuration.");
 }
 
 constexpr KeyValue range_of(std::int64_t low, std::int64_t high) {
@@ -65,8 +65,8 @@ void read_match(const KeyInput& in, DeviceData& data) {
 
 constexpr Key<NodeIdRule> node_id_keys[] = {
     required(key<&NodeIdRule::ids>("range", range_of(1, 127), "",
-                                   "What the switches of the device can set. Another node id is "
-                                   "refused.")),
+                                   "The node ids that the switches of the device can set. takt "
+                                   "refuses others.")),
     reason_key<NodeIdRule>(),
 };
 

@@ -38,8 +38,9 @@ void add_bus(PlanLines& lines, const BusPlan& plan, const RealtimeOptions& rt) {
                  : "heartbeat every " + span_text(plan.master_heartbeat),
              plan.start_nodes ? "starts every node when its boot is done" : "does not start nodes");
   static constexpr std::string_view modes[]{"enforce", "try", "off"};
-  lines.line("  real time: {}, SCHED_FIFO {}, {}, awake {} before SYNC", name_of(rt.mode, modes),
-             rt.priority, rt.cpu ? fmt::format("cpu {}", *rt.cpu) : "any cpu", us_text(rt.spin));
+  lines.line("  real time: {}, SCHED_FIFO {}, {}, active wait of {} before SYNC",
+             name_of(rt.mode, modes), rt.priority,
+             rt.cpu ? fmt::format("cpu {}", *rt.cpu) : "any cpu", us_text(rt.spin));
   lines.line("  ordered stop within {}", span_text(plan.stop_timeout));
   const std::string start_up = start_up_text(plan.start_up);
   if (!start_up.empty()) lines.line("  {}", start_up);

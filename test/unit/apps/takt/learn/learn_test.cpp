@@ -146,7 +146,7 @@ TEST(Learn, SaysWhatIsNoPartOfTheBoot) {
   const LearnedNetwork network = learned(whole(data + "python_canopen.log"), our_files());
 
   EXPECT_THAT(network.text, HasSubstr("#   1081:60 = A0 86 01 00  06020000 object does not exist"));
-  EXPECT_THAT(network.text, HasSubstr("# written while OPERATIONAL, so not part of the boot:\n"
+  EXPECT_THAT(network.text, HasSubstr("# sent while OPERATIONAL, so not part of the boot:\n"
                                       "    #   6040:00 = 06"));
   EXPECT_THAT(
       network.text,
