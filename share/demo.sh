@@ -88,9 +88,9 @@ if [ "$moved" -eq 0 ] && [ "$stopped" -eq 0 ]; then
   echo "Next: takt plan $network, takt top beside a running taktd, share/doc/tutorial.md."
   exit 0
 fi
-say "NOT good: takt-move ended with $moved, taktd with $stopped (exit codes: share/doc/command_line.md)."
+say "The demo failed: exit code $moved of takt-move, $stopped of taktd (exit codes: share/doc/command_line.md)."
 stood_still=$(sed -n 's/.*: \([0-9][0-9]*\) cycles missed: .*/\1/p' "$tmp/log" | sort -n | tail -n 1)
 if [ "${stood_still:-0}" -ge 100 ]; then
-  echo "This machine stood still for $stood_still cycles in a row: too long for any motion. Try again when it has less to do."
+  echo "This computer missed $stood_still cycles in a row, which stops every motion. End other programs and try again."
 fi
 exit 1

@@ -83,7 +83,7 @@ Done Axes::State::wait_for_begin(const MotionBounds& bounds) {
   // taktd refuses a motion that comes from the image of a stop, or from an earlier one.
   const auto newer =
       wait_until([this] { return group.input().cycle() > stop_cycle_; }, options.longest);
-  if (!newer) return obstacle(Obstacle::Kind::time_over, "no newer image has come");
+  if (!newer) return obstacle(Obstacle::Kind::time_over, "no image has come since the stop");
   if (!*newer) return *newer;
   if (!all_ready()) {
     const std::string fallback = event_text("fallback_begun");

@@ -185,14 +185,14 @@ def imports(tools, folder):
     tools.says("a nodelist that there is not", ["takt", "import", folder / "none.cpj"], 2, "can't be read")
     wrong = folder / "wrong.yml"
     wrong.write_text("master: {node_id: 127}\nnodes:\n  a: {nod_id: 5}\n")
-    tools.says("a file that can't run", ["takt", "import", wrong], 1, "taktd does not run this file")
+    tools.says("a file that can't run", ["takt", "import", wrong], 1, "taktd does not accept this file")
     tabs = folder / "tabs.yml"
     tabs.write_text("master:\n\tnode_id: 1\n")
     tools.says("a bus.yml that is no YAML", ["takt", "import", tabs], 2, "invalid YAML")
     nodes = folder / "nodelist.cpj"
     nodes.write_text(f"[Topology]\nNodes=1\nNode5Present=1\nNode5DCFName={ROOT}/share/eds/takt_io401.eds\n")
     tools.says("a network file that is written and does not load", ["takt", "import", nodes, "-o", "/dev/null"], 1,
-               "/dev/null is written, but taktd does not run it")
+               "/dev/null was written, but taktd does not accept it")
 
 
 def plan(tools):

@@ -219,8 +219,9 @@ TEST_F(SimulatedMotions, ErrorsOfTheFileSayWhereAndWhatWasExpected) {
   EXPECT_THAT(only_finding("  - {kind: enable, axes: [knee]}\n"),
               HasSubstr("`knee` is no axis that taktd can move: shoulder, elbow"));
   EXPECT_THAT(only_finding("  - {kind: kill}\n"), HasSubstr("`kill` needs a time"));
-  EXPECT_THAT(only_finding("  - {kind: stop, expect: refuse}\n"),
-              HasSubstr(":2:26: error: `refuse` is no end of a motion, did you mean `refused`?"));
+  EXPECT_THAT(
+      only_finding("  - {kind: stop, expect: refuse}\n"),
+      HasSubstr(":2:26: error: `refuse` is not an end of a motion, did you mean `refused`?"));
   EXPECT_THAT(only_finding("  - {kind: stop, at: 2s}\n  - {kind: stop, at: 1s}\n"),
               HasSubstr(":3:5: error: `at` is earlier than that of line 2"));
   EXPECT_THAT(only_finding("  - {kind: jog, velocity: 1}\n  - {kind: stop}\n"),

@@ -195,7 +195,7 @@ class Motions:
         drives.check_may_move()
         # taktd refuses motions from before a stop.
         if not link.wait(lambda: link.cycle > self._stop_cycle, link.longest):
-            raise Obstacle("time over", "no newer image has come")
+            raise Obstacle("time over", "no image has come since the stop")
         if not drives.ready():
             texts = (drives.why_not_ready(), link.event("fallback_begun"))
             raise Obstacle("blocked", "; ".join(filter(None, texts)))

@@ -70,11 +70,11 @@ struct Imported {
 std::string last_line(const ImportOptions& options, const Imported& imported) {
   if (!imported.report.usable) {
     return imported.written ? options.out +
-                                  " is written, but taktd does not run it: correct what is "
-                                  "wrong."
-                            : "takt can't make a network file of it: correct what is wrong.";
+                                  " was written, but taktd does not accept it: correct the errors "
+                                  "above."
+                            : "takt can't make a network file of it: correct the errors above.";
   }
-  return imported.written ? options.out + " is written; `takt plan` shows what taktd does with it."
+  return imported.written ? options.out + " was written; `takt plan` shows what taktd does with it."
                           : "`-o NET.yaml` writes the network file.";
 }
 
@@ -102,7 +102,7 @@ void print_text(const ImportOptions& options, const Imported& imported) {
   }
   fmt::print("{}\n", report.usable
                          ? "taktd runs this file as it is; `takt plan` shows what taktd does."
-                         : "taktd does not run this file: correct what is wrong.");
+                         : "taktd does not accept this file: correct the errors above.");
 }
 
 /// Imports a nodelist and, if requested, writes the network file. The report then includes the

@@ -123,12 +123,11 @@ class NetworkText {
     if (const auto strangers = bus_.strangers(); !strangers.empty()) {
       announce(
           Severity::note, "nobody-there", bus_.nodes.at(strangers.front()).first_line,
-          fmt::format("{} asked by SDO, but sent no frame ({}{}): {} left out",
-                      strangers.size() == 1 ? "1 node id was"
-                                            : fmt::format("{} node ids were", strangers.size()),
-                      fmt::join(strangers | std::views::take(8), ", "),
-                      strangers.size() > 8 ? " ..." : "",
-                      strangers.size() == 1 ? "it is" : "they are"));
+          fmt::format(
+              "the recording has SDO requests to {} that sent no frame ({}{}): takt leaves {} out",
+              strangers.size() == 1 ? "1 node id" : fmt::format("{} node ids", strangers.size()),
+              fmt::join(strangers | std::views::take(8), ", "), strangers.size() > 8 ? " ..." : "",
+              strangers.size() == 1 ? "it" : "them"));
     }
     if (devices_.empty()) {
       announce(Severity::warning, "no-nodes", 0, "no device answers in this recording");

@@ -178,7 +178,7 @@ void MotionListReader::check_time(const YAML::Node& entry, const MotionEntry& mo
     if (!other.at || *other.at <= *motion.at) continue;
     return reader_.error(entry.Mark(), "motion-time",
                          "`at` is earlier than that of line " + std::to_string(other.pos.line) +
-                             ": a program does its entries in their order");
+                             ": a program executes its entries in their order");
   }
 }
 
@@ -221,7 +221,7 @@ void MotionListReader::read_expectation(MotionEntry& motion, const EntryItem& it
   if (!contains(expectable_ends, item.text)) {
     return reader_.error(
         item.mark, "motion-value",
-        "`" + item.text + "` is no end of a motion" + did_you_mean(item.text, expectable_ends));
+        "`" + item.text + "` is not an end of a motion" + did_you_mean(item.text, expectable_ends));
   }
   motion.expect = item.text;
 }

@@ -173,7 +173,7 @@ constexpr KeyValue object_list{.type = KeyType::list, .parts = object_rows};
 constexpr KeyValue file_name{.type = KeyType::text};
 
 constexpr std::string_view ros_modes =
-    "it is for the ROS 2 drive driver; in takt map 0x6060, and the application chooses";
+    "it is for the ROS 2 drive driver; in takt map 0x6060, and the application chooses the mode";
 constexpr std::string_view ros_channels =
     "ROS 2 drive channels; in takt every mapped object is in the image";
 

@@ -29,7 +29,7 @@ constexpr Key<SpeedValueSpec> speed_keys[] = {
 constexpr Key<SpeedCommandsSpec> command_keys[] = {
     key<&SpeedCommandsSpec::mask>("mask", word16, "0xFFFF",
                                   "The bits of the control word that hold the command."),
-    key<&SpeedCommandsSpec::off>("off", word16, "as `stop`", "The drive is not to move."),
+    key<&SpeedCommandsSpec::off>("off", word16, "as `stop`", "The drive must not move."),
     key<&SpeedCommandsSpec::stop>("stop", word16, "required",
                                   "The drive stops along its ramp and stays at standstill."),
     key<&SpeedCommandsSpec::run>("run", word16, "required",

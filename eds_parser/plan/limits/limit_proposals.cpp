@@ -75,7 +75,8 @@ class Proposal {
 
   void quantity(LimitKind kind, std::array<std::uint16_t, 2> indices,
                 const std::optional<UnitSpec>& unit) {
-    if (!unit) return words("give it a unit first, then enter what the machine withstands");
+    if (!unit)
+      return words("give it a unit first, then enter the highest value that the machine permits");
     for (const std::uint16_t index : indices) {
       const auto value = configured_object(node_, object(index));
       if (!value || !plausible_size(*value)) continue;
@@ -84,7 +85,7 @@ class Proposal {
       line_.because = to_string(object(index));
       return;
     }
-    words("enter what the machine withstands");
+    words("enter the highest value that the machine permits");
   }
 
   /// Proposes the distance that the axis travels in one cycle at its velocity limit.
@@ -123,7 +124,7 @@ std::optional<std::pair<double, double>> file_range(const SubObject& sub, unsign
 void propose_range(LimitLine& line, const Signal& output, const NodeSource& node) {
   std::string low = "...";
   std::string high = "...";
-  line.because = "if it is a number: enter what the machine withstands; bit fields need none";
+  line.because = "if it is a number, enter what the machine permits; a bit field needs no limits";
   const SubObject* const sub = node.dictionary->find(output.object);
   if (const auto range = sub == nullptr ? std::nullopt : file_range(*sub, output.bits)) {
     const double first = range->first * output.scale + output.offset;

@@ -65,7 +65,7 @@ class Waits {
     add("sdo_sub_block", waits::sub_block_end,
         "service frames of the master while a device sends a sub-block, for each block upload in "
         "progress");
-    add("sdo_server", waits::own_server, "next frame of an SDO client of the master itself");
+    add("sdo_server", waits::own_server, "next frame of a client of the master's own SDO server");
   }
 
   using ObjectLimit = std::pair<Time, std::string>;
@@ -106,8 +106,9 @@ class Waits {
     add("pdo_answer", waits::pdo_answer,
         "TPDO of a request without time-out; the same time again for a late TPDO");
     add("pdo_turn", waits::pdo_turn(waits::pdo_answer),
-        fmt::format("turn of such a request behind others for the same PDO; {} if it sends an RPDO",
-                    span_text(2 * waits::pdo_turn(waits::pdo_answer))));
+        fmt::format(
+            "end of earlier requests for the same PDO; {} if the waiting request sends an RPDO",
+            span_text(2 * waits::pdo_turn(waits::pdo_answer))));
   }
 
   void lss() {

@@ -128,7 +128,7 @@ bool Commands::check_cycle(const Received& from) {
   }
   if (static_cast<std::uint64_t>(from.command.cycle) <= from.context.cycle + 1) return true;
   return refuse(from, {CommandRefusal::future},
-                fmt::format("the command comes from the future: it is computed from cycle {}, the "
+                fmt::format("the command is ahead of taktd: it is computed from cycle {}, the "
                             "present cycle is {}",
                             from.command.cycle, from.context.cycle));
 }

@@ -123,7 +123,7 @@ void LcmLink::finish_lcm() {
   if (opening_.wait_for(std::chrono::seconds{0}) != std::future_status::ready) return;
   next_try_ = std::chrono::steady_clock::now() + retry_pause;
   std::unique_ptr<LcmTransport> lcm = opening_.get();
-  if (!lcm) return fall_back("LCM's own test of " + url_.text + " failed");
+  if (!lcm) return fall_back("the self-test of LCM failed for " + url_.text);
   say_(Weight::note, "LCM: " + url_.text +
                          (url_.text.find("ttl=0") != std::string::npos ? " (this host only)" : ""));
   main_ = std::move(lcm);

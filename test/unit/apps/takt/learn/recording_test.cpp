@@ -75,7 +75,7 @@ TEST(Learn, WhoSendsEmcyOrTpdosIsThereThoughItsSdoServerIsSilent) {
   EXPECT_THAT(learned(asked + "(1.2) can0 206#0102\n").text, Not(HasSubstr("node_6:")));
   EXPECT_THAT(learned(asked + "(1.2) can0 186#R\n").text, Not(HasSubstr("node_6:")));
   EXPECT_THAT(rules(learned(asked).findings),
-              HasSubstr("1 node id was asked by SDO, but sent no frame (6): it is left out"));
+              HasSubstr("SDO requests to 1 node id that sent no frame (6): takt leaves it out"));
 }
 
 TEST(Learn, ATpdoOfAnotherNodeDoesNotMakeANode) {
@@ -96,7 +96,7 @@ TEST(Learn, NodeIdsThatAScanAsksInVainAreNoNodes) {
   EXPECT_THAT(network.text, Not(HasSubstr("node_2:")));
   EXPECT_EQ(network.made_files.size(), 1u);
   EXPECT_THAT(rules(network.findings),
-              HasSubstr("2 node ids were asked by SDO, but sent no frame (2, 4)"));
+              HasSubstr("SDO requests to 2 node ids that sent no frame (2, 4)"));
 }
 
 TEST(Learn, ANodeThatTheMasterCommandsByNameIsOneWithoutAnAnswerToo) {

@@ -133,8 +133,8 @@ TEST(Limits, OfASingleOutputAreInItsUnit) {
 TEST(Limits, OfASingleOutputAreProposed) {
   EXPECT_THAT(text_of(drive("", "{index: 0x2003}")),
               HasSubstr("arm 2003:00  range         none  proposal: `objects: [{index: 0x2003, "
-                        "min: ..., max: ...}]` (if it is a number: enter what the machine "
-                        "withstands; bit fields need none)\n"));
+                        "min: ..., max: ...}]` (if it is a number, enter what the machine "
+                        "permits; a bit field needs no limits)\n"));
   std::string eds = tiny_eds();
   const std::size_t wide = eds.find("[2003]\n") + 7;
   eds.insert(wide, "LowLimit=10\nHighLimit=500\n");

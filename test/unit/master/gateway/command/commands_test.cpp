@@ -191,7 +191,7 @@ TEST_F(CommandsTest, CommandFromTheFutureIsRefused) {
   }
 
   EXPECT_EQ(outputs[1], 0x0F);
-  EXPECT_TRUE(reported("the command comes from the future"));
+  EXPECT_TRUE(reported("the command is ahead of taktd"));
 }
 
 TEST_F(CommandsTest, LongestTimeToLiveGivesALeaseOfOneSecond) {
@@ -233,7 +233,7 @@ TEST_F(CommandsTest, AnOldReleaseReleasesNothing) {
   EXPECT_FALSE(take(release(0), 103));
   EXPECT_TRUE(reported("is computed from cycle 0"));
   EXPECT_FALSE(take(release(105), 103));
-  EXPECT_TRUE(reported("the command comes from the future"));
+  EXPECT_TRUE(reported("the command is ahead of taktd"));
 
   EXPECT_EQ(commands.holder(0, 103), "move");
   EXPECT_EQ(last_time_to_live, 5U);
