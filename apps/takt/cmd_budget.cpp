@@ -149,7 +149,8 @@ void add_budget(CLI::App& app, int& exit_code) {
   verb.add_option("--svg", options.svg, "write that picture as an SVG file")->type_name("FILE");
   verb.add_flag("--json", options.json, "print one JSON document");
   verb.footer(
-      "takt assumes worst bit stuffing, worst order, and every frame as often as it may come.\n"
+      "takt assumes the worst bit stuffing and the worst order of the frames, and that each frame\n"
+      "comes as often as it may.\n"
       "Exit code 1: a frame can be too late. takt then also prints the cheapest changes that\n"
       "help.\n\n"
       "Examples:\n"

@@ -114,7 +114,7 @@ std::string file_notes(const DeviceToWrite& device) {
                         device.second_id);
   }
   if (device.data != nullptr) {
-    text += fmt::format("  # Device family: {} ({}.yaml), its rules apply.\n", device.data->name,
+    text += fmt::format("  # Device family: {}; the rules of {}.yaml apply.\n", device.data->name,
                         device.data->id);
   }
   return text;

@@ -99,9 +99,10 @@ void add_timing(CLI::App& app, int& exit_code) {
   auto [verb, options] = add_command<TimingOptions>(
       app, exit_code, "timing", "shows how punctual the cycle of a running daemon is", run);
   verb.footer(
-      "The table covers the last second: how late SYNC was sent, how long after SYNC the last\n"
-      "synchronous PDO and the image came, the image was handed to LCM, and this program\n"
-      "received it (on the daemon's machine), and how old set-points were when they were sent.\n"
+      "The table covers the last second. It shows how late SYNC was sent, and the times after\n"
+      "SYNC at which the last synchronous PDO came, the image was complete, LCM got the image,\n"
+      "and this program received it (on the machine of the daemon). The last row is the age of\n"
+      "the set-points when they were sent.\n"
       "Each column of the picture covers twice the time of the column before.\n"
       "Examples:\n"
       "  takt timing\n"

@@ -69,7 +69,7 @@ class LiveLog {
     rows_.emplace(head.signals);
     std::fprintf(stderr, "takt: recording %zu signal%s of bus '%s'%s\n", head.signals.size(),
                  head.signals.size() == 1 ? "" : "s", printable_text(status_.bus).c_str(),
-                 options_.length ? "" : "; Ctrl-C ends");
+                 options_.length ? "" : "; Ctrl-C ends the recording");
   }
 
   void take(std::string_view channel, Bytes data) {

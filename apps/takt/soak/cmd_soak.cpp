@@ -132,8 +132,8 @@ void add_soak(CLI::App& app, int& exit_code) {
   command
       .add_option(
           "--part", arguments.part,
-          "run the bus part or the front thread part of each seed, or both; or programs that "
-          "home axes")
+          "run the bus part or the front thread part of each seed, or both parts; `homing` runs "
+          "programs that home axes")
       ->check(one_of({"bus", "front", "both", "homing"}))
       ->capture_default_str();
   command

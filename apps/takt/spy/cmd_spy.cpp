@@ -38,10 +38,11 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr const char* help =
-    R"(Without CHANNEL: all channels from which messages come, with type, rate, age and size. With
-CHANNEL: the values of its messages; an image has the names and units of its signals. On a
-terminal the view follows the messages until q or Ctrl-C; arrows scroll. Into a pipe, the table comes once, after
---for (2 s), and each message of CHANNEL is one line. takt spy only listens.
+    R"(Without CHANNEL, takt lists all channels from which messages come, with type, rate, age and size.
+With CHANNEL, it prints the values of the messages; an image has the names and units of its signals.
+On a terminal, the view follows the messages until q or Ctrl-C; arrow keys scroll. In a pipe, takt
+prints the table once, after --for (2 s), and each message of CHANNEL as one line. takt spy sends
+nothing.
 
 Examples:
   takt spy
