@@ -113,7 +113,7 @@ void ask_for_loss(std::span<const NodePdos> nodes, NetworkReport& report) {
   report.warning(
       first->pos, "on-loss", "the file does not say what the other drives do when one of ", names,
       " is lost: they would continue. Write `on_loss: quick_stop` for them (the drives of its "
-      "group stop; without `group` all drives), or `on_loss: report` if they shall continue");
+      "group stop; without `group` all drives), or `on_loss: report` if they should continue");
 }
 
 constexpr std::int64_t quick_stop_command = 3;  // value of 0x6007, CiA 402-2

@@ -111,7 +111,8 @@ void check_keep_alive(const NodeSpec& spec, const NodePlan& node, NetworkReport&
   const bool shows_life = node.heartbeat_timeout != Time{} || node.guard.period != Time{};
   if (*spec.reset != ResetPolicy::keep_alive || !node.boot || shows_life) return;
   report.error(spec.reset.pos, "keep-alive", "node `", spec.name,
-               "` shall be kept running, but shows its state neither by heartbeat nor by guarding: "
+               "` is kept running (`reset: keep_alive`), but shows its state neither by heartbeat "
+               "nor by guarding: "
                "write `heartbeat_producer`, `guard_time` or `reset: none`");
 }
 

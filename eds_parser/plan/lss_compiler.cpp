@@ -52,8 +52,8 @@ std::optional<LssPlan> compile_lss(const NodeSpec& node, const ObjectDictionary&
   }
   for (const NodePlan& other : others) {
     if (!other.lss || !may_be_same(*other.lss, lss)) continue;
-    report.warning(node.lss.pos, "lss", "LSS can't tell nodes `", other.name, "` and `", node.name,
-                   "` apart: the device with the lower serial number becomes `", other.name,
+    report.warning(node.lss.pos, "lss", "LSS can't distinguish nodes `", other.name, "` and `",
+                   node.name, "`: the device with the lower serial number becomes `", other.name,
                    "`; write `serial_number` to identify each device");
   }
   return lss;

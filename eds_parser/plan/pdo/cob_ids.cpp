@@ -110,7 +110,7 @@ class CobIdAssigner {
         user.pdo->cob_id_pos, "linked", receiver, " receives ", sender, " (both ", id,
         stated ? ", which " + receiver.file() + " sets" : "",
         "); the master does not send this RPDO",
-        stated ? ". Write `cob_id: auto` for it under `rpdo:` if the master shall send it" : "");
+        stated ? ". Write `cob_id: auto` for it under `rpdo:` if the master should send it" : "");
   }
 
   void claim_of_device(User user) {
@@ -161,8 +161,8 @@ class CobIdAssigner {
         other != nullptr && other->node != user.node && other->pdo->is_tpdo != pdo.is_tpdo;
     if (cut) {
       report_.warning(pdo.cob_id_pos, "cob-id-moved", text,
-                      ". If the two devices shall exchange data with this id, write `cob_id: ", was,
-                      "` for both PDOs; if not, `cob_id: auto` for this one");
+                      ". If the two devices should exchange data with this id, write `cob_id: ",
+                      was, "` for both PDOs; if not, `cob_id: auto` for this one");
     } else {
       report_.note(pdo.cob_id_pos, "cob-id-moved", text);
     }
