@@ -97,7 +97,6 @@ void Bridge::notice_gap() {
                                 gap_.length() / std::chrono::milliseconds{1}));
 }
 
-/// Reports a warning of the gateway itself.
 std::uint64_t Bridge::cycle_at(Time now) const noexcept {
   const Time period = master_.plan().cycle.period;
   if (images_ == 0 || period <= Time{0} || now <= sync_time_) return cycle_;
@@ -177,7 +176,7 @@ void Bridge::publish_image(const ImageView& image, bool typed) {
 }
 
 void Bridge::publish_outputs() {
-  // Uses the time at which the age was judged, because this thread may not have run since then.
+  // Uses the time at which the age was checked, because this thread may not have run since then.
   if (std::exchange(outputs_staged_, false)) master_.publish_outputs(judged_);
 }
 

@@ -216,7 +216,7 @@ class Bridge {
   Time image_wait_;
   std::uint64_t cycle_ = 0;  // cycle of the newest image
   Time sync_time_{};         // SYNC of the newest image
-  Time judged_{};            // time at which the age of the oldest staged command was judged
+  Time judged_{};            // time at which the age of the oldest staged command was checked
   FrontGap gap_;
   std::uint64_t gaps_ = 0;
   std::uint64_t long_gaps_ = 0;

@@ -107,7 +107,8 @@ void Bridge::answer_history(const request_t& request) {
   answer(std::move(reply));
 }
 
-/// Answers with the path, which is on this machine: the daemon keeps no names of objects.
+/// Answers with the path of the device file on this machine. The requester reads the names of the
+/// objects there, because the daemon keeps no names of objects.
 void Bridge::answer_device_file(const request_t& request) {
   if (auto refused = requests_.refuse_foreign(request)) return answer(std::move(*refused));
   reply_t reply = requests_.reply_to(request);

@@ -7,7 +7,7 @@ namespace takt {
 
 /// Detects that the front thread did not run (stopped, swapped out, starved) by comparing the clock
 /// with the thread's own schedule. Messages that waited in the transports meanwhile must be
-/// discarded. Front thread.
+/// discarded. All calls come from the front thread.
 class FrontGap {
  public:
   explicit FrontGap(Time period) noexcept;

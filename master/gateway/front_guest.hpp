@@ -6,7 +6,7 @@
 namespace takt {
 
 /// Another user of the master beside LCM: it submits requests and receives images, events and
-/// replies. Front thread.
+/// replies. All calls come from the front thread.
 class FrontGuest {
  public:
   /// This bit marks the ids of a guest's requests. The ids of LCM requests do not have it.

@@ -42,9 +42,9 @@ struct FrontRound {
         return;
       case Step::wait:
         due = Step::predict;
-        // If an image was published meanwhile, the next round checks whether it was found. The
-        // prediction for that image has passed, and after a stall within this round it would have
-        // passed long ago.
+        // If an image was published meanwhile, this step does not wait: the next round looks for
+        // that image. Its predicted time has passed, and after a stall within this round it has
+        // passed long ago. wait() would then last too long, see pause_before_image().
         if (next_image() == predicted) wait(predicted, latest);
         return;
     }
@@ -61,7 +61,7 @@ inline Time pause_before_image(Time now, Time next_image) noexcept {
   constexpr Time shortest = std::chrono::microseconds{15};
   constexpr Time longest = std::chrono::milliseconds{20};
   if (now < next_image) return std::min(next_image - now, longest);
-  // A tenth of the present delay: an image then waits at most this much longer.
+  // The pause is a tenth of the present delay, so an image waits at most a tenth longer.
   return std::clamp((now - next_image) / 10, shortest, longest);
 }
 

@@ -105,7 +105,8 @@ void number_parts(std::vector<T>& messages) {
   }
 }
 
-/// Decodes bytes from outside. Hostile bytes cost no more than their own size.
+/// Decodes bytes from outside. Whatever the bytes contain, the effort is at most proportional to
+/// their number.
 template <class T>
 std::expected<T, DecodeFault> decode(Bytes bytes) {
   if (bytes.size() < 8 || bytes.size() > 0x7FFF'FFFF) {

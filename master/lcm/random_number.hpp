@@ -10,7 +10,7 @@ inline std::int64_t random_number() {
   constexpr std::uint64_t positive = 0x7FFF'FFFF'FFFF'FFFF;
   while (true) {
     std::uint64_t number = 0;
-    // A signal may interrupt the call; 8 bytes come as a whole or not at all.
+    // A signal may interrupt the call. A call for 8 bytes returns all of them or none.
     if (::getrandom(&number, sizeof number, 0) != sizeof number) continue;
     if ((number & positive) != 0) return static_cast<std::int64_t>(number & positive);
   }

@@ -47,8 +47,8 @@ bool prefer_this_thread() noexcept;
 /// memory includes the whole stack, not only the part that the thread uses.
 void prepare_memory();
 
-/// Starts a thread with real-time properties, and returns when `report` tells what the machine has
-/// granted. If the report does not permit the thread to run, the thread ends without calling
+/// Starts a thread with real-time properties, and returns when `report` contains what the machine
+/// has granted. If the report does not permit the thread to run, the thread ends without calling
 /// `body`. `name` appears in `ps -L` and has at most 15 characters. Returns the errno if the
 /// machine refuses another thread.
 std::expected<std::thread, int> start_rt_thread(const RealtimeOptions& options, const char* name,

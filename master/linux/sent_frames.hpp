@@ -9,8 +9,8 @@
 namespace takt {
 
 /// Counts the frames of each 11-bit identifier that the bus thread has handed to the bus, so that
-/// the diagnostic socket can distinguish them from the frames of others. One writer, any reader, no
-/// lock.
+/// the diagnostic socket can distinguish them from the frames of others. One thread writes, and any
+/// thread may read without a lock.
 class SentFrames {
  public:
   /// Writer: counts frames before they are sent, so that a reader never sees a frame that is not

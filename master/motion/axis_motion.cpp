@@ -42,8 +42,9 @@ State after(const Entry& entry, const State& from, double jerk) noexcept {
 
 /// Returns the duration at which `motion` reaches `distance`. The motion reaches it with the
 /// duration `high`, but not with `low`; in between, the distance is a convex or concave function of
-/// the duration. `start` must be the end from which Newton's method approaches the solution without
-/// passing it. If a step leaves the bracket because of rounding, the bracket is halved instead.
+/// the duration. `start` must be `low` or `high`: the one from which Newton's method approaches the
+/// solution without passing it. If a step leaves the bracket because of rounding, the bracket is
+/// halved instead.
 double crossing(const FarthestMotion& motion, double distance, double low, double high,
                 double start) noexcept {
   double time = start;
@@ -55,7 +56,7 @@ double crossing(const FarthestMotion& motion, double distance, double low, doubl
     (error > 0.0 ? high : low) = time;
     double next = time - error / reached.slope;
     if (!(next >= low && next <= high)) next = (low + high) / 2;
-    // When the steps no longer become smaller, they consist only of the rounding of the distance.
+    // Steps that no longer become smaller are caused only by the rounding of the distance.
     const double step = std::abs(next - time);
     if (step <= 2 * epsilon * time || (step >= last_step && step < 1e-11 * time)) break;
     last_step = step;
@@ -75,9 +76,9 @@ double summit(const FarthestMotion& motion, double low, double high) noexcept {
 }
 
 /// Returns the shortest duration between `first` and `last` with which `motion` reaches `distance`.
-/// The motion must not reach it with `first`; `last` may be infinite. A motion that misses it by
-/// `tolerance` at a summit or at `last` reaches it but for rounding. Returns std::nullopt if there
-/// is no such duration.
+/// The motion must not reach it with `first`; `last` may be infinite. If a motion falls short of
+/// `distance` at a summit or at `last` by `tolerance` or less, the difference counts as rounding,
+/// and the motion reaches `distance`. Returns std::nullopt if there is no such duration.
 std::optional<double> time_to_reach(const FarthestMotion& motion, double distance, double first,
                                     double last, double tolerance) noexcept {
   double low = first;

@@ -7,9 +7,10 @@
 namespace takt::motion {
 
 /// Returns the limits of a new motion that begins in the state `from` of a motion with the limits
-/// `running`. An axis that accelerates gains velocity until its acceleration is 0, and the more,
-/// the lower the jerk is. So the jerk of the new motion is raised until the axis stays within the
-/// velocities of both motions, but not above the jerk of the motion that runs.
+/// `running`. An axis that accelerates gains velocity until its acceleration is 0, and it gains
+/// more if the jerk is lower. Therefore the jerk of the new motion is raised until the axis stays
+/// within the velocity limits of both motions. It is not raised above the jerk of the running
+/// motion.
 inline Limits with_enough_jerk(Limits limits, const State& from, const Limits& running) noexcept {
   if (from.acceleration == 0.0) return limits;
   const double room = from.acceleration > 0.0

@@ -57,8 +57,8 @@ Entry entry_from_above(const Transfer& t) noexcept {
 }  // namespace
 
 Entry entry(const Transfer& transfer) noexcept {
-  // A velocity above its limit that falls fast gets below the lower limit before the acceleration
-  // can reach 0.
+  // A velocity above its limit may fall so fast that it passes the lower limit before the
+  // acceleration can reach 0.
   const double a = transfer.start_acceleration;
   const bool falls = transfer.start_velocity + a * std::abs(a) / 2 < transfer.min_velocity;
   const bool above = is_too_steep(transfer) ||

@@ -10,7 +10,7 @@ namespace {
 double square(double value) noexcept { return value * value; }
 
 /// Returns the values in ascending order, after a number of instructions that does not depend on
-/// them. NaN stays among the values, at any place.
+/// them. A NaN is not lost, but may be at any place of the result.
 std::array<double, 4> sorted(std::array<double, 4> values) noexcept {
   constexpr std::array<std::array<std::size_t, 2>, 5> pairs{
       {{0, 1}, {2, 3}, {0, 2}, {1, 3}, {1, 2}}};
@@ -120,7 +120,7 @@ FarthestMotion::Reach FarthestMotion::reach(double duration) const noexcept {
                      parts.hold_after * (after - parts.to * parts.hold_after / 2) +
                      end * (after + end * (parts.to / 2 + end / 6));
   // By Pontryagin's principle, the slope can be computed from the state at any moment of the
-  // motion. The formula is shortest at the begin of the fall.
+  // motion. The formula is shortest at the start of the fall.
   return {.distance = way, .slope = before + parts.from * length / 2};
 }
 

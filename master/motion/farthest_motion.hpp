@@ -56,7 +56,7 @@ class FarthestMotion {
     double hold_after = 0.0;
   };
   Fall fall(double duration) const noexcept;
-  /// Returns the velocity at the begin of the fall.
+  /// Returns the velocity at the start of the fall.
   double velocity_before(const Fall& fall) const noexcept;
 
   Transfer transfer_;

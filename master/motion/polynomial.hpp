@@ -24,7 +24,8 @@ constexpr Polynomial derivative_of(const Polynomial& c) noexcept {
 
 /// Returns the position as a function of time that has both states, `duration` seconds apart.
 Polynomial quintic_between(const State& from, const State& to, double duration) noexcept;
-/// Returns the one that has both positions and velocities. Its acceleration is what results.
+/// Returns the cubic polynomial that has both positions and velocities. Its accelerations follow
+/// from these values.
 Polynomial cubic_between(const State& from, const State& to, double duration) noexcept;
 
 /// Returns the extremes between 0 and `duration`, up to rounding. It never allocates.

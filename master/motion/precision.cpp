@@ -8,7 +8,8 @@ namespace {
 
 constexpr double end_tolerance = 1e-8;
 constexpr double limit_tolerance = 1e-9;
-/// Below limit_tolerance, so that a state which counts as inside does not exceed a limit.
+/// This tolerance is below limit_tolerance, so that a state that counts as inside does not exceed a
+/// limit.
 constexpr double inside_tolerance = 5e-10;
 constexpr double long_duration = 1e7;  ///< s, above which the tolerances grow
 
@@ -61,7 +62,7 @@ class Follower {
     const long double positions = std::max(std::abs(from.position), std::abs(to.position));
     const bool rests = to.velocity == 0.0 && to.acceleration == 0.0;
     const long double size = rests ? way_ + 1e-4L * positions : std::max(way_, positions);
-    // What the rounding of an acceleration in its 18th digit changes until the end.
+    // The change of the end position if an acceleration is rounded in its 18th digit.
     const long double drift = 1e-18L * steepest_ * duration_ * duration_;
     const auto is_near = [&](long double miss, long double of, long double more = 0.0L) {
       return std::abs(miss) <= tolerance * of + more;
@@ -100,7 +101,8 @@ class Follower {
   long double steepest_;
   long double duration_ = 0.0L;
   long double distance_ = 0.0L;
-  /// At least as long as the whole way, also where the axis comes back.
+  /// An upper bound of the length of the whole path. The parts on which the axis moves back count
+  /// as well.
   long double way_ = 0.0L;
   bool inside_;
   bool kept_ = true;

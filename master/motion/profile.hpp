@@ -41,8 +41,8 @@ constexpr State advanced(const State& from, double duration, double jerk) noexce
 /// A motion of one axis as a sequence of segments. No function allocates memory.
 class Profile {
  public:
-  /// At most two segments bring a state inside its limits. The motion after them has most segments
-  /// if it is the weighted mean of two motions with seven segments each.
+  /// At most two segments bring a state inside its limits. The motion after them has up to 14
+  /// segments: it may be the weighted mean of two motions with seven segments each.
   static constexpr std::size_t capacity = 2 + 14;
 
   /// Appends a segment. A segment without duration is dropped.
@@ -62,7 +62,7 @@ class Profile {
     return sum;
   }
 
-  /// Returns the state `time` seconds after the begin of the motion, which starts at `from`. After
+  /// Returns the state `time` seconds after the start of the motion, which starts at `from`. After
   /// the end of the motion the acceleration stays as it was at the end.
   constexpr State at(const State& from, double time) const noexcept {
     State state = from;

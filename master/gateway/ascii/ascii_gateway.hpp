@@ -25,7 +25,8 @@ struct AsciiPorts {
 };
 
 /// The gateway of CiA 309-3 turns text commands of clients into requests, and replies and events
-/// into lines. It has one network, with the number 1. It does not know sockets. Front thread.
+/// into lines. It has one network, with the number 1. It does not know sockets. All calls come from
+/// the front thread.
 class AsciiGateway final : public FrontGuest {
  public:
   static constexpr std::size_t most_pending = 16;  ///< most unanswered commands of one client
@@ -45,7 +46,8 @@ class AsciiGateway final : public FrontGuest {
   /// Refuses a line that waited while the front thread did not run for `gap`, whatever the line
   /// says.
   void refuse_waited(int client, std::string_view line, Time gap);
-  /// Refuses a line that waited during such a gap if it sets outputs; otherwise takes the line.
+  /// Refuses a line that waited while the front thread did not run for `gap`, if the line sets
+  /// outputs. Takes any other line.
   void refuse_waited_outputs(int client, std::string_view line, Time gap);
   /// Answers a line that was dropped because it was too long.
   void refuse_long_line(int client);

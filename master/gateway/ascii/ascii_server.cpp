@@ -190,8 +190,8 @@ void AsciiServer::drop_long_line(Client& client) {
   handler_.too_long(client.id);
 }
 
-/// Closes a client that speaks another protocol. It must not command a machine by accident; a web
-/// page is an example.
+/// Closes a client that speaks another protocol. Such a client, for example a web page, must not
+/// command a machine by accident.
 void AsciiServer::close_foreign(Client& client) {
   send(client.id,
        "[0] ERROR: 101 (syntax error: the first line is no command of CiA 309-3, such as '[1] "

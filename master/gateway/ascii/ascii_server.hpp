@@ -20,7 +20,7 @@ namespace takt {
 /// bounded: the number of clients, the length of a line, the unsent bytes and the time of each
 /// serve(). The server closes a client whose first line is not a command of CiA 309-3 before it
 /// hands over anything from it. It also closes a client that gives no command within 2 s. No call
-/// waits. One thread.
+/// waits. All calls come from one thread.
 class AsciiServer {
  public:
   static constexpr std::size_t most_clients = 8;

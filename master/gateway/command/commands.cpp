@@ -117,8 +117,8 @@ bool Commands::check_message(const Received& from) {
   return true;
 }
 
-/// Checks the cycle of the command. Only a command computed from an image of this run can be
-/// judged.
+/// Checks the cycle of the command. The age is known only of a command that was computed from an
+/// image of this run.
 bool Commands::check_cycle(const Received& from) {
   if (from.command.cycle < 1) {
     return refuse(from, {CommandRefusal::no_cycle},
@@ -247,7 +247,8 @@ std::uint32_t Commands::shortest_limit(std::size_t node) const noexcept {
   return shortest;
 }
 
-/// A release is judged like a command: a copy of an old one must not stop the axes.
+/// A release has to pass the same checks as a command, because a copy of an old release must not
+/// stop the axes.
 bool Commands::release_node(std::size_t node, const Received& from) {
   if (!leases_.holds(node, from.command.instance, from.context.cycle)) return false;
   const std::uint8_t id = plan_.nodes[node].id.value();

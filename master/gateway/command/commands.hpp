@@ -20,7 +20,8 @@
 
 namespace takt {
 
-/// Stages one output for the bus thread. The time to live output_released releases the output.
+/// Stages one output for the bus thread. If the time to live is output_released, the call releases
+/// the output.
 using SetOutput =
     std::function<void(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live)>;
 
@@ -38,7 +39,8 @@ enum class CommandRefusal : std::uint8_t {
   not_ready,  ///< the node has not booted, or is not operational
   held,       ///< another sender holds the node
   waited,     ///< the command waited while the front thread did not run
-  overtaken,  ///< a command computed from a later cycle, or a release from this one, came before
+  overtaken,  ///< a command computed from a later cycle, or a release computed from the same cycle,
+              ///< came before
 };
 inline constexpr std::size_t command_refusals = 13;
 std::string_view name(CommandRefusal refusal) noexcept;  ///< "too_old"
@@ -58,8 +60,8 @@ struct CommandContext {
 };
 
 /// Turns command_t messages into set-points. A node takes either all or none of its values in a
-/// message. Refusals are reported at most once per second for the same reason, sender and node.
-/// Front thread.
+/// message. Refusals are reported at most once per second for the same reason, sender and node. All
+/// calls come from the front thread.
 class Commands {
  public:
   Commands(const BusPlan& plan, CommandsOptions options, SetOutput set_output, NoticeSink announce);

@@ -20,10 +20,10 @@ Freshness freshness(const CommandAge& age) noexcept {
 LeaseTable::LeaseTable(std::size_t nodes, std::uint32_t unlimited)
     : leases_(nodes), unlimited_{std::max(unlimited, 1U)} {}
 
-/// Judges a command of a sender that may hold the node. If the newest command is from a cycle that
-/// has not begun yet, it does not count: the cycle that is expected by the clock becomes smaller
-/// when SYNC was missing. A command of the cycle in which its sender has released the node was sent
-/// before the release.
+/// Decides about a command of a sender that may hold the node. The newest accepted command does not
+/// count if it is from a cycle that has not begun yet: the cycle that is expected by the clock
+/// becomes smaller when SYNC was missing. A command of the cycle in which its sender has released
+/// the node was sent before the release.
 LeaseVerdict LeaseTable::judge(const Lease& lease, std::int64_t instance,
                                const LeaseTerm& term) noexcept {
   if (lease.newest > term.now + 1) return LeaseVerdict::taken;

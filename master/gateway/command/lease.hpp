@@ -43,7 +43,7 @@ enum class LeaseVerdict : std::uint8_t {
   taken,
   held,       ///< another sender holds the node
   overtaken,  ///< a command that was computed from a later cycle has been accepted before
-  released,   ///< the sender has released the node in the cycle from which it was computed
+  released,   ///< the command was computed from the cycle in which its sender has released the node
 };
 
 /// The cycles of a command. `cycles` is the number of cycles for which it is valid; 0 means no
@@ -58,7 +58,7 @@ struct LeaseTerm {
 /// Decides who may command the outputs of each node. The first sender holds the node until the time
 /// to live of each of its commands has expired, or until it releases the node. A command must not
 /// be computed from an earlier cycle than the newest accepted one of the node. Times count in
-/// cycles. Front thread.
+/// cycles. All calls come from the front thread.
 class LeaseTable {
  public:
   /// `unlimited` is the number of cycles for which a command without time to live holds its node.

@@ -155,7 +155,8 @@ void Requests::forget(Time now) {
   if (answered != known_.end()) known_.erase(answered);
 }
 
-/// Answers a known request again. A request in progress gets no second answer.
+/// Answers a request that has come before. A request in progress gets no answer now, because its
+/// answer will follow.
 std::optional<reply_t> Requests::take_again(const Known& known, const request_t& message) const {
   if (known.answered == never) return std::nullopt;
   if (same_message(known.message, message)) return known.reply;

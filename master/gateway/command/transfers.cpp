@@ -12,7 +12,8 @@
 namespace takt {
 namespace {
 
-/// The ids of the requests of Transfers have this bit. The ids of the requests of Requests do not.
+/// This bit is set in the id of each request that the class Transfers makes, and clear in the id of
+/// each request that the class Requests makes.
 constexpr std::uint64_t transfer_mark = std::uint64_t{1} << 63;
 constexpr Time progress_period = std::chrono::milliseconds{500};
 /// Bytes by which one step enlarges the buffer of an upload before the request is submitted.
@@ -106,8 +107,8 @@ std::expected<Request, std::string> Transfers::translate(const transfer_t& messa
       .timeout = request_timeout(message.timeout_ms)};
 }
 
-/// Takes parts only in order. The state sent after each part states where the sender has to
-/// continue.
+/// Takes parts only in order. The transfer_state_t after each part gives the offset at which the
+/// sender has to continue.
 void Transfers::fill(Job& job, const transfer_t& message) {
   const std::size_t size = message.data.size();
   if (job.stage != Stage::filling || job.submitted) return;

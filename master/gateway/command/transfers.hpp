@@ -17,7 +17,7 @@ namespace takt {
 
 /// Moves files to and from domains: collects a transfer_t in parts, makes one long Request of it
 /// and reports its progress by transfer_state_t. A buffer belongs to the bus thread only while its
-/// request is under way. Front thread only.
+/// request is under way. All calls come from the front thread.
 class Transfers {
  public:
   static constexpr std::size_t part_bytes = 1024;       ///< bytes in one message

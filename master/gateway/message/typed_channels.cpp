@@ -85,7 +85,8 @@ Number take_number(Taker& from, LcmPrimitive type) {
   return {};
 }
 
-/// Schema 2 has added the fields `instance` and `release`.
+/// Returns the fingerprint of the command in schema 1, which has no fields `instance` and
+/// `release`.
 std::uint64_t fingerprint_of_schema_1_of(TypedMessage command) {
   std::erase_if(command.fields, [](const TypedField& field) {
     return !field.signal && (field.name == "instance" || field.name == "release");

@@ -17,7 +17,8 @@
 namespace takt {
 
 /// BUS_NODE_STATE and BUS_NODE_COMMAND: the image and the set-points of one node each, in the types
-/// of typed_messages() and with the encoding of lcm-gen's code. Front thread.
+/// of typed_messages() and with the encoding of lcm-gen's code. All calls come from the front
+/// thread.
 class TypedChannels {
  public:
   TypedChannels(const BusPlan& plan, std::int64_t session);

@@ -38,7 +38,8 @@ class AxisMotionLimits {
   /// Returns the range of positions of the axis. The range is unlimited if the axis is rotary and
   /// its range is not shorter than its turn.
   const motion::PositionRange& range(std::size_t axis) const noexcept { return axes_[axis].range; }
-  /// Returns the length of a turn of such a rotary axis, in its unit; 0 for any other axis.
+  /// Returns the length of a turn if the axis is rotary and its range is not shorter than its turn,
+  /// in the unit of the axis; otherwise 0.
   double turn(std::size_t axis) const noexcept { return axes_[axis].turn; }
 
  private:

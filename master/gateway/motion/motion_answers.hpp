@@ -15,7 +15,7 @@
 namespace takt {
 
 /// Reports to applications and users how motions have ended. The same notice is sent at most once a
-/// second. Front thread.
+/// second. All calls come from the front thread.
 class MotionAnswers {
  public:
   /// Keeps references to `plan` and `axes`. `axes` are the motion_axes() of the plan.

@@ -314,7 +314,8 @@ void MotionCommands::take_stop(const motion_command_t& command, std::span<const 
 }
 
 /// Refuses a motion that a later message has overtaken, and a copy of a message from before a stop.
-/// More points for a stream that runs can't be overtaken, not even by a motion that was refused.
+/// Further points of a stream that runs are refused only because of a stop: the stream continues
+/// although a later motion was refused.
 bool MotionCommands::is_newest(const motion_command_t& command, std::span<const std::size_t> axes,
                                const CommandContext& context) {
   const bool is_stream = command.kind == "stream";

@@ -24,7 +24,8 @@ namespace takt {
 
 /// Turns motion_command_t, motion_gear_t and motion_stream_t messages into orders for the bus
 /// thread. The messages pass the same checks as set-points (see Commands): session, sender, age,
-/// and who holds the nodes. A command takes effect for all of its axes or for none. Front thread.
+/// and who holds the nodes. A command takes effect for all of its axes or for none. All calls come
+/// from the front thread.
 class MotionCommands {
  public:
   MotionCommands(const BusPlan& plan, Commands& commands, SubmitMotion submit, NoticeSink announce);
@@ -53,8 +54,8 @@ class MotionCommands {
 
   /// Returns true once the bus thread reads the axes.
   bool watches() const noexcept { return watched_; }
-  /// Returns true once a command other than a stop, a gear or a stream has come from a sender that
-  /// may hold the nodes. No motion_t is sent before that.
+  /// Returns true once a sender that may hold the nodes has sent a gear, a stream, or a command
+  /// other than a stop. No motion_t is sent before that.
   bool active() const noexcept { return active_; }
   /// Returns the messages about the newest reports. The caller sets `utime` and `session`.
   std::vector<motion_t> messages() const {

@@ -12,7 +12,7 @@
 namespace takt {
 
 /// Refuses absolute motions of axes that have to be homed first, and reports to users how homing
-/// runs have ended. Front thread.
+/// runs have ended. All calls come from the front thread.
 class MotionHoming {
  public:
   /// Keeps references to both arguments. `axes` are the motion_axes() of the plan.

@@ -27,7 +27,7 @@ struct MotionRefusal {
   std::optional<std::size_t> axis{};
 };
 
-/// A move, a jog, a gear or the begin of a stream that the bus thread has not begun yet.
+/// A move, a jog, a gear or the start of a stream that the bus thread has not begun yet.
 struct MotionJob {
   MotionName name{};
   std::int64_t instance = 0;  ///< instance of the sender

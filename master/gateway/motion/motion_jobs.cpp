@@ -49,8 +49,9 @@ void MotionJobs::drop(std::size_t axis) {
   });
 }
 
-/// Drops the older jobs of the axes, because a newer command ends their wait. A command that is
-/// refused does not end it: the orders of the older job may be on their way, see take_lost().
+/// Drops the older jobs of the axes, because a newer command ends their wait. A refused command
+/// does not end the wait of an older job, because the orders of that job may be on their way, see
+/// take_lost().
 void MotionJobs::drop_replaced(const MotionJob& job) {
   for (const motion::AxisGoal& goal : job.goals) drop(goal.axis);
 }

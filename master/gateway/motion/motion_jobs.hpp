@@ -12,8 +12,8 @@
 
 namespace takt {
 
-/// Hands moves, jogs, gears and the begins of streams to the bus thread. It plans them, and plans
-/// them again if their orders came too late. Front thread.
+/// Hands moves, jogs, gears and the starts of streams to the bus thread. It plans them, and plans
+/// them again if their orders came too late. All calls come from the front thread.
 class MotionJobs {
  public:
   /// Keeps references to the arguments except the last one. `axes` are the motion_axes() of the

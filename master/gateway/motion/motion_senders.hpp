@@ -12,7 +12,7 @@ namespace takt {
 
 /// Gives the senders of motions numbers for the bus thread. A number is given to another sender
 /// only when its previous sender has been silent for so long that all of its motions have ended.
-/// Front thread.
+/// All calls come from the front thread.
 class MotionSenders {
  public:
   /// Longest timeout of a motion. See motion_command_t::timeout_ms.

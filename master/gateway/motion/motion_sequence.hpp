@@ -8,7 +8,8 @@ namespace takt {
 
 /// The newest messages that one axis has taken. A copy of an older message, or a message that
 /// arrives in another order, must not move the axis. LeaseTable refuses messages of an earlier
-/// cycle than the newest one; this class orders the messages of the same cycle. Front thread.
+/// cycle than the newest one; this class orders the messages of the same cycle. All calls come from
+/// the front thread.
 class MotionSequence {
  public:
   void stopped(const motion_command_t& stop) noexcept {
@@ -43,7 +44,7 @@ class MotionSequence {
     return {};
   }
   /// Returns why a message must not begin a motion; an empty text if it may. A `move_by`, a gear or
-  /// the begin of a stream must be newer than each motion from the same image, because a copy of it
+  /// the start of a stream must be newer than each motion from the same image, because a copy of it
   /// would move the axis again.
   std::string_view objection(const motion_command_t& move, std::int64_t now) const noexcept {
     if (const std::string_view why = stop_objection(move, now); !why.empty()) return why;

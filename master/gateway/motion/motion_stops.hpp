@@ -9,7 +9,8 @@
 namespace takt {
 
 /// Hands stops to the bus thread, and reports to it which senders have lost their nodes. A stop is
-/// never lost: if the bus thread can't take it now, serve() tries again. Front thread.
+/// never lost: if the bus thread can't take it now, serve() tries again. All calls come from the
+/// front thread.
 class MotionStops {
  public:
   /// Keeps references to the first two arguments. `axes` are the motion_axes() of the plan.

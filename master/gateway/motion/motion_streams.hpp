@@ -16,7 +16,7 @@
 namespace takt {
 
 /// The streams that run or are about to begin. This class checks their points, and hands them to
-/// the bus thread as fast as it takes them. Front thread.
+/// the bus thread as fast as it takes them. All calls come from the front thread.
 class MotionStreams {
  public:
   /// Points may be at most this far in the future, in s.
@@ -39,8 +39,8 @@ class MotionStreams {
   bool has_axes(std::int64_t instance, std::int32_t id,
                 std::span<const std::size_t> axes) const noexcept;
   /// Takes the points of a message for a stream that runs, and skips points that the stream already
-  /// has. If a point is refused, all later points are refused too, and the result says why; the
-  /// points before it are taken. `cycle` is the present cycle, `reported` is the cycle of the
+  /// has. If a point is refused, the points before it are taken, all later points are refused too,
+  /// and the result gives the reason. `cycle` is the present cycle. `reported` is the cycle of the
   /// newest report: the bus thread holds at most the points that were left in that cycle.
   std::optional<MotionRefusal> add(const motion_stream_t& message, std::uint64_t cycle,
                                    std::uint64_t reported);

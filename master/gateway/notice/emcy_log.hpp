@@ -26,7 +26,7 @@ struct EmcyRecord {
   bool operator==(const EmcyRecord&) const = default;
 };
 
-/// Keeps the newest EMCYs of each node. Front thread.
+/// Keeps the newest EMCYs of each node. All calls come from the front thread.
 class EmcyLog {
  public:
   static constexpr std::size_t depth = 32;       ///< records per node

@@ -16,7 +16,7 @@ std::optional<std::string> merged_text(std::string_view first, std::string_view 
 inline constexpr Time same_cause = std::chrono::milliseconds{100};
 
 /// Makes one line of notices that have one cause: of the same kind, at nearly the same time, with
-/// the same text for several nodes or axes. Front thread.
+/// the same text for several nodes or axes. All calls come from the front thread.
 class MergedNotices {
  public:
   /// Takes a notice, and keeps it to merge it with the next ones. Returns the notice that was kept

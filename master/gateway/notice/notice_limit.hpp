@@ -11,7 +11,8 @@
 namespace takt {
 
 /// Limits the number of notices: for each kind and node, 16 at once and two per second in the long
-/// run. Remembers as many entries as there are pairs of kind and node. Front thread.
+/// run. Remembers as many entries as there are pairs of kind and node. All calls come from the
+/// front thread.
 class NoticeLimit {
  public:
   /// Returns std::nullopt if the notice must be withheld. Otherwise returns how many notices were

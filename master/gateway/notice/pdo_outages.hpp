@@ -14,8 +14,8 @@ namespace takt {
 
 /// Keeps intermittent TPDOs from flooding the log, LCM and the event file. For each PDO, the first
 /// "missing" and the following "back" are reported at once. Later events, until ten seconds have
-/// passed without one, are summed up: one line per second and PDO; many PDOs share one line. Front
-/// thread.
+/// passed without one, are summed up: one line per second and PDO; many PDOs share one line. All
+/// calls come from the front thread.
 class PdoOutages {
  public:
   explicit PdoOutages(const BusPlan& plan) : plan_{plan} {}
@@ -36,12 +36,12 @@ class PdoOutages {
   struct Outage {
     Time last = -calm;  ///< time of the newest event
     Time reported{};    ///< time of the last report before the next sum
-    Time since{};       ///< begin of the time that `missed` covers
+    Time since{};       ///< start of the time that `missed` covers
     Time due = never;   ///< time of the next sum
     std::uint64_t cycle = 0;
     std::uint64_t missed = 0;  ///< not yet reported
     bool missing = false;
-    /// Its "missing" was reported at once, so its "back" will be as well.
+    /// The newest "missing" of the PDO was reported at once, so the following "back" will be, too.
     bool back_at_once = false;
   };
   struct Pdo {

@@ -16,7 +16,7 @@ namespace takt {
 /// A transport for programs that accept only messages signed by the daemon (`authenticate:
 /// images`). It receives the envelopes of BUS_SIGNED and hands over their contents. It drops
 /// messages without an envelope, and forged, altered, repeated, delayed or reordered envelopes. It
-/// reads a changed key file again within a second. One thread.
+/// reads a changed key file again within a second. All calls come from one thread.
 class CheckedTransport final : public Transport {
  public:
   /// `wall` returns the time of CLOCK_REALTIME.

@@ -22,7 +22,7 @@ consteval std::string_view message_layout<envelope_t>() {
 
 inline constexpr std::size_t mac_bytes = 32;  ///< length of the MAC at the end of an envelope
 
-/// Puts messages into envelopes, on the side of the sender. One thread.
+/// Puts messages into envelopes, on the side of the sender. All calls come from one thread.
 class EnvelopeSeal {
  public:
   /// `instance` is a random number that differs at each start of the sender.
@@ -53,7 +53,7 @@ std::string_view text(EnvelopeFault fault) noexcept;
 
 /// Opens envelopes, on the side of the receiver. An envelope is accepted if a holder of a key made
 /// it for this session within the last second, and each envelope is accepted only once and in
-/// order. Remembers at most `most_senders` senders. One thread.
+/// order. Remembers at most `most_senders` senders. All calls come from one thread.
 class EnvelopeGuard {
  public:
   static constexpr Time longest_age = std::chrono::seconds{1};

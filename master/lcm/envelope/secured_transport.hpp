@@ -14,7 +14,7 @@
 namespace takt {
 
 /// The transport of a daemon with keys: commands, requests and transfers are accepted in envelopes
-/// only. It reads a changed key file again within a second. One thread.
+/// only. It reads a changed key file again within a second. All calls come from one thread.
 class SecuredTransport final : public Transport {
  public:
   struct Options {

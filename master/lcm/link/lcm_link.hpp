@@ -22,7 +22,7 @@ class TcpqBroker;
 /// or by a hub of its own if the machine allows nothing else. The link retries a connection that
 /// fails and never blocks, because the front thread must not stop. If another program holds the
 /// port of the daemon's hub, nothing is known about that program. The daemon therefore becomes the
-/// client of a foreign hub only if a URL names it. Front thread.
+/// client of a foreign hub only if a URL names this hub. All calls come from the front thread.
 class LcmLink final : public Transport {
  public:
   using Say = std::function<void(Weight weight, const std::string& sentence)>;

@@ -55,7 +55,7 @@ class Parser {
 
   std::uint32_t expected_magic_;
   std::vector<std::byte> buffer_;
-  std::size_t start_ = 0;  // begin of the bytes that are not yet taken
+  std::size_t start_ = 0;  // start of the bytes that are not yet taken
   bool opened_ = false;
   bool broken_ = false;
 };

@@ -13,8 +13,8 @@
 
 namespace takt {
 
-/// Sends and receives frames for programs without real time: devices, dumps, tools. It receives
-/// everything that others send and nothing that it sends itself. One thread.
+/// Sends and receives frames for programs without real time: devices, dumps, tools. It receives all
+/// frames that others send, but not its own. All calls come from one thread.
 class FrameChannel {
  public:
   /// `bus` is the name of a CAN interface (`can0`, `vcan0`) or `unix:PATH`.

@@ -18,8 +18,8 @@ enum class Origin : std::uint8_t {
 };
 
 /// Detects participants that should not be on the bus: another producer of SYNC, another NMT
-/// master, two senders of one COB-ID. Takes frames, times and counts, gives events, and makes no
-/// system calls. Front thread.
+/// master, two senders of one COB-ID. The class takes frames, times and counts, gives events, and
+/// makes no system calls. All calls come from the front thread.
 ///
 /// * COB-IDs of the master (SYNC, NMT, RPDOs, its heartbeat): another device has sent such a frame,
 ///   or this machine has sent more of these frames than the bus thread.

@@ -20,8 +20,8 @@ std::size_t count(const IdSet& wanted, std::size_t first, std::size_t size) {
   return members;
 }
 
-/// Covers the aligned block [first, first + size) with prefixes that let at most `slack` unwanted
-/// identifiers pass each.
+/// Covers the aligned block [first, first + size) with prefixes. Each prefix lets at most `slack`
+/// unwanted identifiers pass.
 void cover(const IdSet& wanted, std::size_t first, std::size_t size, std::size_t slack,
            std::vector<can_filter>& out) {
   const std::size_t members = count(wanted, first, size);

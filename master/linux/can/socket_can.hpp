@@ -26,9 +26,10 @@ struct SocketCanOptions {
 };
 
 /// A CAN interface of the kernel as a Port. Each sleep, wait, receive and send makes one system
-/// call. Three exceptions need more calls: if the kernel has taken only a part of a batch, the port
-/// sends the rest once; a full batch with messages that were only for the port itself is refilled;
-/// and receive() looks for a missing interface by its name, at most every 50 ms.
+/// call. There are three exceptions. If the kernel has taken only a part of a batch, the port makes
+/// one more call to send the rest. If a full batch contained messages that were only for the port
+/// itself, the port makes another call to refill it. While the interface is missing, receive()
+/// looks for it by its name, at most every 50 ms.
 class SocketCanPort {
  public:
   static std::expected<SocketCanPort, BusError> open(const SocketCanOptions& options);

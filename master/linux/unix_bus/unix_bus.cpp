@@ -67,7 +67,7 @@ void UnixBusPort::State::look_for_hub() noexcept {
   condition.interface_down = !socket;
 }
 
-/// Sends received frames back to their sender as its own. A lost echo does no harm.
+/// Returns received frames to their sender as echoes. A lost echo does no harm.
 void UnixBusPort::State::echo(std::size_t count) noexcept {
   const std::int64_t now = monotonic_now().count();
   for (std::size_t i = 0; i < count; ++i) {

@@ -147,7 +147,8 @@ struct AxisReport {
   double following_error = 0.0;  ///< last commanded position minus actual position
   std::uint32_t running = 0;     ///< id of the motion of this cycle, 0 for none
   CycleNumber cycles_left = 0;   ///< number of cycles until the end of the profile that runs
-  /// First cycle that the motion would have if no beat had been missed since.
+  /// First cycle of the motion, plus the periods by which missed beats have delayed the motion
+  /// since.
   CycleNumber began = 0;
   CycleNumber delay = 0;  ///< periods by which this beat has delayed the motion
   /// The sender of the newest motion is alive, or the axis moves: the drive has to stay enabled.

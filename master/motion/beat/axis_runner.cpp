@@ -312,8 +312,8 @@ void AxisRunner::end_or_count_down(CycleNumber cycle) noexcept {
 }
 
 /// Returns true if the stream ends at rest. The acceleration at the end of a cubic curve follows
-/// from its other values. The axis may jump from it to rest, as it may jump to the acceleration of
-/// the next curve.
+/// from the other values of the curve. The acceleration of the axis may jump from this value to 0,
+/// as it may jump to the first acceleration of a next curve.
 bool AxisRunner::points_end_at_rest() const noexcept {
   const StreamPoint& last = stream_.last();
   State end = last.state;

@@ -32,7 +32,7 @@ State GearPlayer::step(const State& from, const LeaderState& leader, const Leade
   return follow(from, {.state = estimate_.state(task_)}, period);
 }
 
-/// Adds whole turns to the offset. A rotary leader counts from the begin of its turn. A rotary axis
+/// Adds whole turns to the offset. A rotary leader counts from the start of its turn. A rotary axis
 /// moves to the nearest position that has the phase of the gear.
 void GearPlayer::choose_turns(const State& from, const State& leader) noexcept {
   if (task_.kind == LeaderKind::commanded && task_.modulo > 0.0) {

@@ -70,7 +70,7 @@ class GearPlayer {
   GearPhase phase_ = GearPhase::none;
   bool matched_ = false;  ///< the offset is known
   bool started_ = false;  ///< the last target is known
-  bool locked_ = false;   ///< the axis was locked since the begin
+  bool locked_ = false;   ///< the axis was locked since the start
   bool lost_ = false;
   std::uint8_t released_ = 0;  ///< steps since the release
 };

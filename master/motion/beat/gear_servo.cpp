@@ -86,9 +86,9 @@ double GearServo::distance_to_settle(double velocity, double acceleration) const
   return sign * (distance + peak * peak * peak / (6 * jerk * jerk));
 }
 
-/// Returns the acceleration after the next step of a catch-up. The distance that then remains rises
-/// with this acceleration, so the secant method finds the acceleration for which it is 0, within
-/// `room`.
+/// Returns the acceleration after the next step of a catch-up. The distance that would remain at
+/// the end of the catch-up is a rising function of this acceleration. The secant method finds the
+/// acceleration within `room` for which this distance is 0.
 double GearServo::catching_up(const State& from, const State& target, const Room& room,
                               double period) const noexcept {
   const double jerk = jerk_for_settling * limits_.jerk;
@@ -130,7 +130,8 @@ double GearServo::catching_up(const State& from, const State& target, const Room
 }
 
 /// Returns true if the target uses almost the whole jerk, and the axis is close to it. Little jerk
-/// is then left for corrections, which must wait. Otherwise the axis would fall far behind.
+/// is then left for corrections. They have to wait, because the axis would fall far behind if it
+/// used the jerk for them.
 bool GearServo::is_led(const State& from, const State& before, double target_jerk,
                        double period) const noexcept {
   constexpr double whole = 0.8;

@@ -13,7 +13,7 @@ enum class MessageKind : std::uint8_t {
   order,    ///< `order` waits for its first cycle
   stop,     ///< the axis and its group stop along their limits
   left,     ///< this sender may not command the axis any longer
-  watch,    ///< the axes are read from now on, although no motion was commanded
+  watch,    ///< from now on, the bus thread reads the axes although no motion was commanded
   renew,    ///< the sender has named the axis, so a jog of the axis may continue
   release,  ///< the axis ends its gear, and keeps its velocity until the next motion begins
   points,   ///< more points of the stream that the axis follows, or is about to follow

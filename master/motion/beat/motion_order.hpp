@@ -51,10 +51,11 @@ struct MotionOrder {
   CycleNumber begin = 0;  ///< the motion begins in this cycle, in the state `from`
   /// Must be the commanded state of the axis in the cycle `begin`; not used with Ending::gear.
   State from;
-  Profile profile;          ///< motion that starts at `from`; only for `rest` and `cruise`
-  GearTask gear{};          ///< only for Ending::gear
-  Limits stop;              ///< limits of a stop
-  CycleNumber timeout = 0;  ///< periods for which the motion outlives the silence of its sender
+  Profile profile;  ///< motion that starts at `from`; only for `rest` and `cruise`
+  GearTask gear{};  ///< only for Ending::gear
+  Limits stop;      ///< limits of a stop
+  /// Number of periods for which the motion continues while its sender is silent.
+  CycleNumber timeout = 0;
   /// The axis is stopped at the latest this number of cycles after `begin`, see cycles_with_stop().
   CycleNumber latest_stop = std::numeric_limits<CycleNumber>::max();
   /// Distance between commanded and actual position above which the group stops.

@@ -15,7 +15,7 @@ class ProfilePlayer {
     if (profile.segments().empty()) end();
   }
 
-  /// Returns the state `time` seconds after the begin.
+  /// Returns the state `time` seconds after the start.
   State at(double time) noexcept {
     const auto segments = profile_.segments();
     while (segment_ < segments.size() && time - passed_ >= segments[segment_].duration) {
@@ -47,7 +47,7 @@ class ProfilePlayer {
   }
 
   Profile profile_;
-  State start_;  ///< state at the begin of the segment
+  State start_;  ///< state at the start of the segment
   double passed_ = 0.0;
   double duration_ = 0.0;
   std::size_t segment_ = 0;

@@ -20,7 +20,7 @@ enum class Curve : std::uint8_t {
 struct StreamPoint {
   static constexpr std::size_t kept_words = 5;  ///< number of words of keep()
 
-  double time = 0.0;  ///< s since the begin of the stream
+  double time = 0.0;  ///< s since the start of the stream
   State state;
   Curve curve = Curve::quintic;
 
@@ -56,7 +56,7 @@ class StreamSegment {
             .velocity = value_at(velocity, t),
             .acceleration = value_at(derivative_of(velocity), t)};
   }
-  /// Returns the position as a function of the time since the begin of the segment.
+  /// Returns the position as a function of the time since the start of the segment.
   const Polynomial& position() const noexcept { return position_; }
   double begin() const noexcept { return begin_; }        ///< s
   double duration() const noexcept { return duration_; }  ///< s

@@ -12,7 +12,7 @@ namespace {
 
 std::uint32_t id_of(const TaggedOrder& sent) noexcept { return sent.order.id; }
 
-/// Returns the state of an order `time` seconds after the begin of its motion.
+/// Returns the state of an order `time` seconds after the start of its motion.
 State state_of(const MotionOrder& order, double time) {
   ProfilePlayer player{order.profile, order.from, order.ending};
   return player.at(time);
@@ -46,7 +46,7 @@ const TaggedOrder* MotionPlanner::Axis::find(std::uint32_t id) const noexcept {
 }
 
 /// Takes the reports, and forgets orders that are over. An order that did not begin in its cycle
-/// never begins, and its end is known before the report.
+/// never begins, so it is not needed any longer.
 void MotionPlanner::observe(CycleNumber cycle, std::span<const AxisReport> reports) {
   cycle_ = cycle;
   for (std::size_t i = 0; i < axes_.size() && i < reports.size(); ++i) {
@@ -105,7 +105,8 @@ std::expected<CycleNumber, PlanRefusal> MotionPlanner::begin_of(std::span<const 
     }
     const MotionOrder* waiting = axes_[axis].waiting(cycle_);
     if (waiting == nullptr) continue;
-    // The bus thread decides which of the orders begins, so none of them may be forgotten.
+    // Only the bus thread knows which of the sent orders begins. The planner must therefore
+    // remember all of them, and it can remember only a few.
     if (waiting->begin <= cycle_ + 1 || axes_[axis].sent.size() >= Axis::most_sent) {
       return std::unexpected{PlanRefusal{.fault = PlanFault::busy, .axis = axis}};
     }

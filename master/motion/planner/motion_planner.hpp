@@ -43,7 +43,7 @@ struct MotionTag {
 /// The zero of the target positions of a move.
 enum class Reference : std::uint8_t {
   origin,
-  commanded,  ///< the position that the axis is commanded in the first cycle of the motion
+  commanded,  ///< the commanded position of the axis in the first cycle of the motion
 };
 
 /// The goal of a group of axes that begin and stop together.
@@ -52,7 +52,8 @@ struct GroupGoal {
   Synchronisation synchronisation = Synchronisation::time;
   Reference reference = Reference::origin;  ///< zero of the positions of a move
   std::uint8_t sender = 0;
-  CycleNumber timeout = 0;  ///< periods for which the motion outlives the silence of its sender
+  /// Number of periods for which the motion continues while its sender is silent.
+  CycleNumber timeout = 0;
   MotionTag tag{};
 };
 
@@ -86,7 +87,8 @@ struct PlanRefusal {
 };
 
 /// Plans motions from the states that the axes will have in a future cycle. It knows these states
-/// from the newest reports and from the orders that it has planned before. One thread.
+/// from the newest reports and from the orders that it has planned before. All calls come from one
+/// thread.
 class MotionPlanner {
  public:
   /// Largest number of cycles in which the axes of a jog reach their velocities, as the sum over

@@ -104,7 +104,8 @@ SwitchSearch::Result SwitchSearch::seek(const TravelSensors& sensors) noexcept {
   return Result::running;
 }
 
-/// Chooses the next stage when the axis is at rest, on the switch or behind a narrow one.
+/// Chooses the next stage when the axis is at rest. The axis is then on the switch, or has passed a
+/// narrow switch.
 void SwitchSearch::settle(const TravelSensors& sensors) noexcept {
   if (sensors.active(method_.seeks)) return approach_edge();
   direction_ = -direction_;

@@ -7,9 +7,9 @@
 
 namespace takt::sim {
 
-/// The motions with which a homing method finds its reference: the drive seeks a switch, goes to
-/// one side of it if it has to enter it again, and crosses the edge slowly. CiA 402-2, homing
-/// methods.
+/// The motions with which a homing method finds its reference. The drive moves to a switch. If the
+/// method uses the edge in the direction onto the switch, the drive first leaves the switch again.
+/// Then it crosses the edge slowly. CiA 402-2, homing methods.
 struct HomingMethod {
   TravelSwitch seeks = TravelSwitch::home;
   bool needs_switch = true;
@@ -38,7 +38,8 @@ class SwitchSearch {
   /// does not seek, except once in the search for the home switch, where it turns back.
   Result step(const TravelSensors& sensors, Demand& demand, const SearchSpeeds& speeds,
               const Ramps& ramps, double h) noexcept;
-  /// Returns the position of the reference, as TravelSensors has it. Valid once it has been found.
+  /// Returns the position of the reference in the coordinates of TravelSensors. The result is valid
+  /// once the reference has been found.
   double reference() const noexcept { return reference_; }
 
  private:

@@ -35,7 +35,7 @@ void TouchProbe::look(const TravelSensors& sensors, double origin) noexcept {
   const Input second{TravelSwitch::probe_2, 8, objects_.probe_2_rising, objects_.probe_2_falling};
   const std::uint16_t before = function_;
   function_ = function;
-  // Writing the function anew for an input begins with nothing stored.
+  // If the function of an input has changed, nothing is stored for this input any longer.
   for (const unsigned shift : {first.shift, second.shift}) {
     const unsigned changed = (before ^ function) >> shift & 0xFF;
     if (changed != 0) status_ = static_cast<std::uint16_t>(status_ & ~(0xFFU << shift));

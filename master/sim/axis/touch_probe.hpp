@@ -13,7 +13,8 @@ class TouchProbe {
   explicit TouchProbe(AxisObjects& objects) noexcept : objects_{objects} {}
 
   void reset() noexcept;
-  /// Takes what the sensors have seen since the last call. `origin` is the position of their zero.
+  /// Takes the edges and index pulses that the sensors have found in their last look(). `origin` is
+  /// the position of their zero.
   void look(const TravelSensors& sensors, double origin) noexcept;
 
  private:

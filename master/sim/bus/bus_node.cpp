@@ -20,7 +20,7 @@ bool same(const Frame& a, const Frame& b) noexcept {
 BusNode::BusNode(BusNodeOptions node_options)
     : options{node_options}, queue_{options.capacity + 1} {}
 
-/// Queues a frame with its length in bits. The length is counted here and not at the begin of the
+/// Queues a frame with its length in bits. The length is counted here and not at the start of the
 /// frame, where the processor would wait for the result to compute the end of the frame. A queue
 /// that becomes empty begins again at its first place, so a frame that is sent in each cycle finds
 /// its predecessor there. If both are equal, the bits are not counted again.

@@ -44,8 +44,9 @@ constexpr RunStep follow(Run run, bool bit) {
   return {static_cast<Run>(bit ? 0 : 4), 1};  // the stuff bit begins a new run
 }
 
-/// An entry of the table below: the stuff bits in its lowest byte, so that the sum of the entries
-/// of a frame counts its stuff bits, and the run in the bits above, where it is the next row.
+/// An entry of the table below. The lowest byte is a number of stuff bits, so the sum of the
+/// entries of a frame gives the number of its stuff bits. The bits above this byte are the run with
+/// which the frame continues: they select the row of the next entry.
 using Step = std::uint16_t;
 constexpr std::uint32_t one_row = 256;
 constexpr std::uint32_t row_mask = (runs - 1) * one_row;
@@ -113,8 +114,8 @@ class BitRow {
   for (int shift = 24; shift >= 0; shift -= 8) row.add(bits >> shift & 0xFF);
 }
 
-/// Counts a frame of this kind. The number of its data bytes is a constant, so that the loop is
-/// unrolled and each step has its places in the tables.
+/// Counts the bits of a frame of this kind. The number of data bytes is a constant, so that the
+/// compiler unrolls the loop and knows the rows of crc_table.
 template <bool extended, std::uint32_t bytes>
 FrameBits count(const Frame& frame) noexcept {
   BitRow row{(extended ? 5u : 3u) + bytes};
@@ -130,7 +131,7 @@ FrameBits count(const Frame& frame) noexcept {
           .crc = static_cast<std::uint16_t>(crc)};
 }
 
-/// count(), by the number of data bytes.
+/// The functions count(), indexed by the number of data bytes.
 template <bool extended>
 constexpr auto counts = []<std::size_t... bytes>(std::index_sequence<bytes...>) {
   return std::array{&count<extended, bytes>...};

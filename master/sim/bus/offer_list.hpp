@@ -15,7 +15,8 @@ struct Offer {
   Time from = never;       ///< the node offers nothing earlier
   std::uint32_t rank = 0;  ///< no frame of the node has a lower rank
   BusNodeIndex node = 0;
-  bool by_priority = false;  ///< several frames compete, so that the time decides which one
+  /// Several frames compete, and the time decides which of them the node offers.
+  bool by_priority = false;
 };
 
 /// The offers of all nodes that have queued frames, by ascending rank. The first offer usually wins

@@ -107,8 +107,8 @@ class VirtualBus {
   std::uint32_t rank_at(const Offer& offer, Time now) const noexcept;
   [[gnu::cold, gnu::noinline]] void find_rival(std::uint32_t rank, Time now) noexcept;
   bool relays(BusNodeIndex index) const noexcept { return nodes_[index].options.relays; }
-  /// Returns true if the frame is acknowledged: by the analyser, or by another node than the
-  /// sender, which is on the bus.
+  /// Returns true if the frame is acknowledged: by the analyser, or by another node. The sender is
+  /// one of the nodes on the bus.
   bool acknowledged() const noexcept { return analyser_ || on_bus_ > 1; }
 
   std::uint32_t bitrate_ = 1'000'000;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t shortest_segment_bits = 112;  // eight data bytes, few stuff bits
 
-/// Returns the fault for a quirk with this name, with default values.
+/// Returns the fault of this kind with the default values that it has as a quirk of a device.
 Fault quirk(FaultKind kind, NodeId node) {
   Fault fault{.kind = kind, .node = node};
   if (kind == FaultKind::late_bootup) fault.time = std::chrono::seconds{2};

@@ -24,8 +24,9 @@ struct WorldOptions {
   std::uint64_t seed = 1;
   std::uint32_t bitrate = 1'000'000;
   Faults faults{};
-  bool one_bit_rate = true;  ///< a device with another bit rate than the bus is deaf and mute
-  Time power_on_spread{};    ///< devices are switched on at random times within this time
+  /// A device whose bit rate differs from that of the bus neither receives nor sends.
+  bool one_bit_rate = true;
+  Time power_on_spread{};  ///< devices are switched on at random times within this time
 };
 
 /// A bus with devices in virtual time. Time passes only when the caller advances it. The same

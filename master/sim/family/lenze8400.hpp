@@ -6,12 +6,12 @@
 
 namespace takt::sim {
 
-/// A Lenze 8400 HighLine on its system bus. Types 254 and 255 mean the same, the cycle time sends
-/// in addition to events, and type 0 needs SYNC and an event. From firmware 16.00.00 on, a SYNC
-/// producer reacts to its own SYNC as to a received one, if it sends and receives SYNC with the
-/// same identifier. Words 1 and 2 are the words of the drive (device control) and a speed, whose
-/// ramp takes one second from standstill to the reference speed. A rising edge of bit 7 resets a
-/// fault.
+/// A Lenze 8400 HighLine on its system bus. The transmission types 254 and 255 mean the same. The
+/// cycle time causes transmissions in addition to those by events. A TPDO of type 0 is sent at a
+/// SYNC after an event. From firmware 16.00.00 on, a SYNC producer reacts to its own SYNC as to a
+/// received one, if it sends and receives SYNC with the same identifier. Word 1 is the control or
+/// status word (device control), and word 2 is a speed. The ramp from standstill to the reference
+/// speed takes one second. A rising edge of bit 7 resets a fault.
 class Lenze8400 final : public Model {
  public:
   Lenze8400(const DeviceTable& table, ObjectStore& store, EmcyProducer& emcy);

@@ -37,7 +37,8 @@ class Cascade {
     return speed * (1 - feed_forward_) / position_gain_;
   }
   /// Returns the torque (N m) for an error of the speed. While the axis is `at_rest` on its target,
-  /// the integral keeps its value; otherwise, friction and the integral would swing.
+  /// the integral keeps its value. Otherwise friction and the integral would let the axis oscillate
+  /// around its target.
   double torque_for(double speed_error, double offset, const TorqueRange& range,
                     bool at_rest) noexcept {
     const double wanted = gain_ * speed_error + integral_ + offset;

@@ -7,8 +7,8 @@ namespace takt::sim {
 /// at rest stays at rest, with speed 0, until a larger torque breaks it away.
 class Friction {
  public:
-  /// `torque` in N m, at rest `breakaway` times as large; `span` of a step in s, `inertia` in kg
-  /// m2.
+  /// `torque` is the friction in N m of a moving mass; at rest, the friction is `breakaway` times
+  /// as large. `span` is the duration of a step in s, `inertia` is in kg m2.
   Friction(double torque, double breakaway, double span, double inertia) noexcept
       : sliding_{torque * span / inertia},
         at_rest_{sliding_ * breakaway},

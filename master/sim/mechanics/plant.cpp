@@ -15,9 +15,9 @@ double own_friction(const MechanicsTable& table) noexcept {
   return table.motor.friction + (table.load.stiffness ? 0 : table.load.friction);
 }
 
-/// Returns the damping of the coupling. Faces that meet begin to push within a step, which adds
-/// energy to an undamped spring. With backlash, the spring therefore acts with the twist after the
-/// step, which removes more energy than that.
+/// Returns the damping of the coupling. The faces of a coupling with backlash meet within a step,
+/// and this adds energy to an undamped spring. With backlash, the spring therefore acts with the
+/// twist after the step, which removes more energy than the contact adds.
 double contact_damping(const MechanicsTable& table, double span) noexcept {
   if (table.load.backlash == 0) return table.load.damping;
   return table.load.damping + table.load.stiffness.value_or(0) * span;
@@ -81,7 +81,7 @@ void Plant::advance_elastic(double torque, double brake) noexcept {
   const double load = load_.speed + load_mobility_ * (spring + weight_);
   double motor_speed = touching_.own_motor * motor + touching_.other_motor * load;
   double load_speed = touching_.own_load * load + touching_.other_load * motor;
-  // Two faces push, but never pull: then, neither spring nor damper acts.
+  // Two faces push, but never pull. If they would have to pull, neither spring nor damper acts.
   const double push = spring + damping_ * (motor_speed - load_speed);
   if (half_gap_ > 0 && push * spring <= 0) {
     motor_speed = apart_.own_motor * (motor_.speed + motor_mobility_ * torque);

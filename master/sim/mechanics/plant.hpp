@@ -40,7 +40,8 @@ class Plant {
   double inertia() const noexcept { return inertia_; }
 
  private:
-  /// The speeds after a step are `m` times those that the torques alone would give.
+  /// The speed of a mass after a step is `own` times the speed that the torques alone would give
+  /// it, plus `other` times the speed that they would give the other mass.
   struct Coupled {
     double own_motor = 1;
     double own_load = 1;

@@ -37,7 +37,7 @@ class PdoMapping {
     std::uint64_t mask = 0;
     std::uint8_t shift = 0;
   };
-  std::uint8_t count_ = 0;  ///< dummies have no place
+  std::uint8_t count_ = 0;  ///< number of places in use; a dummy object has no place
   std::uint8_t bits_ = 0;
   std::array<Place, 64> places_{};
 };
