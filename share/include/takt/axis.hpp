@@ -83,7 +83,7 @@ class AxisGroup {
   /// Sends the set-points of all axes. Returns false if LCM did not take the message.
   bool send();
   /// Gives up the outputs that this group commands. They take their fallback at once, without a
-  /// warning, and another sender may take them over. The next send() asks for them again. Returns
+  /// warning, and another sender may take them over. The next send() requests them again. Returns
   /// false if LCM did not take the message.
   bool release();
   /// Sets a target position for each axis and sends all of them as one command. If the RPDOs are
@@ -125,18 +125,18 @@ class AxisGroup {
   const AxisControl& axes() const noexcept;
   /// Returns the layout and the newest image.
   const ImageInput& input() const noexcept;
-  /// Returns the program that commands the node of this axis, by the newest status_t of taktd.
-  /// taktd refuses the commands of all other programs for this node. send() takes no notice of it,
-  /// so each application decides for how many status_t another program may hold a node before it
-  /// gives up.
+  /// Returns the program that commands the node of this axis, as the newest status_t of taktd shows
+  /// it. taktd refuses the commands of all other programs for this node. send() does not check
+  /// this, so each application decides for how many status_t another program may hold a node before
+  /// the application gives up.
   const NodeHolder& holder(AxisControl::Index axis) const;
   /// Returns the holder of the node with this node-ID, 1..127.
   const NodeHolder& holder_of_node(std::int16_t node) const;
   /// Returns the speed axes of the layout, by their node-IDs. Empty if the bus has none.
   const std::vector<speed_axis_t>& speed_axes() const noexcept;
   /// Returns what taktd has reported last about the motion of this axis; its positions are in the
-  /// unit of the target position. Empty if this run of taktd has reported none: it does so from the
-  /// first command for motions on.
+  /// unit of the target position. Empty if this run of taktd has reported none: taktd reports
+  /// motions from the first command for motions on.
   std::optional<axis_motion_t> motion(AxisControl::Index axis) const;
   /// Returns the cycle of what motion() returns for this axis, or -1.
   std::int64_t motion_cycle(AxisControl::Index axis) const;
@@ -145,7 +145,7 @@ class AxisGroup {
   /// Returns the newest status of the node with this node-ID. Empty before the first status_t.
   std::optional<node_status_t> status_of_node(std::int16_t node) const;
   /// Returns the name of this sender in events and in status_t: the name of the options and eight
-  /// hex digits of the instance. It tells two running programs of the same name apart.
+  /// hex digits of the instance. The digits distinguish two running programs with the same name.
   const std::string& sender() const noexcept;
   /// Returns the name of the bus. Empty if none was configured and no layout has arrived.
   const std::string& bus() const noexcept;

@@ -79,10 +79,10 @@ class AxisControl {
   /// `instance`, `sender`, `time_to_live` and `release`. The next call overwrites the message.
   command_t& command();
   /// Returns the controlwords, modes, target velocities and target torques of these axes, for axes
-  /// whose target positions taktd leads. An axis in profile position mode has a target position,
-  /// too: the new one until its drive has taken it, and else the actual one, so that no mode begins
-  /// with a jump. The caller fills in the same fields as for command(). The next call of this
-  /// function or of command() overwrites the message.
+  /// whose motions taktd runs. For an axis in profile position mode, the message also has a target
+  /// position: the new target until the drive has taken it, otherwise the actual position.
+  /// Therefore no mode begins with a jump. The caller fills in the same fields as for command().
+  /// The next call of this function or of command() overwrites the message.
   command_t& controls(std::span<const Index> axes);
 
   /// Returns the number of axes.
@@ -129,13 +129,14 @@ class AxisControl {
   void reset_faults();
   /// Asks for one fault reset of one axis if it has a fault.
   void reset_fault(Index axis);
-  /// Sets the mode of operation of all axes, at first DriveMode::cyclic_position. The commands
-  /// carry it for each axis whose 0x6060 is mapped. Another mode than profile position ends the
-  /// handshakes of begin_set_points(). An axis with AxisSignals::interpolates gets
-  /// DriveMode::interpolated_position instead of DriveMode::cyclic_position.
+  /// Sets the mode of operation of all axes. Before the first call, the mode is
+  /// DriveMode::cyclic_position. The commands carry the mode for each axis whose 0x6060 is mapped.
+  /// Another mode than profile position ends the handshakes of begin_set_points(). An axis with
+  /// AxisSignals::interpolates gets DriveMode::interpolated_position instead of
+  /// DriveMode::cyclic_position.
   void set_mode(DriveMode mode) noexcept;
-  /// Sets the mode of operation of one axis. Another one than before sets its target velocity and
-  /// its target torque to 0.
+  /// Sets the mode of operation of one axis. If the mode differs from the one before, the call also
+  /// sets the target velocity and the target torque of the axis to 0.
   void set_mode(Index axis, DriveMode mode) noexcept;
   /// Returns the mode of operation that was set for this axis.
   DriveMode mode(Index axis) const;
@@ -144,16 +145,17 @@ class AxisControl {
   /// end_homing(), until another mode is set, or until the drive leaves Operation enabled. CiA
   /// 402-2, homing operation start.
   void start_homing(Index axis);
-  /// Clears that bit, which ends a homing run that has not ended.
+  /// Clears bit 4 of the controlword, which start_homing() sets. This ends a homing run that has
+  /// not ended.
   void end_homing(Index axis);
   /// Sets bit 8 (Halt) of the controlword of this axis while its drive is in Operation enabled,
   /// until end_halt(). CiA 402-2, controlword.
   void halt(Index axis);
-  /// Clears that bit.
+  /// Clears bit 8 (Halt) of the controlword of this axis.
   void end_halt(Index axis);
   /// Returns true if every axis shows the commanded mode (0x6061). If 0x6061 of an axis is not
   /// mapped, it is enough that the commands carry the mode (0x6060 is mapped). Returns false if
-  /// neither object of an axis is mapped, for then its mode is unknown.
+  /// neither object of an axis is mapped, because the mode of this axis is then unknown.
   bool in_mode() const noexcept;
   /// Returns true if this axis shows the commanded mode. See in_mode().
   bool in_mode(Index axis) const;
@@ -164,24 +166,25 @@ class AxisControl {
   /// axis takes the target whether it is enabled or not, and the commands carry no target position
   /// before. A value that is not finite leaves the target as it is.
   void set_positions(const Eigen::Ref<const Eigen::VectorXd>& si);
-  /// Sets the target velocity (0x60FF) of each axis that is in Operation enabled; all others rest.
-  /// A value that is not finite counts as 0.
+  /// Sets the target velocity (0x60FF) of each axis that is in Operation enabled; for all others it
+  /// stays at zero. A value that is not finite counts as 0.
   void set_velocities(const Eigen::Ref<const Eigen::VectorXd>& si);
-  /// Sets the target torque (0x6071) of each axis that is in Operation enabled; all others stay at
-  /// zero. A value that is not finite counts as 0.
+  /// Sets the target torque (0x6071) of each axis that is in Operation enabled; for all others it
+  /// stays at zero. A value that is not finite counts as 0.
   void set_torques(const Eigen::Ref<const Eigen::VectorXd>& si);
   /// Starts the handshake that hands the new target positions to the drives: bit 4 of the
   /// controlword rises and stays high until bit 12 of the statusword acknowledges it. CiA 402-2,
-  /// new set-point. A running handshake is followed by another one. It goes on while the drives are
-  /// in Operation enabled. Does nothing if the mode is not profile position, because the drives
-  /// then take target positions without a handshake, or none.
+  /// new set-point. If a handshake is running, another one follows it. The handshakes go on while
+  /// the drives are in Operation enabled. The call does nothing if the mode is not profile
+  /// position, because in other modes the drives take target positions without a handshake, or take
+  /// none.
   void begin_set_points();
-  /// Starts such a handshake for one axis.
+  /// Starts the handshake of begin_set_points() for one axis.
   void begin_set_point(Index axis, SetPointTiming timing);
   /// Returns true if the drive of this axis has taken each set-point that begin_set_point() or
   /// begin_set_points() has announced: bit 12 of the statusword has answered bit 4.
   bool set_point_taken(Index axis) const;
-  /// Returns true if no axis has a handshake left that begin_set_points() started.
+  /// Returns true if each handshake that begin_set_points() has started is over.
   bool set_points_taken() const noexcept;
 
  private:

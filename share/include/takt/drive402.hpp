@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// The state machine of one CiA 402 drive: decodes the statusword, and leads the drive to
-/// Operation enabled and back. Needs neither a bus nor a clock.
+/// The state machine of one CiA 402 drive: decodes the statusword, and gives the controlwords that
+/// bring the drive to Operation enabled and back. It needs neither a bus nor a clock.
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -43,18 +43,18 @@ enum class DriveMode : std::int8_t {
 /// When a drive in profile position mode begins to move to a new set-point. CiA 402-2, bit 5 of the
 /// controlword.
 enum class SetPointTiming : std::uint8_t {
-  immediately,    ///< It replaces the set-points before it.
-  after_the_last  ///< The drive first reaches the set-point before it.
+  immediately,    ///< The new set-point replaces the earlier ones.
+  after_the_last  ///< The drive first reaches the earlier set-point.
 };
 
-/// State to which a DriveSequence leads its drive.
+/// State to which a DriveSequence brings its drive.
 enum class DriveGoal : std::uint8_t {
   disabled,      ///< Switch on disabled
   enabled,       ///< Operation enabled
   quick_stopped  ///< Quick stop active, or Switch on disabled if the drive was not enabled
 };
 
-/// Whether a drive may be led towards Operation enabled. A drive that is already in that state
+/// Whether a drive may be brought towards Operation enabled. A drive that is already in that state
 /// stays there in either case.
 enum class Enabling : std::uint8_t {
   waits,   ///< The drive is not enabled for the time being.
@@ -70,11 +70,11 @@ struct DriveSequenceLimits {
   std::uint32_t hop_steps = 2500;
 };
 
-/// Leads one drive through the CiA 402 state machine: each step takes a statusword and gives the
-/// controlword, once in each cycle. Each controlword is held until the statusword acknowledges it,
-/// so that no edge is lost on a channel where only the newest value counts. If a drive has a fault
-/// or leaves Operation enabled by itself (safe torque off), its goal becomes DriveGoal::disabled,
-/// and the drive is not enabled again before the next set_goal().
+/// Takes one drive through the CiA 402 state machine: in each cycle, a step takes the statusword
+/// and gives the controlword. Each controlword is held until the statusword acknowledges it, so
+/// that no edge is lost on a channel where only the newest value counts. If a drive has a fault or
+/// leaves Operation enabled by itself (safe torque off), its goal becomes DriveGoal::disabled, and
+/// the drive is not enabled again before the next set_goal().
 ///
 /// Calls allocate nothing. All calls come from one thread.
 class DriveSequence {
@@ -82,7 +82,7 @@ class DriveSequence {
   /// The goal of a new sequence is DriveGoal::disabled.
   explicit DriveSequence(DriveSequenceLimits limits = {}) noexcept : limits_{limits} {}
 
-  /// Sets the goal. The following steps lead the drive there.
+  /// Sets the goal. The following steps bring the drive to it.
   void set_goal(DriveGoal goal) noexcept;
   /// Asks for one fault reset. The call has no effect unless the drive is in Fault or in Fault
   /// reaction active.

@@ -12,11 +12,11 @@ namespace takt {
 /// Assembles the layout and the newest complete image from the messages of taktd, which may come in
 /// several parts. Parts that do not belong together (another session, layout or cycle) are ignored.
 ///
-/// One forged or late message changes nothing. An image whose cycle number is lower than the newest
-/// one, or more than one second ahead (16 cycles if that is longer), is ignored unless it is the
-/// third of a row of such images that follow each other. A layout that differs, or that comes from
-/// another session, counts only if no image of the present session has arrived for `quiet_ns`, or
-/// for 20 periods of SYNC if that is longer.
+/// One forged or late message changes nothing. An image is ignored if its cycle number is lower
+/// than the newest one, or more than one second ahead (16 cycles if that is longer). The third of
+/// such images in a row is accepted if their cycle numbers rise and lie close together. A layout
+/// that differs, or that comes from another session, counts only if no image of the present session
+/// has arrived for `quiet_ns`, or for 20 periods of SYNC if that is longer.
 ///
 /// The class uses neither LCM nor a clock. All calls come from one thread.
 class ImageInput {

@@ -79,8 +79,8 @@ struct ServiceReply {
 };
 
 /// A CANopen master for one bus. A thread of its own, the bus thread, runs the cycle with the
-/// real-time options of the network file (`realtime:`); the calls never wait for it, except where
-/// they say so. All calls come from one thread, except request_stop().
+/// real-time options of the network file (`realtime:`); a call waits for it only where its
+/// description says so. All calls come from one thread, except request_stop().
 ///
 /// In each cycle the devices sample their inputs at SYNC k, and wait() returns with image k. The
 /// set-points that send() hands over before the outputs of the cycle are sent act at SYNC k+1.
@@ -89,8 +89,8 @@ class Master {
   /// Opens the bus, starts the bus thread and begins to boot the devices. Does not wait for the
   /// boots. On failure, returns a sentence for the user: the network file has errors, the interface
   /// does not exist, another process of this machine is the master of this bus, the machine does
-  /// not grant the real-time options (`mode: enforce`) ... A master on another machine is not
-  /// looked for, as taktd does it.
+  /// not grant the real-time options (`mode: enforce`) ... Unlike taktd, this call does not look
+  /// for a master on another machine.
   static std::expected<Master, std::string> start(NetworkFile network, MasterOptions options = {});
 
   /// Calls stop().
@@ -160,10 +160,10 @@ class Master {
   std::optional<ServiceReply> take_reply();
 
   /// Begins the ordered stop: the outputs take their fallbacks, the axes stop and are disabled, NMT
-  /// stops the nodes, SYNC ends. wait() returns false when it is over. The only call that any
-  /// thread and a signal handler may make.
+  /// stops the nodes, SYNC ends. wait() returns false when the stop is over. Unlike all other
+  /// calls, this one may also be made by any other thread and by a signal handler.
   void request_stop() noexcept;
-  /// Begins the ordered stop, if it has not begun, and waits for its end: as long as
+  /// Begins the ordered stop, if it has not begun, and waits for its end. The stop takes at most
   /// `stop_timeout` of the network file, or the time that was derived from the ramps of the drives.
   /// Returns true if every axis that was enabled was seen at standstill and then disabled. The
   /// events of the stop can be taken afterwards.

@@ -49,8 +49,9 @@ struct ImageSignal {
 /// after load(). `takt plan` prints everything that is compiled, in every detail.
 class NetworkFile {
  public:
-  /// Reads, checks and compiles a network file. Always returns; usable() tells the outcome, and
-  /// findings() lists all errors, warnings and notes at once. Reads files and allocates.
+  /// Reads, checks and compiles a network file. The call returns a value even if the file has
+  /// errors: usable() returns whether the network can be run, and findings() lists all errors,
+  /// warnings and notes at once. Reads files and allocates.
   static NetworkFile load(const std::filesystem::path& path);
 
   ~NetworkFile();
