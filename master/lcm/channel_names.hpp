@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// Returns the bus part of a channel name that ends in `_what`; empty if the name does not.
+/// Returns the bus part of a channel name that ends in `_what`; empty if the name has another end.
 inline std::string_view bus_of_channel(std::string_view channel, std::string_view what) noexcept {
   if (channel.size() < what.size() + 2 || !channel.ends_with(what)) return {};
   channel.remove_suffix(what.size());

@@ -10,14 +10,14 @@
 
 namespace takt {
 
-/// What the machine granted of the requested real-time properties.
+/// The requested real-time properties that the machine has granted, and those that it has refused.
 struct RtReport {
   RtMode mode = RtMode::attempt;
   int priority = 0;            ///< SCHED_FIFO priority; 0 means ordinary scheduling
   std::optional<int> cpu{};    ///< the CPU that the thread is pinned to
   bool memory_locked = false;  ///< current and future memory is locked
   bool preempt_rt = false;     ///< the kernel is a PREEMPT_RT one
-  /// One entry per refusal: what was refused, why, and what grants it.
+  /// One text per refusal: what was refused, why, and in most cases which setting grants it.
   std::vector<std::string> missing{};
 
   /// Returns true if every request was granted. (An ordinary kernel is reported, but refuses

@@ -28,8 +28,8 @@ class AxisMotionLimits {
   /// index into LimitsPlan::lines, `value` is the value of its object. For a range, the lower end
   /// is in the upper half of `value`.
   void learn(const BusPlan& plan, std::size_t line, std::int64_t value);
-  /// Returns the limits of a motion. The error says why there are none. `axis` is an index into
-  /// motion_axes().
+  /// Returns the limits of a motion. The error says why a limit is missing or was refused. `axis`
+  /// is an index into motion_axes().
   std::expected<motion::Limits, std::string> of(std::size_t axis, const motion_goal_t& goal) const;
   /// Returns the largest following error of a motion; infinite if neither the command nor the file
   /// limits it. The error says why the command is refused.

@@ -9,7 +9,8 @@ namespace {
 constexpr std::uint16_t none = 0xFFFF;
 constexpr std::uint32_t window_syncs = 32;
 constexpr std::uint8_t unasked_limit = 3;
-constexpr int most_asked = 8;  // limits the answers that a silent node may still send
+// A silent node may still answer this number of unanswered requests.
+constexpr int most_asked = 8;
 constexpr std::size_t max_events = 64;
 constexpr Time report_again = std::chrono::seconds{10};
 constexpr Time adjust_every = std::chrono::seconds{1};

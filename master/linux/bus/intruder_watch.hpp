@@ -13,7 +13,7 @@ namespace takt {
 /// Origin of a frame, as far as the kernel knows it.
 enum class Origin : std::uint8_t {
   wire,  ///< another device, for certain
-  /// Our bus thread or another program on this machine; only counting distinguishes them.
+  /// The bus thread or another program on this machine; only the counts of frames distinguish them.
   this_machine,
 };
 

@@ -33,7 +33,7 @@ constexpr int takeover_poll_ms = 20;
 /// While the path is taken, a program repeats its attempt this often at its start.
 constexpr int most_takeovers = 25;
 /// After an accept() that failed, for example because no descriptor is left, the client waits in
-/// the kernel, and the hub does not look at the listening socket for this time.
+/// the kernel, and the hub does not poll the listening socket for this time.
 constexpr Time accept_pause = std::chrono::milliseconds{100};
 constexpr int most_batches = 4096;  // most batches of one client that hand_over() forwards
 

@@ -17,7 +17,8 @@ namespace takt {
 /// blocks the bus. At most 64 clients.
 class UnixBusHub {
  public:
-  /// Hosts at once if nobody else does, otherwise stands by. Runs one thread of ordinary priority.
+  /// Hosts the bus at once if no other process does; otherwise waits until the host ends. Runs one
+  /// thread of ordinary priority.
   static std::expected<UnixBusHub, BusError> join(const std::string& path);
   UnixBusHub(UnixBusHub&&) noexcept;
   UnixBusHub& operator=(UnixBusHub&&) noexcept;

@@ -13,8 +13,8 @@
 
 namespace takt::motion {
 
-/// Number of cycles since the sender of a motion was heard (`sender`), and since the sender has
-/// named the axis (`jog`).
+/// Number of cycles since the newest message of the sender of a motion (`sender`), and since its
+/// newest message that names the axis (`jog`).
 struct Silence {
   CycleNumber sender = 0;
   CycleNumber jog = 0;
@@ -129,7 +129,7 @@ class AxisRunner {
   /// Returns the id of the newest motion that began; 0 means none.
   std::uint32_t newest() const noexcept { return newest_; }
   /// Returns true if a drive with a motion has to stay enabled although no SYNC is sent. `silence`
-  /// is the number of cycles since the sender was heard.
+  /// is the number of cycles since the newest message of the sender.
   bool outlives(CycleNumber silence) const noexcept {
     return newest_ != 0 && report_.state != AxisState::unpowered && silence <= timeout_;
   }

@@ -29,8 +29,8 @@ State step_with(const State& from, double acceleration, double period) noexcept 
   return advanced(from, period, (acceleration - from.acceleration) / period);
 }
 
-/// Returns the jerks of the three steps that lead an axis exactly to its target. The target has the
-/// state `before` at the time of `from`, and a constant jerk.
+/// Returns the jerks of the three steps that bring an axis exactly to its target. The target has
+/// the state `before` at the time of `from`, and a constant jerk.
 std::array<double, 3> three_steps(const State& from, const State& before, double target_jerk,
                                   double period) noexcept {
   const double cube = period * period * period;

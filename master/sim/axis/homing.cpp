@@ -23,7 +23,8 @@ std::optional<double> direction_of(std::int64_t method) noexcept {
   return negative ? -1.0 : 1.0;
 }
 
-/// A drive without a list has all methods of the model.
+/// Returns true if the drive has this method. A drive without a list (0x60E3) has all methods that
+/// the model supports.
 bool lists(const AxisObjects& objects, std::int64_t method) noexcept {
   const auto is_method = [method](const Slot& slot) { return slot.get() == method; };
   return objects.homing_methods.empty() || std::ranges::any_of(objects.homing_methods, is_method);

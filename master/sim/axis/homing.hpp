@@ -25,8 +25,8 @@ class Homing {
   /// Returns true when the reference has been found and the axis is at standstill. Then shift()
   /// gives the shift of the coordinates.
   bool step(Demand& demand, double deceleration, double h) noexcept;
-  /// Returns the value to add to positions so that the reference reads minus the home offset
-  /// 0x607C.
+  /// Returns the value to add to all positions. The position of the reference is then minus the
+  /// home offset 0x607C.
   double shift() const noexcept;
   /// Returns bits 10, 12 and 13 of the statusword.
   std::uint16_t status_bits(bool stands) const noexcept;

@@ -8,7 +8,7 @@
 namespace takt::sim {
 namespace {
 
-constexpr std::uint32_t error_flag_bits = 6;  // up to 12 with the error flags of the other nodes
+constexpr std::uint32_t error_flag_bits = 6;  // up to 12 if the error flags of other nodes follow
 constexpr std::uint32_t error_delimiter_bits = 8;
 constexpr std::uint32_t suspend_bits = 8;
 constexpr std::uint32_t recovery_bits = 128 * 11;

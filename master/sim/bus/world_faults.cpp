@@ -7,7 +7,7 @@
 namespace takt::sim {
 namespace {
 
-/// A fault of a device that is only on or off.
+/// A fault of a device that has no values: a flag switches it on and off.
 struct FlagFault {
   FaultKind kind;
   bool DeviceFaults::* flag;

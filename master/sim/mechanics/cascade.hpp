@@ -31,8 +31,8 @@ class Cascade {
   double speed_for(double error, double speed) const noexcept {
     return position_gain_ * error + feed_forward_ * speed;
   }
-  /// Returns the following error at which speed_for() demands this speed, the speed of the
-  /// set-points included.
+  /// Returns the following error at which speed_for() demands the speed `speed` while the
+  /// set-points have the same speed.
   double error_at(double speed) const noexcept {
     return speed * (1 - feed_forward_) / position_gain_;
   }

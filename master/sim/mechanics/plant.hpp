@@ -18,8 +18,8 @@ struct Mass {
 ///
 /// The integration is semi-implicit: damping and viscous friction act with the speeds after the
 /// step, the spring with the twist before it (with backlash: after it), and positions move with the
-/// new speeds. That is stable as long as a step turns the stiffest mode by less than 2 rad;
-/// mechanics_steps() keeps to 0.5.
+/// new speeds. The integration is stable as long as a step turns the stiffest mode by less than 2
+/// rad. mechanics_steps() chooses steps of at most 0.5 rad.
 class Plant {
  public:
   explicit Plant(const MechanicsTable& table) noexcept;

@@ -120,7 +120,7 @@ class Axis402 {
   std::uint16_t fault_code_ = 0;
   bool settled_ = false;   ///< the controlword requests no further transition
   bool releases_ = false;  ///< the axis has torque, and is enabled when its brake has opened
-  /// The axis is at the end of its travel, and its set-points lead beyond it.
+  /// The axis is at the end of its travel, and its set-points would move it beyond this end.
   bool blocked_ = false;
   bool interpolates_ = false;  ///< with mechanics: the points of the buffer are being followed
   bool following_error_ = false;

@@ -8,7 +8,8 @@
 namespace takt::sim {
 namespace {
 
-constexpr double peak = 10;  // acceleration of the simple motor, times that at the rated torque
+// Largest acceleration of the simple motor, as a multiple of that at the rated torque.
+constexpr double peak = 10;
 
 }  // namespace
 
@@ -52,7 +53,8 @@ void Axis402::follow_velocity(double target, double limit, double h) noexcept {
   demand_.position = motor_.position;
 }
 
-/// Returns 1 or -1 if the set-points of the present mode lead in this direction, otherwise 0.
+/// Returns the direction (1 or -1) in which the set-points of the present mode move the axis; 0 if
+/// they do not move it.
 double Axis402::wanted_direction() const noexcept {
   const auto sign = [](double value) { return value > 0 ? 1.0 : value < 0 ? -1.0 : 0.0; };
   switch (mode_) {
@@ -83,7 +85,8 @@ double Axis402::stop_ramp() const noexcept {
 }
 
 /// Stops the axis on the quick-stop ramp while it is at the end of its travel and its set-points
-/// lead further. The axis stays enabled. Returns false if the axis can follow its set-points.
+/// would move it beyond this end. The axis stays enabled. Returns false if the axis can follow its
+/// set-points.
 bool Axis402::blocks(double h) noexcept {
   const bool was_blocked = blocked_;
   blocked_ = servo_->at_end(wanted_direction());

@@ -22,7 +22,8 @@ class Rpdo {
   void reconfigure() noexcept;
 
   /// Keeps the data of an ordinary synchronous frame until SYNC. Returns false, and keeps nothing,
-  /// if on_frame() has more to do: monitor a deadline, report an error or end one.
+  /// if on_frame() has more to do: to monitor a deadline, or to report the start or the end of an
+  /// error.
   bool keep_until_sync(const Frame& frame, Time now, Time window_end,
                        const EmcyProducer& emcy) noexcept;
   /// Returns true if the frame acts at once; the caller then calls apply().

@@ -49,7 +49,7 @@ struct AxisGroupOptions {
   /// Time to live of the commands, in cycles. 0 selects the configured one; the shorter of both
   /// counts.
   std::int32_t time_to_live = 20;
-  /// Number by which taktd tells senders apart. 0 selects a random one.
+  /// Number by which taktd distinguishes senders. 0 selects a random number.
   std::int64_t instance = 0;
 };
 

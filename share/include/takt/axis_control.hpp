@@ -161,10 +161,10 @@ class AxisControl {
   bool in_mode(Index axis) const;
 
   /// Sets the target position (0x607A) of each axis. The call changes only axes that are in
-  /// Operation enabled and in a position mode, both as commanded and as the image shows; all
-  /// others keep to their actual position. If the actual position of an axis is not mapped, the
-  /// axis takes the target whether it is enabled or not, and the commands carry no target position
-  /// before. A value that is not finite leaves the target as it is.
+  /// Operation enabled and in a position mode, both as commanded and as the image shows; all others
+  /// keep to their actual position. If the actual position of an axis is not mapped, the axis takes
+  /// the target whether it is enabled or not, and the commands carry no target position before the
+  /// first call. A value that is not finite leaves the target as it is.
   void set_positions(const Eigen::Ref<const Eigen::VectorXd>& si);
   /// Sets the target velocity (0x60FF) of each axis that is in Operation enabled; for all others it
   /// stays at zero. A value that is not finite counts as 0.

@@ -78,8 +78,8 @@ struct ServiceReply {
   std::vector<std::byte> data{};  ///< value that was read, in little endian as on the wire
 };
 
-/// A CANopen master for one bus. A thread of its own, the bus thread, runs the cycle with the
-/// real-time options of the network file (`realtime:`); a call waits for it only where its
+/// A CANopen master for one bus. Each master has a thread, the bus thread, which runs the cycle
+/// with the real-time options of the network file (`realtime:`); a call waits for it only where its
 /// description says so. All calls come from one thread, except request_stop().
 ///
 /// In each cycle the devices sample their inputs at SYNC k, and wait() returns with image k. The
