@@ -72,10 +72,11 @@ void TcpqBroker::accept_clients(Time now) {
   }
 }
 
-/// Closes a connection to make room for a new one. The first choice is the oldest connection that
-/// has neither subscribed nor published. Otherwise it is the connection that has sent nothing for
-/// the longest time, at most one per second. LCM's clients reconnect, so each of them is served at
-/// some time. A program that sends commands is never idle long enough to be closed.
+/// Closes a connection to make room for a new one. The first choice is the oldest connection whose
+/// handshake is incomplete, the second choice the oldest one that has neither subscribed nor
+/// published. Otherwise it is the connection that has sent nothing for the longest time, at most
+/// one per second. LCM's clients reconnect, so each of them is served at some time. A program that
+/// sends commands is never idle long enough to be closed.
 bool TcpqBroker::make_room(Time now) {
   const std::string full = "the hub has " + std::to_string(most_clients) + " connections already";
   auto unasked = std::ranges::find_if(

@@ -79,8 +79,8 @@ std::span<const AxisReport> AxisMotions::run(CycleNumber cycle,
 
 /// Runs all axes. A gear runs after its leader, because it needs the state of the leader in this
 /// cycle. The axes of a ring of gears have no such order: they run as if their leaders were lost. A
-/// ring of measured positions counts as a ring, too: each axis would follow its own movement, which
-/// grows if the ratios do not reduce it.
+/// ring of measured positions counts as a ring, too: each axis would follow its own movement, and
+/// this movement would grow unless the ratios reduce it.
 void AxisMotions::run_axes(CycleNumber cycle, std::span<const AxisInput> inputs) noexcept {
   std::bitset<max_axes> waiting;
   for (std::size_t i = 0; i < runners_.size(); ++i) {

@@ -23,7 +23,8 @@ enum class PhaseMatch : std::uint8_t {
 struct GearTask {
   LeaderKind kind = LeaderKind::commanded;
   PhaseMatch match = PhaseMatch::here;
-  /// The leader; if `measured`, the axis whose fault means the loss of the leader.
+  /// `commanded`: the axis of the leader. `measured`: the axis whose fault means the loss of the
+  /// leader.
   std::uint8_t leader_axis = 0xFF;
   std::uint16_t signal = 0;  ///< `measured`: number of the signal in the image
   std::uint8_t bits = 32;    ///< width of this signal

@@ -7,8 +7,8 @@
 
 namespace takt::sim {
 
-/// A numeric object of the dictionary, or a constant if the device does not have the object. Only
-/// an object whose constant is 0 may be set.
+/// A numeric object of the dictionary, or a constant if the device does not have the object. For a
+/// constant, set() has no effect, and may be called only if the constant is 0.
 class Slot {
  public:
   Slot(ObjectStore& store, ObjectKey key, std::int64_t missing = 0)

@@ -110,7 +110,7 @@ class Device final : private Dictionary {
   const TimeConsumer& time_of_day() const noexcept { return time_; }
 
  private:
-  // Dictionary
+  // The functions of Dictionary:
   Abort read(ObjectKey key, Time now, std::span<const std::byte>& data) noexcept override;
   Abort write(ObjectKey key, Time now, std::span<const std::byte> data) noexcept override;
   Abort width(ObjectKey key, std::size_t& bytes) const noexcept override;

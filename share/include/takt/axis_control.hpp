@@ -46,11 +46,12 @@ struct AxisSignals {
 /// command; it uses neither LCM nor a clock. All calls come from one thread.
 ///
 /// Until an axis is in Operation enabled, its target position follows its actual position, and its
-/// target velocity and target torque are zero, so that enabling never makes the axis jump. An axis
-/// that is found enabled keeps the target position that the image shows as sent, or its actual
-/// position if none is sent. If the position of an axis is mapped, the axis is not enabled before
-/// that position has arrived once. In modes without target positions (profile and cyclic velocity,
-/// profile and cyclic torque, homing), the target position follows the actual position too.
+/// target velocity and target torque are zero, so that enabling never makes the axis jump. If an
+/// axis is already enabled in the first image, it keeps the target position that the image shows as
+/// sent, or its actual position if no target position was sent. If the position of an axis is
+/// mapped, the axis is not enabled before that position has arrived once. In modes without target
+/// positions (profile and cyclic velocity, profile and cyclic torque, homing), the target position
+/// follows the actual position too.
 ///
 /// An axis index is in the range 0..size()-1. Each vector has one element for each axis. A value
 /// is in the unit that the layout states for its signal (rad, m, rad/s ...), or in raw counts if
@@ -80,9 +81,11 @@ class AxisControl {
   command_t& command();
   /// Returns the controlwords, modes, target velocities and target torques of these axes, for axes
   /// whose motions taktd runs. For an axis in profile position mode, the message also has a target
-  /// position: the new target until the drive has taken it, otherwise the actual position.
-  /// Therefore no mode begins with a jump. The caller fills in the same fields as for command().
-  /// The next call of this function or of command() overwrites the message.
+  /// position: the new target until the drive has taken it, otherwise the actual position. If an
+  /// axis is not enabled and its target position stays far from its actual one, the message also
+  /// has the actual position as the target. Therefore no mode begins with a jump. The caller fills
+  /// in the same fields as for command(). The next call of this function or of command() overwrites
+  /// the message.
   command_t& controls(std::span<const Index> axes);
 
   /// Returns the number of axes.
