@@ -27,8 +27,8 @@ struct BudgetRow {
   /// by the tolerance, or by more if all event-driven outputs change at once.
   bool is_behind_sync() const noexcept { return fits() && cycle != Time{0} && *worst > cycle; }
   /// Returns the time that is left after the end of the frame until its limit or until the next
-  /// SYNC, whichever comes first; negative if the frame ends later. Returns std::nullopt if it has
-  /// neither or no bound, and for SYNC itself.
+  /// SYNC, whichever comes first; negative if the frame ends later. Returns std::nullopt if the
+  /// frame has neither a limit nor a next SYNC, if its end has no bound, and for SYNC itself.
   std::optional<Time> margin() const noexcept;
 
   /// Returns whether this is an output that delays the next SYNC by more than the tolerance only if

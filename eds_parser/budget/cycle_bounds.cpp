@@ -178,8 +178,9 @@ class CycleAnalysis : BusyChains {
       if (!bounds_[i]) return false;
       outputs_end_ = std::max(outputs_end_, *bounds_[i]);
     }
-    // Outputs that are queued after those of the cycle before would wait for all frames that have
-    // priority over the last of these.
+    // If the outputs of a cycle were still in the queue when those of the next cycle are queued,
+    // the latter would wait for all frames that have priority over the former. Such a bus has no
+    // bound.
     return outputs_end_ <= plan_.cycle.period + plan_.cycle.output_deadline;
   }
 
@@ -210,7 +211,8 @@ class CycleAnalysis : BusyChains {
     return std::max(begun, longest_late_input(lowest));
   }
 
-  /// Finds the TPDOs that may begin after the outputs.
+  /// Finds the TPDOs that may end after the output deadline, and the longest TPDO that may end
+  /// after the next SYNC is due.
   void find_late_inputs() {
     late_inputs_.assign(frames_.size(), false);
     for (std::size_t i = 0; i < frames_.size(); ++i) {

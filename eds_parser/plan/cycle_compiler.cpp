@@ -175,8 +175,8 @@ TimeBudget time_budget(const BusPlan& plan) noexcept {
   for (const PdoRow& row : plan.pdos.rpdos) {
     (row.synchronous() ? budget.outputs_wire : by_event) += row_time(row, plan.bitrate);
   }
-  // Event-driven RPDOs rarely all change in the same cycle. The master sends those that do not fit
-  // in the next cycle.
+  // Event-driven RPDOs rarely all change in the same cycle. RPDOs that do not fit into a cycle are
+  // sent in the next one.
   budget.outputs_wire += std::min<Time>(by_event, plan.cycle.period / event_share);
   budget.earliest = budget.inputs_wire + frame_time(plan.bitrate);
   budget.latest = plan.cycle.output_deadline;

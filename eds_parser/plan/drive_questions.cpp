@@ -119,7 +119,7 @@ void ask_for_loss(std::span<const NodePdos> nodes, NetworkReport& report) {
 constexpr std::int64_t quick_stop_command = 3;  // value of 0x6007, CiA 402-2
 
 /// Returns the object 0x6007 of each axis of the node that is not configured for a quick stop. NMT
-/// stop ends the exchange of PDOs, and a drive makes a quick stop then only if its 0x6007 is 3.
+/// stop ends the exchange of PDOs. A drive then makes a quick stop only if its 0x6007 is 3.
 std::vector<ObjectKey> axes_without_quick_stop(const NodeSource& node) {
   std::vector<ObjectKey> objects;
   for (unsigned axis = 0; axis < most_axes; ++axis) {

@@ -11,8 +11,9 @@ class ErrorControl {
   ErrorControl(const NetworkSpec& spec, NetworkReport& report) : spec_{spec}, report_{report} {}
 
   /// Returns 0x1017 of a node in ms: the value of the network file, else of the device file. If
-  /// neither has one and the device can produce a heartbeat, the result is 100 ms, or as much as
-  /// keeps all heartbeats below 2 % of the bus. The value is rounded as the device rounds it.
+  /// neither has one and the device can produce a heartbeat, the result is 100 ms, or the longer
+  /// period with which the heartbeats of all nodes together need less than 2 % of the bus time. The
+  /// value is rounded as the device rounds it.
   std::uint16_t producer_ms(const NodeSource& node) const;
   /// Returns the longest silence of the master that a device accepts, in milliseconds, as an entry
   /// of 0x1016 states it. 0 means that the master produces no heartbeat.

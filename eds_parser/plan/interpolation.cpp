@@ -17,7 +17,7 @@ bool is_point(const EffectiveEntry& entry) {
   return first_axis(entry.object.index) == 0x60C1 && entry.object.sub == 1;
 }
 
-/// Judges whether the points of one RPDO come as often as the drive takes them from its buffer.
+/// Checks whether the points of one RPDO come as often as the drive takes them from its buffer.
 class PointSupply {
  public:
   PointSupply(const NodePdos& node, const EffectivePdo& pdo, const EffectiveEntry& point,

@@ -25,7 +25,7 @@ bool is_configured(const ObjectDictionary& dictionary, const SubObject& sub) {
   return dictionary.is_dcf && sub.parameter_value;
 }
 
-/// Returns the number that the file states, even if it is the number of another node. Returns
+/// Returns the number that the file states, even if it is the COB-ID of another node. Returns
 /// std::nullopt if there is no such entry or its value is no number.
 std::optional<std::int64_t> number_of_file(const ObjectDictionary& dictionary, ObjectKey key) {
   const SubObject* sub = dictionary.find(key);

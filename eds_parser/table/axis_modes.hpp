@@ -7,9 +7,9 @@ namespace takt {
 
 /// Returns false if an axis in this mode of operation (0x6060) does not move to each set-point of
 /// this quantity: another quantity controls the axis, or the set-point needs a handshake (profile
-/// position). Modes of the manufacturer count as following. CiA 402-2, 0x6060: 1 profile position,
-/// 2 velocity, 3 profile velocity, 4 profile torque, 6 homing, 7 interpolated position, 8 to 10
-/// cyclic synchronous position, velocity and torque.
+/// position). In manufacturer-specific modes, the axis counts as following the set-point. CiA
+/// 402-2, 0x6060: 1 profile position, 2 velocity, 3 profile velocity, 4 profile torque, 6 homing, 7
+/// interpolated position, 8 to 10 cyclic synchronous position, velocity and torque.
 constexpr bool follows(AxisQuantity quantity, std::int64_t mode) noexcept {
   const auto number = static_cast<std::int8_t>(mode);
   switch (quantity) {

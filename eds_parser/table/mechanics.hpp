@@ -75,7 +75,7 @@ struct MechanicsTable {
   EncoderParameters encoder{};
   BrakeParameters brake{};
   TravelParameters travel{};
-  double turn = 0;  ///< travel of the axis per turn of the motor; in a specification, 0 is unknown
+  double turn = 0;  ///< travel of the axis per turn of the motor; 0 = unknown (specification only)
 };
 
 /// The controllers and the integration of a simulated axis have this period, in seconds.
@@ -85,10 +85,10 @@ inline constexpr double mechanics_ticks = 4000;  ///< number of steps in a secon
 inline constexpr int most_mechanics_steps = 8;
 
 /// Returns the angular frequency (rad/s) at which motor and load swing against each other without
-/// damping. 0 if the coupling is rigid.
+/// damping. Returns 0 if the coupling is rigid.
 double stiffest_mode(const MechanicsTable& table) noexcept;
-/// Returns in how many equal steps the integration divides mechanics_tick, 1 or more; above
-/// most_mechanics_steps, the coupling is too stiff.
+/// Returns the number of equal steps into which the integration divides mechanics_tick. If it
+/// exceeds most_mechanics_steps, the coupling is too stiff to be simulated.
 int mechanics_steps(const MechanicsTable& table) noexcept;
 
 }  // namespace takt

@@ -9,13 +9,15 @@ namespace {
 
 constexpr std::size_t most_motion_axes = 127;
 
-/// A motion reads its position from one signal and writes it to the other.
+/// Returns true if both signals have the same unit. A motion reads the actual position from the
+/// first signal and writes its target positions to the second one.
 bool have_same_unit(const Signal& position, const Signal& target) {
   return position.scale == target.scale && position.offset == target.offset &&
          position.unit == target.unit;
 }
 
-/// A range of positions that is shorter than a turn keeps the axis from turning.
+/// Returns the turn of a rotary axis. If the permitted range of positions is shorter than a turn,
+/// the axis can't make a turn and counts as not rotary.
 Turn turn_of(const BusPlan& plan, SignalIndex target) {
   const auto row = std::ranges::find(plan.limits.outputs, target, &OutputLimit::signal);
   if (row == plan.limits.outputs.end() || !(row->modulus > 0.0 && row->modulus <= 0x1p32))
@@ -44,7 +46,7 @@ std::optional<MotionAxis> motion_axis(const BusPlan& plan, std::uint8_t node, st
     return plan.layout.signals[index];
   };
   if (!have_same_unit(signal(*position), signal(*target))) return std::nullopt;
-  if (signal(*target).row >= plan.pdos.rpdos.size()) return std::nullopt;  // sent by no RPDO
+  if (signal(*target).row >= plan.pdos.rpdos.size()) return std::nullopt;  // in no RPDO
   const auto offset = find(0x60B1, true);
   const bool same_unit = offset && !signal(*offset).unit.empty() &&
                          signal(*offset).unit == signal(*target).unit + "/s";

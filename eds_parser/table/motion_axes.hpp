@@ -62,7 +62,7 @@ struct MotionAxis {
 /// (6041) and an actual position (6064) in TPDOs, and a target position in an RPDO. Both positions
 /// have the same unit. The target is 607A; without it, it is the first interpolation data record
 /// (60C1:01). An axis with a position offset (60B0) in an RPDO is left out. At most 127 axes are
-/// returned. Both sides of the master number the axes in this order.
+/// returned. The bus thread and the front thread number the axes in this order.
 std::vector<MotionAxis> motion_axes(const BusPlan& plan);
 
 }  // namespace takt

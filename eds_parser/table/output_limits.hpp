@@ -17,7 +17,7 @@ enum class LimitKind : std::uint8_t {
   position,
   velocity,
   acceleration,
-  jerk,  ///< not checked, because set-points in whole counts cannot show it
+  jerk,  ///< not checked, because the jerk can't be computed from set-points in whole counts
   step,
   torque,
   range,            ///< range of a single output
@@ -64,12 +64,12 @@ struct OutputLimit {
   double high = none;
   LimitKind range = LimitKind::range;  ///< quantity that `low` and `high` bound
   double step = none;                  ///< greatest difference in one cycle
-  double rate = none;  ///< limit of the kind of `step`, derived from a velocity or an acceleration
+  double rate = none;  ///< limit of the same difference, derived from a velocity or an acceleration
   LimitKind rate_of = LimitKind::velocity;
   double bend = none;    ///< greatest change of the difference (acceleration), per cycle squared
-  double modulus = 0.0;  ///< differences count modulo this; 0 = no modulo
+  double modulus = 0.0;  ///< differences are taken modulo this value; 0 = no modulo
   double lowest = 0.0;   ///< the position at which a range of `modulus` counts begins
-  bool wraps = false;    ///< differences count modulo the width of the object
+  bool wraps = false;    ///< differences are taken modulo the range of values of the object
   AxisQuantity quantity = AxisQuantity::none;
   /// For a target: the output that the drive adds to the target.
   std::optional<SignalIndex> offset{};

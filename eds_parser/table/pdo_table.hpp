@@ -52,7 +52,8 @@ struct PdoRow {
   constexpr bool cyclic() const noexcept { return transmission >= 1 && transmission <= 240; }
 };
 
-/// The PDOs of a bus as flat tables that the bus thread copies by.
+/// The PDOs of a bus as flat tables. The bus thread uses them to copy values between frames and
+/// image.
 struct PdoTable {
   static constexpr std::uint16_t no_row = 0xFFFF;
 

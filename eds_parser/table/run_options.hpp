@@ -20,14 +20,14 @@ struct RealtimeOptions {
   RtMode mode = RtMode::attempt;
   int priority = 80;                           ///< SCHED_FIFO, 1..99
   std::optional<int> cpu;                      ///< CPU of the bus thread; empty = any
-  Time spin = std::chrono::microseconds{100};  ///< time before SYNC from which the thread is awake
+  Time spin = std::chrono::microseconds{100};  ///< duration of active waiting before SYNC
   Time late_limit{};  ///< enforce: a SYNC later than this ends taktd with exit code 5; 0 = no limit
 };
 
 /// `black_box:` of the network file.
 struct RecordingOptions {
   std::string folder;            ///< folder of the recordings; empty = no recordings
-  std::size_t bytes = 16 << 20;  ///< size of each of the two tapes in memory
+  std::size_t bytes = 16 << 20;  ///< size of each of the two recording buffers in memory
   std::size_t keep = 20;         ///< number of recordings of this bus; older ones are removed
 };
 

@@ -28,7 +28,7 @@ enum class SpeedSequence : std::uint8_t {
   cia402,  ///< the state machine of CiA 402; bits 4 to 6 of the controlword run the ramp (mode vl)
 };
 
-/// The moment at which a drive obeys the command "fault reset".
+/// The moment at which a drive executes the command "fault reset".
 enum class FaultReset : std::uint8_t {
   edge,   ///< at the change from another command to this one
   level,  ///< while the command is present
@@ -47,7 +47,7 @@ struct SpeedCommands {
 
 /// What the status word of a speed axis shows.
 struct SpeedStates {
-  WordPattern ready{};       ///< the drive obeys the command to run
+  WordPattern ready{};       ///< the drive accepts the command to run
   WordPattern running{};     ///< the motor is under power
   WordPattern reverse{};     ///< the drive turns backward
   WordPattern at_speed{};    ///< the set speed is reached
@@ -80,8 +80,8 @@ struct SpeedOrders {
   std::uint16_t mask = 0xFFFF;
   std::uint16_t run = 0;
   std::optional<std::uint16_t> run_reverse{};
-  std::array<std::uint16_t, 4> idle{};  ///< values with which the drive does not follow
-  bool others_run = true;               ///< any further value makes the drive follow
+  std::array<std::uint16_t, 4> idle{};  ///< values with which the drive ignores the set speed
+  bool others_run = true;               ///< with any other value, the drive follows the set speed
   double scale = 1.0;                   ///< speed of one count, for messages
 
   constexpr double factor(std::int64_t order) const noexcept {

@@ -40,7 +40,7 @@ inline constexpr Time lss_answer = 1s;
 inline constexpr Time lss_store = 5s;  ///< flash
 /// Wait for the answers of all devices; always waited in full.
 inline constexpr Time lss_all = 100ms;
-inline constexpr Time lss_shortest = 10ms;  ///< wait for these answers within a scan
+inline constexpr Time lss_shortest = 10ms;  ///< wait for the answers of all devices in a scan
 inline constexpr Time lss_look_again = 1s;
 inline constexpr Time lss_let_boot = 5s;
 

@@ -71,8 +71,8 @@ class BootCompiler : BootPart {
     probe();
   }
 
-  /// Appends the step that finds out whether the node is OPERATIONAL; such a node is not reset.
-  /// This is the keep-alive bit of 0x1F81 in CiA 302-2. Returns the index of the step.
+  /// Appends the step that finds out whether the node is OPERATIONAL; such a node is not reset. CiA
+  /// 302-2 defines this as the keep-alive bit of 0x1F81. Returns the index of the step.
   std::size_t await_alive() {
     const bool guarded = context.node.heartbeat_timeout == Time{};
     const Time longest = guarded ? context.node.guard.life_time() : context.node.heartbeat_timeout;
@@ -173,7 +173,7 @@ class BootCompiler : BootPart {
         .timeout = std::max(restore_timeout, context.node.sdo_timeout);
   }
 
-  /// Reads each object that holds a limit once, even if it bounds several outputs.
+  /// Reads each object that holds a limit once, even if the limit applies to several outputs.
   void limits() {
     std::vector<ObjectKey> read;
     const auto once = [&](ObjectKey object) {
@@ -190,7 +190,7 @@ class BootCompiler : BootPart {
   }
 
   /// Reads the quick stop option code of each axis, because only the device knows the present
-  /// value. The ordered stop judges the standstill of a drive that coasts by a different rule.
+  /// value. For a drive that coasts, the ordered stop detects standstill by a different rule.
   void quick_stop_options() {
     if (!context.node.cia402) return;
     for (unsigned axis = 0; axis < most_axes; ++axis) {

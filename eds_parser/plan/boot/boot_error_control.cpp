@@ -146,8 +146,8 @@ class Emergency : BootPart {
   }
 
  private:
-  /// Returns false if the limits of 0x1014 forbid bit 31. Such a device accepts another identifier
-  /// without switching EMCY off first.
+  /// Returns false if the limits of 0x1014 forbid bit 31. On such a device, the EMCY identifier can
+  /// be changed while EMCY is on.
   bool has_off_bit() const {
     const SubObject* sub = dictionary.find(ObjectKey{0x1014, 0});
     const auto high = sub == nullptr ? std::nullopt : integer_of(sub->high_limit);

@@ -50,7 +50,8 @@ class HomingSteps : BootPart {
     write(axis_object(axis, 0x607C), "offset", homing.offset);
   }
 
-  /// Warns if the drive has no homing mode by its 0x6502. Without 0x6502 its modes are not known.
+  /// Warns if 0x6502 in the device file says that the drive has no homing mode. Without 0x6502, the
+  /// modes are unknown, and nothing is reported.
   void judge_mode(unsigned axis, const AxisHomingSpec& homing) {
     const auto modes = value_of(axis_object(axis, 0x6502));
     if (!*homing.required || !modes || *modes == 0 || (*modes & homing_mode) != 0) return;

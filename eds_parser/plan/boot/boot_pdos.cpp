@@ -96,7 +96,7 @@ class PdoBoot : BootPart {
   }
 
   /// Gives the comparisons of a PDO the error letter L. The boot fails with this letter if a
-  /// comparison fails on a node that stays in operation, because such a node can't be configured.
+  /// comparison fails on a node that was left OPERATIONAL, because such a node can't be configured.
   void mark_running(std::size_t first) {
     for (std::size_t i = first; i < steps.size(); ++i) {
       BootStep& step = steps.steps()[i];
@@ -104,8 +104,8 @@ class PdoBoot : BootPart {
     }
   }
 
-  /// Appends steps for the number of entries and the entries. A fixed number may include empty
-  /// entries, which the plan leaves out.
+  /// Appends steps for the number of entries and the entries. A number that is fixed may count
+  /// empty entries, which the plan leaves out.
   void mapping_steps(BootAction action, const std::string& suffix) {
     if (!pdo_.fixed_mapping) {
       steps.integer(action, mapping(0), pdo_.mapping_count(),

@@ -9,8 +9,8 @@
 
 namespace takt {
 
-/// The data that all parts of a boot plan share: the node, its dictionary, and the list that takes
-/// their steps.
+/// The data that all parts of a boot plan share: the node, its dictionary, and the list to which
+/// they append their steps.
 struct BootPart {
   const NodeSource& node;
   const NodeSpec& spec;
@@ -21,8 +21,8 @@ struct BootPart {
 
   /// Reports that `key` of the network file needs an object that can't be written.
   void missing(SourcePos pos, const std::string& key, ObjectKey object) const;
-  /// Returns false and warns if the limits of the device exclude `value`. Values that takt derives
-  /// from the plan are not forced upon such a device.
+  /// Returns false and warns if the limits of the device exclude `value`. A value that takt derives
+  /// from the plan is not written to such a device.
   bool takes(ObjectKey key, std::int64_t value, SourcePos pos,
              const std::string& consequence) const;
 };
@@ -66,8 +66,8 @@ void append_homing(const BootPart& part);
 void append_values(const BootPart& part);
 
 /// Warns of every number that the boot writes and that lies outside the limits of the device file.
-/// The purpose of the step then mentions the limits as well. A value that is the default in the
-/// file causes no warning.
+/// BootStep::purpose then mentions the limits as well. A value that is the default in the file
+/// causes no warning.
 void judge_limits(const NodePdos& node, BootPlan& plan, NetworkReport& report);
 
 }  // namespace takt

@@ -18,7 +18,7 @@ struct ObjectLimits {
   bool hold(std::int64_t value) const noexcept {
     return (!low || value >= *low) && (!high || value <= *high);
   }
-  /// Returns the limits as `-10..10`; a limit that is missing gives no number.
+  /// Returns the limits as `-10..10`, or `..10` if the low limit is missing.
   std::string text() const;
 
   std::optional<std::int64_t> low;
@@ -42,7 +42,7 @@ class BootSteps {
                   std::string purpose);
   /// Appends a `skip_if_same` step and returns its index. land() sets its target.
   std::size_t skip_if_same(std::string purpose);
-  /// Makes the step after the last one the target of `skip`.
+  /// Makes the next step to be appended the target of `skip`.
   void land(std::size_t skip);
 
   bool has(ObjectKey object) const noexcept { return dictionary_.find(object) != nullptr; }

@@ -33,7 +33,8 @@ class SyncSteps : BootPart {
   }
 
  private:
-  /// Sets bit 30 last: it starts SYNC, and afterwards no other bit may change. CiA 301, 7.5.2.5.
+  /// Sets bit 30 last, because this bit starts SYNC and afterwards no other bit may change. CiA
+  /// 301, 7.5.2.5.
   void make_sync() {
     if (!context.makes_sync()) return;
     steps

@@ -18,8 +18,8 @@ namespace {
 constexpr std::uint32_t refuse_write_on_download = 1;
 constexpr std::size_t longest_compared = 256;
 
-/// Returns true for objects that other parts of the boot write, and for objects that takt should
-/// write only if a person asks for it.
+/// Returns true for objects that other parts of the boot write, and for objects that takt writes
+/// only if the network file lists them.
 bool is_set_elsewhere(std::uint16_t index) {
   constexpr std::array<std::uint16_t, 11> set{0x1000, 0x1003, 0x1005, 0x1006, 0x1010, 0x1011,
                                               0x1014, 0x1017, 0x1018, 0x1019, 0x1020};

@@ -20,7 +20,7 @@ std::string model_of(const NodeSource& node) {
   return profile == 406 ? "encoder406" : "plain";
 }
 
-/// Widens the limits of an object so that the device accepts the values of its own file.
+/// Widens the limits of an object so that they include `own`, a value of the device file itself.
 void widen_limits(DeviceObject& object, const std::optional<Value>& own) {
   const auto value = integer_of(own);
   if (!value) return;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double default_turn = 65536;  // counts, if nothing is known about the axis
 
-/// Returns the quotient of the sub-indices 1 and 2 that the node will have, if both are above zero.
+/// Returns the value of sub-index 1 divided by that of sub-index 2, as the object has them after
+/// the boot. Returns std::nullopt unless both are above zero.
 std::optional<double> quotient(const NodeSource& node, std::uint16_t index) {
   const auto value = [&](std::uint8_t sub) {
     const ObjectKey key{index, sub};

@@ -146,7 +146,7 @@ class Judge {
         given ? std::uint64_t{*spec->inhibit_time} * 100 : rule.us(pdo.inhibit_time);
     const ObjectKey key{pdo.communication_index(), 3};
     const SourcePos pos = pos_of(pdo, &PdoSpec::inhibit_time, 3);
-    if (!given && pos == pdo.pos) return;  // The default of the device is not judged.
+    if (!given && pos == pdo.pos) return;  // A default of the device file is not checked.
     const auto refuse = [&](const auto&... why) {
       report_.error(pos, "device-data", "the inhibit time of ", label(pdo), why...);
     };

@@ -50,7 +50,8 @@ class SpeedAxisCompiler {
   }
 
  private:
-  /// Returns the words of the device data, or those of the velocity mode.
+  /// Returns the control word, status word and set speed that the device data state, or those of
+  /// the velocity mode (vl) of a CiA 402 drive.
   SpeedAxisSpec words() const {
     if (node_.data != nullptr && node_.data->speed_axis.is_stated()) return node_.data->speed_axis;
     constexpr std::array<std::uint16_t, 4> other_targets{0x607A, 0x60C1, 0x60FF, 0x6071};
@@ -112,7 +113,7 @@ class SpeedAxisCompiler {
     return what.scale;
   }
 
-  /// The master sends an RPDO only when each of its outputs has a value. Further words that share
+  /// The master sends an RPDO only when each of its outputs has a value. Other outputs that share
   /// an RPDO with those of the axis therefore begin with 0, so that the first command of a program
   /// is sent at once.
   void complete_rows(const SpeedAxisPlan& axis) {

@@ -36,8 +36,9 @@ double AxisLimits::modulus(const Sourced<double>& modulo, SignalIndex signal) co
   return std::abs(of_drive - length) <= 1.0 + length * rounded_digits ? of_drive : length;
 }
 
-/// Returns the lowest position of a turn: that of the drive, else of the range of commands, else 0.
-/// The whole turn fits into an INTEGER32.
+/// Returns the position at which a turn begins: the lower limit of the drive's position range
+/// (607B:01), else the lower limit of commands, else 0. The result is chosen so that the whole turn
+/// fits into an INTEGER32.
 double AxisLimits::lowest(const OutputLimit& row) const {
   if (row.modulus <= 0.0) return 0.0;
   const auto of_drive = configured_object(node_, object(0x607B, 1));

@@ -64,7 +64,7 @@ void AxisLimits::compile(const AxisLimitsSpec& limits) {
   line_of_file(LimitKind::following_error, limits.following_error, false);
   step(limits.step);
   torque(limits.torque);
-  // The motions of a rotary axis need its modulo, also where nothing is checked.
+  // The motions of a rotary axis need a row with its modulo, even if no limit is checked.
   for (const SignalIndex signal : positions_) {
     if (modulus(limits.modulo, signal) > 0.0) table_.row(signal);
   }

@@ -13,8 +13,9 @@ void propose_limit(LimitLine& line, const NodeSource& node, const BusPlan& plan,
 
 /// Proposes an entry of `limits: {objects: [...]}` for an output that has no limit. The numbers are
 /// the LowLimit and the HighLimit of the device file if these are narrower than the data type. The
-/// data type is the same for a number and for a bit field, such as the control word of a drive with
-/// its own profile, so the proposal states that it is for a number.
+/// data type does not show whether an output is a number or a bit field, such as the control word
+/// of a drive with a manufacturer-specific profile. The proposal therefore states that it applies
+/// to a number.
 void propose_range(LimitLine& line, const Signal& output, const NodeSource& node);
 
 }  // namespace takt

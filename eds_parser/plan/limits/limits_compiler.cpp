@@ -37,7 +37,8 @@ std::optional<SourcePos> first_place(const AxisLimitsSpec& limits) {
 }
 
 /// Returns true if the device file calls the object a control word or a bit field. The data type
-/// does not tell bits from a number, and only CiA 402 has an index for control words.
+/// does not distinguish a bit field from a number, and only CiA 402 defines an index for the
+/// control word.
 bool has_name_of_bits(const Signal& output) {
   constexpr std::array<std::string_view, 3> names{"control_word", "controlword", "bit_field"};
   return std::ranges::any_of(

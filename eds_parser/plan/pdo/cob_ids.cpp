@@ -123,10 +123,10 @@ class CobIdAssigner {
     move(user, &other->second, service);
   }
 
-  /// Returns true if `user` and `other`, which have the same COB-ID, form a link that a device file
-  /// states together with the network file or another device file. There is no link if the master
-  /// is to send the RPDO (the network file mentions it without a COB-ID), or if both COB-IDs are
-  /// only the predefined ones of their nodes.
+  /// Returns true if `user` and `other`, which have the same COB-ID, form a link: a device file
+  /// states one of the two COB-IDs, and the network file or another device file states the other.
+  /// There is no link if the master is to send the RPDO (the network file mentions it without a
+  /// COB-ID), or if both COB-IDs are only the predefined ones of their nodes.
   static bool is_link(const User& user, const User& other) {
     const EffectivePdo& pdo = *user.pdo;
     if (pdo.is_tpdo == other.pdo->is_tpdo || other.node == user.node) return false;
@@ -175,8 +175,9 @@ class CobIdAssigner {
                   " in 0x181..0x57F");
   }
 
-  /// Gives a TPDO its predefined COB-ID. If an RPDO of another device has this COB-ID in the
-  /// network file, they are a link. Otherwise a COB-ID that is taken remains with its owner.
+  /// Gives a TPDO its predefined COB-ID. If the network file gives this COB-ID to an RPDO of
+  /// another device, the two PDOs form a link. Otherwise, a PDO that already has this COB-ID keeps
+  /// it.
   void claim_predefined(User user) {
     const CobId id = CobId::base(user.predefined());
     if (!service_at(id).empty()) return;

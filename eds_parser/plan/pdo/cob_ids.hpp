@@ -18,9 +18,9 @@ struct NodePdos {
 /// Returns true if no PDO may have this CAN-ID. CiA 301, 7.3.5, table 40.
 bool is_restricted(std::uint32_t id) noexcept;
 
-/// Gives every exchanged PDO its COB-ID and reports clashes. COB-IDs of the network file are never
-/// changed, and neither are COB-IDs of device files that work. An absolute COB-ID of a device file
-/// that clashes becomes node-relative, with a note. The exception is a link: an RPDO with the
+/// Gives every exchanged PDO its COB-ID and reports clashes. A COB-ID of the network file is never
+/// changed, nor is a COB-ID of a device file that causes no clash. An absolute COB-ID of a device
+/// file that clashes becomes node-relative, with a note. The exception is a link: an RPDO with the
 /// COB-ID of another device's TPDO receives that TPDO. `auto` gives PDO 1..4 the predefined
 /// connection set, and other PDOs the lowest free identifier in 0x181..0x57F. It is an error if the
 /// network file gives the predefined COB-ID of an `auto` TPDO to another TPDO. `services` holds

@@ -35,7 +35,7 @@ struct EffectiveEntry {
   bool dummy = false;
   DataType type = DataType::unknown;
   std::string name{};  ///< name in the EDS
-  SourcePos pos;       ///< place in the network file that asks for the object, or that of the node
+  SourcePos pos;       ///< place in the network file that asks for the object, or place of the node
 
   /// Returns the entry as 0x1600 or 0x1A00 holds it.
   std::uint32_t raw() const noexcept {

@@ -19,8 +19,9 @@ std::vector<EffectiveEntry> mapping_of(const NodeSource& node, const PdoDescript
 
 /// Returns the key and the name of an object: `6064:00 Position actual value`.
 std::string label(const ObjectDictionary& dictionary, ObjectKey key);
-/// Returns a hint for a message about a missing object: the number that its index would be in
-/// hexadecimal, if the device has that object. Else the text is empty.
+/// Returns a hint for a message about a missing object whose index may lack the prefix `0x`: the
+/// same four digits as a hexadecimal index, for example 0x6064 for the number 6064. The text is
+/// empty if the device does not have that object either.
 std::string without_0x(const ObjectDictionary& dictionary, std::uint16_t index);
 
 /// Compiles the objects of a multiplexed PDO, as the network file lists them. For a SAM MPDO, and
@@ -31,7 +32,7 @@ std::vector<EffectiveEntry> compile_mpdo(const NodeSource& node, const Effective
                                          NetworkReport& report);
 
 /// Returns bytes 0..3 of the frames that carry this object. For a SAM MPDO that the master sends,
-/// they hold the source object under which the device's dispatching list expects it. CiA 301,
+/// they hold the source object that the device's dispatching list assigns to this object. CiA 301,
 /// 7.2.3.
 std::uint32_t mpdo_header(const NodeSource& node, const EffectivePdo& pdo,
                           const EffectiveEntry& entry, NodeId master);

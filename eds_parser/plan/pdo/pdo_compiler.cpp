@@ -114,8 +114,8 @@ class PdoCompiler {
     pdo.cob_id = device.extended ? CobId::extended(*id) : CobId::base(*id);
   }
 
-  /// Judges a transmission type that an `sdo:` entry writes, even for an unused PDO. If the device
-  /// data list the allowed types, those rules apply instead.
+  /// Checks a transmission type that an `sdo:` entry writes, even for an unused PDO. If the device
+  /// data list the allowed types, the rules of the device data apply instead.
   void judge_written_type(const EffectivePdo& pdo) {
     const SdoSpec* entry = node_.spec->written({pdo.communication_index(), 2});
     if (entry == nullptr || usable_type(pdo)) return;
@@ -128,8 +128,8 @@ class PdoCompiler {
                                          : ": only a TPDO is sent on remote request");
   }
 
-  /// Judges a PDO that only the device file mentions. The PDO is used if possible, else left out
-  /// with a note.
+  /// Decides whether takt uses a PDO that only the device file mentions. A PDO that takt can't use
+  /// is left out with a note.
   void judge_unnamed(const PdoDescription& device, EffectivePdo& pdo) {
     if (pdo.use != PdoUse::exchanged) return;
     const auto leave_out = [&](const auto&... why) {

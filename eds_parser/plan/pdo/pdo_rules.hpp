@@ -20,8 +20,8 @@ struct FileCobId {
 };
 
 /// Splits the numeric `cob_id` of `spec` and reports the effect of its bits 29..31. The bits have
-/// the same meaning as in 0x1800:01, but takt can not fulfil each of them. CiA 301, 7.5.2.35.
-/// `owner` names the PDO in findings.
+/// the same meaning as in 0x1800:01, but takt cannot fulfil all of them. CiA 301, 7.5.2.35. `owner`
+/// names the PDO in findings.
 FileCobId read_cob_id_bits(const PdoSpec& spec, bool is_tpdo, const std::string& owner,
                            NetworkReport& report);
 
