@@ -4,7 +4,7 @@
 
 namespace takt {
 
-/// Judges the content of a dictionary: values against types and limits, PDOs against objects and
+/// Checks the content of a dictionary: values against types and limits, PDOs against objects and
 /// CAN identifiers, and the objects that CiA 301 and the device profile demand. The reader has
 /// already reported findings about the text itself. The findings are in the order of their place in
 /// the file.

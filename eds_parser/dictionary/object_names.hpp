@@ -19,11 +19,11 @@ std::string object_name(const ObjectDictionary& dictionary, ObjectKey key);
 
 /// The names under which users and programs find the objects of a device.
 ///
-/// A VAR has its name in snake_case, `position_actual_value`. An entry of an ARRAY or RECORD has
-/// the name of the object before it, `identity_object.vendor_id`; the name of the entry alone also
-/// finds it if no other entry has it. The objects of the second axis of a drive, which are 0x800
-/// higher, often have the same names as those of the first: they end in `_2` then, those of the
-/// third axis in `_3`.
+/// A VAR has its name in snake_case, `position_actual_value`. The name of an entry of an ARRAY or
+/// RECORD begins with that of the object: `identity_object.vendor_id`. The second part alone also
+/// finds the entry if no other entry has this name. The objects of the second axis of a drive,
+/// which are 0x800 higher, often have the same names as those of the first. In this case, `_2` is
+/// appended to their names, and `_3` to those of the third axis.
 class ObjectNames {
  public:
   struct Entry {

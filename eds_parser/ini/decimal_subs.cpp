@@ -34,7 +34,7 @@ bool is_beyond_ff(const IniSection& section) noexcept {
   return name.size() == sub_at + 3 && name[sub_at] != '0' && decimal_sub(section).has_value();
 }
 
-/// Returns the number of sub 0, or std::nullopt if it has none.
+/// Returns the DefaultValue of sub 0, or std::nullopt if it is no number or missing.
 std::optional<std::uint64_t> default_value(const IniEntries& entries) noexcept {
   for (const IniEntry& entry : entries) {
     if (classify_key(entry.key) != Keyword::default_value) continue;

@@ -46,7 +46,8 @@ std::string unused(std::string name, std::set<std::string>& used) {
   return name;
 }
 
-/// The number stays complete when a long name is cut.
+/// Returns a channel that is not in `used`, and adds it to `used`. A number before `kind` makes a
+/// repeated name unique. It stays complete when channel_name() cuts a long name.
 std::string unused_channel(const std::string& node, const std::string& kind,
                            std::set<std::string>& used) {
   std::string channel = channel_name(node, kind);
@@ -155,7 +156,8 @@ std::uint64_t TypedMessage::fingerprint() const noexcept {
 std::vector<TypedMessage> typed_messages(const BusPlan& plan) {
   std::vector<TypedMessage> messages;
   std::set<std::string> used;
-  // A node called `transfer` would get this channel, too.
+  // The daemon uses these channels. A node named `transfer` or `motion` would otherwise get one of
+  // them.
   std::set<std::string> channels{channel_name(plan.name, "TRANSFER_STATE"),
                                  channel_name(plan.name, "MOTION_COMMAND")};
   for (std::size_t node = 0; node < plan.nodes.size(); ++node) {

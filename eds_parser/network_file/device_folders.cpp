@@ -21,7 +21,8 @@ bool is_folder(const fs::path& path) {
 
 /// Returns the folders of the device data that come with takt. The program `bin/takt` finds
 /// `share/takt/devices` beside the folder `bin`, in an installed takt and in the folder of a build.
-/// A program that contains the master may be anywhere, and uses those of the installed takt.
+/// Another program that contains the master may be in any folder, so it uses the device data of the
+/// installed takt.
 std::vector<fs::path> shipped() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);

@@ -135,8 +135,8 @@ class Loader {
     return paths;
   }
 
-  /// Removes `x/..` from a path if the result names the same file. If `x` is a link, it may name
-  /// another file.
+  /// Removes `x/..` from a path if the result names the same file. The result may name another file
+  /// if `x` is a symbolic link.
   static fs::path tidy(const fs::path& path) {
     std::error_code error;
     fs::path plain = path.lexically_normal();
@@ -254,9 +254,8 @@ class Loader {
     return &file.dictionary;
   }
 
-  /// Errors in a device file do not make the network file wrong; `takt eds check` judges the device
-  /// file. If several nodes share the file, it is reported once, with the findings of the first
-  /// node.
+  /// Errors in a device file do not make the network file wrong; `takt eds check` lists them. If
+  /// several nodes share a device file, it is reported once, with the findings of the first node.
   void add_device_finding(const fs::path& path, const EdsFile& file, std::optional<NodeId> id) {
     if (!reported_.insert(path).second) return;
     const Findings judged = check(file.dictionary);

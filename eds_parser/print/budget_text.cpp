@@ -183,8 +183,8 @@ class BudgetText {
     list([](const BudgetRow& row) { return row.fits_in_burst(); }, &BudgetRow::worst_in_burst);
   }
 
-  /// Prints a warning without effect on the verdict, because this case needs a late server and, at
-  /// the same moment, all frames that devices send outside the cycle.
+  /// Prints a warning that does not change the verdict, because this case needs a late server and,
+  /// at the same moment, all frames that devices send outside the cycle.
   void warn_of_services() {
     const Time tolerated = plan_.cycle.period / 10;
     const auto delay = budget_.sync_delay_behind_services();

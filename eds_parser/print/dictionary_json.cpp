@@ -158,8 +158,8 @@ Json json_of(const PdoDescription& pdo) {
   return json;
 }
 
-/// Replaces bytes that are not UTF-8, for example in a file name, because they must not end the
-/// program.
+/// Replaces bytes that are not UTF-8, for example in a file name. Otherwise dump() would throw an
+/// exception.
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', true, Json::error_handler_t::replace);
 }

@@ -30,8 +30,8 @@ inline Json json_of(const Finding& finding) {
           {"message", finding.message}};
 }
 
-/// Prints a document in ASCII. Bytes that are not UTF-8, for example of a file name, are replaced,
-/// because they must not end the program.
+/// Prints a document in ASCII. Bytes that are not UTF-8, for example of a file name, are replaced.
+/// Otherwise dump() would throw an exception.
 inline void print_document(std::ostream& out, const Json& document) {
   out << document.dump(2, ' ', true, Json::error_handler_t::replace) << '\n';
 }

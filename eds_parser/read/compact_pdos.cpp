@@ -25,8 +25,8 @@ SubObject& add_sub(Object& object, std::uint8_t sub, DataType type, std::uint64_
 
 constexpr std::uint64_t off = 0x8000'0000;  // COB-ID, bit 31
 
-/// Adds the default COB-ID: the predefined connection set for PDO 1 to 4, else a PDO that is
-/// switched off. A PDO that a DCF does not list is also switched off. CiA 306, 5.3.3.1.
+/// Adds the default COB-ID. PDO 1 to 4 get that of the predefined connection set. Other PDOs are
+/// switched off, and so are the PDOs that a DCF does not list. CiA 306, 5.3.3.1.
 void add_cob_id(Object& object, std::uint16_t number, bool is_tpdo,
                 const ObjectDictionary& dictionary) {
   auto& sub = add_sub(object, 1, DataType::unsigned32, off);
@@ -94,7 +94,8 @@ Object mapping_record(std::uint16_t number, bool is_tpdo) {
   return object;
 }
 
-/// Sets the place of objects that the file only counts to the place of the count.
+/// Sets the place of an object that the file counts but does not describe to the place of the
+/// count.
 void place(Object& object, SourcePos pos) noexcept {
   object.pos = pos;
   for (auto& sub : object.subs) {

@@ -66,7 +66,7 @@ class ObjectReader {
   struct Parts;
 
   Parts split(std::span<const ObjectSection> group);
-  /// Returns false if sub-objects were left out, so that lists of sub-objects can not be judged.
+  /// Returns false if sub-objects were left out, so that lists of sub-objects cannot be checked.
   bool read_main(Object& object, const Parts& parts);
   void read_single(Object& object, const ObjectFields& fields);
   void read_subs(Object& object, const Parts& parts);

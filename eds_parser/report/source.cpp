@@ -21,7 +21,8 @@ std::string to_string(const Finding& finding) {
   text += ": " + finding.message + " [";
   text += finding.rule;
   text += ']';
-  // Names in a file may contain any character. Line breaks belong to the message.
+  // Names in a file may contain any character. Line breaks are kept, because a message may have
+  // several lines.
   std::ranges::replace_if(
       text, [](char c) { return (c >= 0 && c < 0x20 && c != '\n') || c == 0x7F; }, '?');
   return text;

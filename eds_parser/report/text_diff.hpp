@@ -18,9 +18,9 @@ struct DiffLine {
 /// Returns the lines of a text without their ends. LF, CR LF and CR end a line.
 std::vector<std::string_view> lines_of(std::string_view text);
 
-/// Returns the steps from `before` to `after`. Lines that occur once in both texts align them. The
-/// work is bounded: if many lines differ and none of them occurs once in both texts, all of them
-/// count as changed.
+/// Returns the steps from `before` to `after`. The texts are aligned at the lines that occur
+/// exactly once in each of them. The work is bounded: if many lines differ and none of them occurs
+/// exactly once in each text, all of them count as changed.
 std::vector<DiffLine> diff_lines(std::span<const std::string_view> before,
                                  std::span<const std::string_view> after);
 

@@ -123,7 +123,8 @@ struct TimeoutEdit {
 /// The behaviour of the device as SYNC producer.
 struct SyncRule {
   DeviceFact fact;
-  std::optional<Firmware> own_tpdos_from;  ///< first firmware whose own SYNC triggers its TPDOs
+  /// First firmware with which the SYNC that the device produces also triggers its own TPDOs.
+  std::optional<Firmware> own_tpdos_from;
   /// Index of the object that must hold the same identifier as 0x1005. 0 means that there is none.
   std::uint16_t tx_identifier = 0;
 };

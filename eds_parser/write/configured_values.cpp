@@ -129,7 +129,8 @@ class Collector {
   }
 
   /// Returns the number of entries of a mapping whose sub 0 has no value, up to the last configured
-  /// entry. In a gap the device would keep the entry that it has.
+  /// entry. Reports an error if an entry before it has no value, because the device would keep its
+  /// old entry there.
   std::int64_t entries_of(const Object& mapping) {
     std::int64_t number = 0;
     for (const auto& sub : mapping.subs) {

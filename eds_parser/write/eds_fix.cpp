@@ -117,7 +117,8 @@ class FixPass {
   }
 
   /// Returns whether a finding is left as it is. This is the case for most findings on modules: the
-  /// objects of modules are not connected, so nothing shows whether an edit would change them.
+  /// objects of a module that is not connected are not in the dictionary, so nothing shows whether
+  /// an edit would change them.
   bool is_left(const IniSection& section, std::string_view rule) const {
     const SectionName name = classify_section(section);
     if (name.kind == SectionKind::module) {

@@ -229,7 +229,8 @@ void read_emcy(const KeyInput& in, DeviceData& data) {
   }
 }
 
-/// Reads `speed_axis`, which has to be complete here: a node may state a part of it.
+/// Reads `speed_axis`, which has to be complete in the device data. Only a node of a network file
+/// may state a part of it.
 void read_speed_words(const KeyInput& in, DeviceData& data) {
   const std::size_t errors = in.report().errors();
   read_speed_axis(in, data.speed_axis);

@@ -4,9 +4,10 @@ namespace takt {
 namespace {
 
 constexpr IntegerRange feed_forward_axes{1, 8,
-                                         "(axes of a device)"};  // CiA 402: objects at + 0x800
+                                         "(axes of a device)"};  // CiA 402-1: 8 axes, 0x800 apart
 
-/// Checks that a mass or a friction is not negative. The sign of the torque is that of its unit.
+/// Checks that a mass or a friction is not negative. If a positive torque moves the axis in the
+/// negative direction, the scale of the torque unit is negative instead.
 template <auto Member>
 void not_negative(const KeyInput& in, AxisFeedForwardSpec& feed_forward) {
   set(in, feed_forward.*Member);

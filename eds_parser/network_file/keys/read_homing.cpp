@@ -3,7 +3,8 @@
 namespace takt {
 namespace {
 
-constexpr IntegerRange numbers_of_axes{1, 8, "(axes of a device)"};  // CiA 402: objects at + 0x800
+constexpr IntegerRange numbers_of_axes{1, 8,
+                                       "(axes of a device)"};  // CiA 402-1: 8 axes, 0x800 apart
 
 template <auto Member>
 void positive(const KeyInput& in, AxisHomingSpec& homing) {

@@ -29,10 +29,10 @@ enum class KeyType : std::uint8_t {
   range,     ///< a whole number, or `[lowest, highest]`
   value,     ///< any scalar
   map,       ///< a map of `parts`
-  list,      ///< a list of maps of `parts`, or of values or words (or one word) if there are none
+  list,      ///< a list of maps of `parts`; without `parts`, a list of values or words, or one word
   pair,      ///< a list of two numbers
-  mapping,   ///< a list of objects: maps of `parts`, or short as `0x6041:00`
-  numbered,  ///< a map of numbers to maps of `parts`, or to values if there are none
+  mapping,   ///< a list of objects: maps of `parts`, or the short form `0x6041:00`
+  numbered,  ///< a map from numbers to maps of `parts`; without `parts`, to values
   group,     ///< no key, but `parts` that belong to the same map
   foreign,   ///< a key of other programs, which takt accepts with a note
 };
@@ -49,7 +49,7 @@ using KeyRows = std::vector<KeyText>;
 struct RealRange {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  bool without_low = false;  ///< `low` itself is outside
+  bool without_low = false;  ///< `low` itself is not permitted
 
   constexpr bool contains(double number) const noexcept {
     return (without_low ? number > low : number >= low) && number <= high;
@@ -62,7 +62,7 @@ struct KeyValue {
   IntegerRange range{};    ///< range of an integer, or of the numbers of a map
   RealRange numbers{};     ///< range of a number
   IntegerRange entries{};  ///< range of each value, if the key is a list or a map of numbers
-  std::span<const std::string_view> words{};  ///< words that are accepted, beside numbers if any
+  std::span<const std::string_view> words{};  ///< accepted words; the key may also accept numbers
   KeyRows (*parts)() = nullptr;
 };
 
@@ -126,7 +126,8 @@ KeyRows rows_of() {
 }
 
 // Reads the value of a key into a variable of its type. The functions return false after an error,
-// which they report. A type with another form of values has an overload beside its table.
+// which they report. A type whose values have another form has an overload next to its table of
+// keys.
 
 bool read_value(const KeyInput& in, bool& out);
 bool read_value(const KeyInput& in, double& out);
@@ -307,7 +308,7 @@ constexpr auto group() {
   return row;
 }
 
-/// Makes a row for other keys of the same map.
+/// Makes a row that adds the keys of the table `Keys` to the same map.
 template <class T, const auto& Keys>
 constexpr Key<T> also() {
   Key<T> row{{{}, {.type = KeyType::group, .parts = rows_of<Keys>}}};

@@ -58,13 +58,14 @@ class MapReader {
   /// Call this after all keys are taken.
   bool has_slip_of(std::string_view key) const;
 
-  /// Reports a note for each key that is present and belongs to another program. `keys` has blanks
-  /// between them, `why` ends the sentence.
+  /// Reports a note for each key that is present and belongs to another program. `keys` holds the
+  /// names, separated by blanks; `why` is the end of the message.
   void ignore(std::string_view keys, std::string_view why);
   /// Reports every key that was not taken as an error with a suggestion.
   void finish();
   /// Ends the map as finish() does, for a map that another program also reads. A key is an error
-  /// only if it is similar to one that takt reads, otherwise a warning. `why` ends the sentence.
+  /// only if it is similar to one that takt reads, otherwise a warning. `why` is the end of the
+  /// message.
   void finish_shared(std::string_view why);
 
   NetworkReport& report() noexcept { return report_; }

@@ -178,7 +178,8 @@ class YamlTreeBuilder : public YAML::EventHandler {
   const std::string& file_;
   Findings& findings_;
   std::vector<Open> stack_;
-  std::map<YAML::anchor_t, std::pair<YamlNode*, bool>> anchors_;  ///< node, whether it is open
+  /// The node of each anchor; the flag is true while the node is still being read.
+  std::map<YAML::anchor_t, std::pair<YamlNode*, bool>> anchors_;
   YAML::anchor_t anchor_of_ = 0;
   std::size_t merged_ = 0;
 };

@@ -22,7 +22,7 @@ constexpr std::size_t most_kind = 21;
 
 using Rows = std::vector<std::string>;
 
-/// Cuts a text. Bytes behind the first of a character in UTF-8 belong to it.
+/// Cuts a UTF-8 text to at most `size` bytes, but not within a character, and marks the cut by `~`.
 std::string cut_to(std::string text, std::size_t size) {
   if (text.size() <= size) return text;
   std::size_t end = size - 1;

@@ -22,7 +22,7 @@ struct PlanPrint {
 void print_plan_text(std::ostream& out, const BusPlan& plan, const PlanPrint& what);
 
 /// Prints one screen of 24 lines: nodes, axes, cycle, load by PDOs, limits with their sources, and
-/// findings. No line is longer than `width` columns, which are at least 80, unless a word is.
+/// findings. A line has at most `width` columns (80 or more), unless a single word is longer.
 void print_plan_brief(std::ostream& out, const BusPlan& plan, const Findings& findings,
                       std::size_t width = 80);
 
