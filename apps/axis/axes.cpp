@@ -6,8 +6,8 @@
 namespace takt {
 namespace {
 
-/// The places of the axes in the messages are known until taktd restarts. From then on, the values
-/// are 0.
+/// Returns one value for each axis. After a restart of taktd, the places of the axes in the
+/// messages are unknown, and all values are 0.
 template <class State, class Value>
 Eigen::VectorXd of_each(const State& state, Value value) {
   Eigen::VectorXd values = Eigen::VectorXd::Zero(state.size());
@@ -29,7 +29,7 @@ Axes& Axes::operator=(Axes&& other) noexcept {
 
 Axes::~Axes() {
   if (!state_) return;
-  // Nobody is left who could be told about an obstacle, so the result is not used.
+  // A destructor cannot report an obstacle, so the result is not used.
   [[maybe_unused]] const Done done = disable();
 }
 

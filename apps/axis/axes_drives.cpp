@@ -21,8 +21,8 @@ bool Axes::State::is_in_mode_of_motions(Index axis) const {
                                                                : DriveMode::cyclic_position);
 }
 
-/// taktd also looks at the mode of operation before it reports a drive as enabled. In a mode other
-/// than that of its motions, it reports no drive as enabled.
+/// Motion reports of taktd count a drive as enabled only in the mode of operation of taktd's
+/// motions. In another mode, the statusword and the mode that the image shows are checked instead.
 bool Axes::State::is_ready(Index axis) const {
   if (!group.axes().drive(axis).enabled()) return false;
   if (!is_in_mode_of_motions(axis)) return group.axes().in_mode(axis);

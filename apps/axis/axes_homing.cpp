@@ -28,7 +28,7 @@ constexpr std::int8_t has_failed = 3;
 struct Axes::State::HomingRun {
   Index axis;
   std::optional<std::int64_t> started{};  ///< cycle of the first image that shows the start
-  /// The newest time at which the statusword said more than "not started".
+  /// The newest time at which the statusword showed another state than "not started".
   Clock::time_point moved = Clock::now();
   bool done = false;
 };
@@ -159,7 +159,7 @@ std::string Axes::State::trouble_of(HomingRun& run) {
 }
 
 /// Ends the runs, waits until the axes are at rest, and sets cyclic synchronous position mode.
-/// taktd lets the target positions follow the actual ones until the drives obey them.
+/// taktd keeps the target positions equal to the actual positions until the drives follow them.
 Done Axes::State::leave_homing(std::span<const Index> chosen) {
   AxisControl& known = group.axes();
   for (const Index axis : chosen) known.end_homing(axis);

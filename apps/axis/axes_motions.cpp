@@ -163,10 +163,10 @@ Axes::State::Course Axes::State::course_of(Index axis) const {
   return motion->outcome == outcome_refused ? Course::refused : Course::replaced;
 }
 
-/// Returns the state of the motion for all axes together. An axis without an answer counts before
-/// an axis that runs. A refusal counts while the motion is unanswered or runs, because taktd may
-/// also refuse points of a running stream. It does not count when the motion is over, because taktd
-/// then refuses copies of points.
+/// Returns the state of the motion for all axes together. An axis without an answer takes
+/// precedence over an axis that runs. A refusal counts while the motion is unanswered or runs,
+/// because taktd may also refuse points of a running stream. It does not count when the motion is
+/// over, because taktd then refuses copies of points.
 Axes::State::Course Axes::State::course() const {
   if (!has_motion_) return Course::none;
   Course all_axes = Course::done;

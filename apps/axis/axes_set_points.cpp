@@ -8,15 +8,16 @@
 #include "apps/axis/group/signal_format.hpp"
 #include "apps/axis/not_ready.hpp"
 
-// Modes in which this program leads the drives: velocities, torques, and positions to which the
-// drives move by themselves.
+// Modes in which this program commands the drives without motions of taktd: velocities, torques,
+// and positions to which the drives move along their own profiles.
 
 namespace takt {
 namespace {
 
 /// Longest wait until an image shows that set-points were sent.
 constexpr std::chrono::seconds sent_time{1};
-/// An axis that is at standstill for this time before its target has not reached it.
+/// If an axis has been at standstill for this time and its drive does not report the target as
+/// reached, the motion has failed.
 constexpr std::chrono::seconds standing_time{1};
 
 std::string list_of(std::span<const DriveMode> modes) {

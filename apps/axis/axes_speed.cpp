@@ -15,7 +15,7 @@ using std::chrono::nanoseconds;
 /// Number of status_t (10 in a second) in sequence in which another program holds an axis before
 /// enable() gives up.
 constexpr int held_statuses_of_speed = 20;
-/// Cycles in which the last words before release() are sent.
+/// Number of cycles for which the last control words are sent before release().
 constexpr std::int64_t cycles_before_release = 3;
 
 double acceleration_of(const MotionBounds& bounds, Eigen::Index axis) {

@@ -128,7 +128,8 @@ bool Axes::State::lacks_speed_axes() const {
 Done Axes::State::step(Interruption interruption) {
   const Input input = group.wait(axes_tick);
   for (event_t& event : group.take_events()) {
-    // A stop that somebody has requested is a note, but it is the reason why a motion has ended.
+    // Notes are dropped, except for the event about a requested stop: it is the reason why a motion
+    // has ended.
     if (event.severity == 0 && event.kind != "motion_stopped") continue;
     if (events_.size() == most_kept_events) events_.erase(events_.begin());
     events_.push_back(std::move(event));
@@ -153,8 +154,8 @@ Done Axes::State::step(Interruption interruption) {
   return {};
 }
 
-/// taktd knows a program that commands other outputs than those of its motions only by its
-/// commands, so these commands are valid for as long as motions of the program would be.
+/// Signs of life keep only motions alive. If this program commands outputs directly, the time to
+/// live of its commands is therefore set to the timeout of the motions.
 void Axes::State::send_outputs() {
   give_up_after_silence();
   if (speed) {

@@ -30,7 +30,7 @@ inline std::unexpected<Obstacle> obstacle(Obstacle::Kind kind, std::string text)
 
 /// Bit 10 of the statusword. CiA 402-2.
 inline constexpr std::uint16_t target_reached = 0x0400;
-/// Number of cycles in which a drive may still show words from before a command.
+/// Number of cycles after a command in which a drive may still show its old statusword.
 inline constexpr std::int64_t settled_cycles = 10;
 
 /// The state and the functions of an Axes. Waiting is in axes_state.cpp; each other file has the

@@ -63,7 +63,7 @@ Done Axes::State::give_points(std::span<const PathPoint> points) {
                   "the stream has come to rest at its last point: begin_stream() begins another");
 }
 
-/// Sends the rest of the points, also if they are few.
+/// Sends the remaining points, even if they are few.
 void Axes::State::finish_stream() {
   if (!stream_) return;
   stream_->buffer.finish();

@@ -12,11 +12,13 @@ namespace {
 
 constexpr std::int8_t sequence_of_cia402 = 1;
 constexpr std::int8_t reset_by_level = 1;
-/// Images for which the command before a fault reset is sent, so that the drive sees the change.
+/// Number of images in which the command "off" is sent before a fault reset, so that the drive sees
+/// the change.
 constexpr int steps_before_reset = 3;
 /// Longest time for which the set speed changes in one step.
 constexpr double longest_step = 0.05;
-/// A status word that is missing in this number of images in a row is unknown.
+/// If the status word is missing in this number of images in sequence, the state of the drive is
+/// unknown.
 constexpr int most_silent_images = 3;
 /// CiA 402-2, 0x6041.
 constexpr unsigned state_bits = 0x6F;
@@ -91,7 +93,7 @@ void SpeedAxis::read(const ImageInput& input) noexcept {
   state_ = is_ready ? SpeedState::ready : SpeedState::not_ready;
 }
 
-/// A CiA 402 drive that has left Operation enabled by itself is not led back to it automatically.
+/// A CiA 402 drive that has left Operation enabled by itself is not enabled again automatically.
 void SpeedAxis::leave_with_drive() noexcept {
   if (words_.sequence != sequence_of_cia402) return;
   const bool is_enabled = (status_ & state_bits) == operation_enabled;

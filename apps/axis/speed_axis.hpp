@@ -13,7 +13,7 @@ namespace takt {
 enum class SpeedGoal : std::uint8_t {
   off,       ///< The drive is commanded not to move.
   standing,  ///< The drive is ready to run, and at standstill.
-  running,   ///< It runs at the target speed.
+  running,   ///< The drive runs at the target speed.
 };
 
 /// What the status word of a speed axis shows.
@@ -53,7 +53,8 @@ class SpeedAxis {
   SpeedState state() const noexcept { return state_; }
   /// Returns true if the set speed has come to 0 and the drive shows that it is at standstill.
   bool stands() const noexcept;
-  /// Returns true if the drive obeys the command to run, or has no state that shows it.
+  /// Returns true if the goal is to run and the status word shows that the drive runs. Also returns
+  /// true if the status word cannot show this.
   bool runs() const noexcept;
   /// Returns the actual speed, or the commanded one if no TPDO carries it.
   double speed() const noexcept { return words_.actual_speed < 0 ? commanded_ : actual_; }

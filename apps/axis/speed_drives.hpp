@@ -13,7 +13,8 @@
 namespace takt {
 
 /// The speed axes that an Axes commands, in its order. It computes the values of one command_t from
-/// each image; whoever owns it sends them. taktd lets the drives stop when no command comes.
+/// each image; the owner of this object sends them. taktd lets the drives stop when no command
+/// comes.
 class SpeedDrives {
  public:
   using Index = Eigen::Index;
@@ -46,7 +47,7 @@ class SpeedDrives {
   bool any(const Is& is) const {
     return std::ranges::any_of(axes_, is);
   }
-  /// Returns true if at least one axis is to run, or does not stand.
+  /// Returns true if at least one axis is to run, or is not at standstill.
   bool moving() const;
   /// Returns true if this is the node-ID of an axis.
   bool has_node(std::int16_t node) const;

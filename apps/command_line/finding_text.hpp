@@ -13,8 +13,8 @@ inline std::string finding_text(const Finding& finding) {
   return printable_text(to_string(finding));
 }
 
-/// Prints the findings of at least this severity on stderr. Returns true if one of all findings is
-/// an error.
+/// Prints the findings of at least this severity on stderr. Returns true if any finding is an
+/// error, even one that is not printed.
 inline bool print_findings(const Findings& findings, Severity least = Severity::note) {
   for (const Finding& finding : findings) {
     if (finding.severity >= least) std::cerr << finding_text(finding) << '\n';

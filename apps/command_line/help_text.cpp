@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t usual_width = 80;
 constexpr std::size_t narrow = 70;     // in narrower terminals, descriptions are below the names
-constexpr std::size_t full_line = 70;  // a line that was broken because it was full
+constexpr std::size_t full_line = 70;  // a line of at least this length continues in the next one
 constexpr std::size_t narrow_indent = 6;
 
 std::vector<std::string_view> lines_of(std::string_view text) {
@@ -125,7 +125,8 @@ void add_options(std::string_view text, std::size_t column, Wrapper& out, std::s
   }
 }
 
-/// Joins lines that only the width of the source broke, and breaks them anew.
+/// Joins lines that were broken only because the lines of the source code are limited, and breaks
+/// them anew.
 void add_notes(std::string_view text, Wrapper& out) {
   const auto lines = lines_of(text);
   for (std::size_t i = 0; i < lines.size(); ++i) {

@@ -6,8 +6,8 @@
 
 namespace takt {
 
-/// Returns the width of the terminal at stdout, in columns from 40 to 100. Without a terminal
-/// COLUMNS counts, otherwise 80.
+/// Returns the width of the terminal at stdout, in columns from 40 to 100. Without a terminal, the
+/// environment variable COLUMNS states the width, and the default is 80.
 std::size_t text_width();
 
 /// Breaks a text at its spaces into lines of at most `width` columns. A longer word is broken

@@ -7,8 +7,8 @@
 namespace takt {
 
 /// Returns a message on the first unknown command or option of a command line, with the name that
-/// is most likely meant. Empty if all names are known. CLI11 itself would report what is missing
-/// instead.
+/// is most likely meant. The message is empty if all names are known. CLI11 itself would report
+/// what is missing instead.
 std::string unknown_word(const CLI::App& app, int argc, const char* const* argv);
 
 /// Parses the command line of a program. Returns the exit code if the program ends with it, because

@@ -17,7 +17,7 @@ struct FollowOptions {
   double modulo = 0.0;
   Time filter_time{};  ///< 0: the default of taktd
   double max_phase_error = 0.0;
-  double velocity = 0.0;  ///< 0: the limit of the network file; acceleration and jerk alike
+  double velocity = 0.0;  ///< 0: the limit of the network file; also for acceleration and jerk
   double acceleration = 0.0;
   double jerk = 0.0;
   std::optional<Time> seconds;  ///< time for which the axis follows

@@ -27,7 +27,8 @@ Done FollowRun::run() {
   return followed || asked ? disabled : followed;
 }
 
-/// Follows the leader until the time is over. Only the time in which the axis is locked is counted.
+/// Follows the leader until the time is over. Only the time in which the axis is locked to its
+/// leader counts.
 Done FollowRun::follow() {
   Gear gear{.leader = options_.leader,
             .signal = options_.signal,

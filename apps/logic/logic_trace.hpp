@@ -7,8 +7,8 @@
 
 namespace takt {
 
-/// Keeps how the values of a LogicProgram change, for a picture. The memory is bounded: after
-/// `most_changes` it keeps nothing more, and the picture says so.
+/// Records the changes of the values of a LogicProgram, for a picture. The memory is bounded: after
+/// `most_changes` nothing more is recorded, and the picture states this.
 class LogicTrace {
  public:
   static constexpr std::size_t most_changes = 20'000;

@@ -18,14 +18,14 @@ struct WrittenExpression {
   SourcePos pos;
   Expression expression;
 
-  /// Returns the place of a name in it.
+  /// Returns the place of a name in this expression.
   SourcePos pos_of(const NameUse& use) const;
 };
 
 /// What a rule does with its target.
 enum class RuleKind : std::uint8_t {
   set,    ///< the target is on while `first` is true, after the delays
-  latch,  ///< `first` sets the target, `second` resets it and wins
+  latch,  ///< `first` sets the target, `second` resets it and has priority
   count,  ///< the target counts how often `first` has become true; `second` resets it
 };
 

@@ -6,8 +6,8 @@
 namespace takt {
 namespace {
 
-/// A larger delay is a stall of the machine and not ordinary scheduling, which a real bus would
-/// see.
+/// A larger delay counts as a stall of the machine. A smaller one is an ordinary delay by the
+/// scheduler, which devices on a real bus would also see.
 constexpr Time longest_lag = std::chrono::milliseconds{1};
 
 }  // namespace

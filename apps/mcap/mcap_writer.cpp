@@ -7,8 +7,8 @@
 namespace takt::mcap {
 namespace {
 
-/// An upper bound for the records that end a file, without schemas, channels, indexes of chunks and
-/// the counts of channels.
+/// An upper bound for the size of the records at the end of a file, without schemas, channels,
+/// indexes of chunks and the counts of channels.
 constexpr std::uint64_t ending_bytes = 512;
 /// Size of the count of one channel in the statistics.
 constexpr std::uint64_t count_bytes = 10;
@@ -40,7 +40,7 @@ ChannelId McapWriter::add(const Channel& channel) {
   std::string schema;
   {
     const Record record{schema, Opcode::schema};
-    put(schema, id);  // each channel has a schema of its own
+    put(schema, id);  // each channel has a separate schema
     put_text(schema, channel.schema_name);
     put_text(schema, channel.schema_encoding);
     put_text(schema, channel.schema);

@@ -7,7 +7,7 @@
 
 namespace takt::mcap {
 
-/// Begins and ends each file.
+/// The bytes with which each file begins and ends.
 inline constexpr std::string_view magic{"\x89MCAP0\r\n", 8};
 
 /// First byte of each record.

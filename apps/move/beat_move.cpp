@@ -14,8 +14,8 @@ namespace {
 constexpr std::chrono::milliseconds pause{50};
 /// Time between two stop messages if no image comes.
 constexpr std::chrono::milliseconds stop_pause{10};
-/// After this number of images, taktd has taken a command. The set-points of taktd are at most
-/// three cycles ahead of the images.
+/// Number of images after which taktd has certainly received a command. The set-points of taktd are
+/// at most three cycles ahead of the images.
 constexpr int images_to_stop = 20;
 /// The move stops if this program is silent for this time, as a move by set-points would stop.
 constexpr std::int32_t timeout_ms = 1000;

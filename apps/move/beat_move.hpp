@@ -11,8 +11,9 @@
 
 namespace takt {
 
-/// A move of all axes of a group that taktd runs itself. taktd offers it if it answers a sign of
-/// life with a motion_t that shows each axis. With `--no-motions` it answers with an event.
+/// A move of all axes of a group that taktd runs itself. taktd offers such moves if it answers a
+/// sign of life with a motion_t that contains each axis. If taktd runs with `--no-motions`, it
+/// answers with an event.
 ///
 /// While the axes move, only this class sends: taktd refuses set-points of a moving axis.
 class BeatMove {

@@ -29,13 +29,12 @@ class MoveRun {
 
  private:
   using Trajectory = std::function<Eigen::VectorXd(double seconds)>;
-  /// The number of times that a move has begun again after pauses, and the success of the new
-  /// begins.
+  /// The restarts of a move after pauses, and their success.
   struct NewBegins {
     double whole;                  ///< first distance from the target
-    double distance_then = whole;  ///< distance at the newest begin
-    int count = 0;                 ///< number of all new begins
-    int vain = 0;  ///< number of new begins in sequence that came no nearer to the target
+    double distance_then = whole;  ///< distance at the newest restart
+    int count = 0;                 ///< number of all restarts
+    int vain = 0;  ///< number of restarts in sequence that came no nearer to the target
 
     void next(double distance);
   };

@@ -15,7 +15,8 @@ constexpr double longest_silence = 2.0;
 constexpr int silent_periods = 20;
 /// Longest wait for the event with the reason of a stop.
 constexpr int reason_images = 20;
-/// Most new begins of a move that comes nearer to its target each time, and of one that does not.
+/// Largest number of restarts of a move, and largest number of restarts in sequence that come no
+/// nearer to the target.
 constexpr int most_new_begins = 10;
 constexpr int most_vain_begins = 3;
 /// A move has come nearer to its target if it has covered at least this part of its first distance
@@ -53,9 +54,9 @@ bool MoveRun::knows_beat() {
   return beat_.offered() || progress_.has_said("motion_refused");
 }
 
-/// Lets taktd run the move to this point, and watches it. A move that taktd has stopped because the
-/// bus or this program paused begins again as long as it comes nearer to its target. Returns false
-/// if it does not come to its end.
+/// Lets taktd run the move to this point, and watches it. If taktd has stopped the move because the
+/// bus or this program paused, the move begins again as long as it comes nearer to its target.
+/// Returns false if the move does not reach its end.
 bool MoveRun::watch_beat(const Eigen::VectorXd& to) {
   beat_begin_.reset();
   NewBegins begins{(to - beat_.positions()).norm()};
@@ -72,7 +73,7 @@ bool MoveRun::watch_beat(const Eigen::VectorXd& to) {
     beat_.begin(to, limits());
     std::string why = watch_course();
     if (restarted_) return false;
-    axes_.set_positions(beat_.positions());  // so that further commands are no jump
+    axes_.set_positions(beat_.positions());  // so that further commands cause no jump
     const BeatMove::Course course = beat_.course();
     if (why.empty() && (stop_ != 0 || course == BeatMove::Course::done)) return true;
     if (why.empty()) why = objection(course, begins, to);
@@ -94,8 +95,8 @@ void MoveRun::wait_before_begin() {
   }
 }
 
-/// Watches the move until it is over. Returns why this program has ended it; empty if taktd or a
-/// signal has ended it.
+/// Watches the move until it is over. Returns why this program has ended the move. The text is
+/// empty if taktd or a signal has ended it.
 std::string MoveRun::watch_course() {
   using Course = BeatMove::Course;
   const double longest = std::max(longest_silence, silent_periods * period());
@@ -158,7 +159,8 @@ void MoveRun::NewBegins::next(double distance) {
   distance_then = distance;
 }
 
-/// Returns why a move that taktd has ended does not begin again; empty if it may.
+/// Returns why a move that taktd has ended does not begin again. The text is empty if the move may
+/// begin again.
 std::string MoveRun::objection(BeatMove::Course course, const NewBegins& begins,
                                const Eigen::VectorXd& to) {
   if (course == BeatMove::Course::refused) return "taktd has refused the move";

@@ -15,14 +15,14 @@ struct MoveSizes {
 };
 
 /// Returns the sizes that the user asked for, and defaults for all others. The defaults depend on
-/// the unit of the axis; an empty unit stands for raw counts.
+/// the unit of the axis; an empty unit means raw counts.
 MoveSizes sizes_for(const MoveOptions& options, const std::string& unit);
 
 /// Shortest durations of the parts of a motion, in seconds. 0 means that the motion does not have
 /// this part.
 struct MotionTime {
-  double move = 0.0;  ///< part of the move to the point
-  double sine = 0.0;  ///< part of one period of the sine
+  double move = 0.0;  ///< duration of the move to the point
+  double sine = 0.0;  ///< duration of one period of the sine
 };
 
 /// Returns a sentence about a motion that does not end within `limit` seconds. The sentence is

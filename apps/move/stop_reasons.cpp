@@ -10,8 +10,8 @@ namespace takt {
 namespace {
 
 constexpr std::size_t most_reasons = 64;
-/// The beginnings of the texts of taktd for a sender that was silent, for missing SYNCs, and for
-/// cycles in which the set-points were not sent.
+/// The beginnings of the causes that count as pauses, as the events of taktd state them: a sender
+/// that was silent, missing SYNCs, and cycles in which the set-points were not sent.
 constexpr std::array<std::string_view, 3> pauses{"its sender was silent", "SYNC was missing",
                                                  "its set-points were not sent"};
 

@@ -99,8 +99,8 @@ void BusRun::watch_lateness() {
 }
 
 /// Ends the run if the boot of a mandatory node fails before the node was ever ready. The run
-/// continues if the next attempt of the boot asks the node in another way. A node that was ready
-/// before is booted again by its plan, while the other nodes continue.
+/// continues if the next boot attempt probes the node in another way (Notice::asks_on). A node that
+/// was ready before is booted again by its plan, while the other nodes continue.
 void BusRun::on_notice(const Notice& notice) {
   front_.reporter.announce(network_.plan, notice);
   recorder_.on_fault(notice);
@@ -171,7 +171,8 @@ bool BusRun::complete() {
   return recorded;
 }
 
-/// Sets the exit code if some axis was not seen at standstill and disabled.
+/// Sets the exit code if the ordered stop was not confirmed: at least one axis was not seen at
+/// standstill and then disabled.
 void BusRun::judge_stop() {
   StatusSnapshot snapshot;
   master_->status(snapshot);

@@ -76,8 +76,8 @@ class BusRun {
   /// Returns true if the end of the ordered stop is overdue at `now`.
   bool overdue(Time now) const noexcept { return stopping_ && now > stop_limit_; }
 
-  /// Completes a run whose ordered stop is over: judges the stop, completes the recording and
-  /// writes the summary. Returns false if a recording is still being written.
+  /// Completes a run whose ordered stop is over: checks the result of the stop, completes the
+  /// recording and writes the summary. Returns false if a recording is still being written.
   bool complete();
   /// Completes a run whose ordered stop is not over, and saves what has been recorded. `by_signal`:
   /// a second stop signal has ended the stop, not its time limit.

@@ -34,7 +34,7 @@ class Recorder {
   void on_fault(const Notice& notice);
   /// Begins a recording, if there is a black box.
   void record(const std::string& why, Time now);
-  /// Begins and ends the recordings that are due. To be called often.
+  /// Begins and ends the recordings that are due. Call this often.
   void serve(Time now);
   /// Call this after the bus thread has ended. Waits for at most `limit`. Returns false if a
   /// recording is still being written; the destructor would wait for it.

@@ -171,7 +171,7 @@ void AxisGroup::State::report_schema(std::int16_t schema) {
 void AxisGroup::State::serve() {
   std::vector<pollfd> descriptors;
   int ready = 1;
-  for (int i = 0; i < most_rounds && ready > 0; ++i) {  // empties the queue: only the newest counts
+  for (int i = 0; i < most_rounds && ready > 0; ++i) {  // empties the queue
     input.set_time(std::chrono::nanoseconds{Clock::now().time_since_epoch()}.count());
     lcm->serve(
         [this](std::string_view channel, std::span<const std::byte> data) { take(channel, data); });

@@ -10,8 +10,9 @@
 namespace takt {
 namespace {
 
-/// Counts by which the target position of a drive that is not enabled may be apart from the actual
-/// one, and the images after which this program sends it.
+/// Largest permitted distance, in counts, between target and actual position of a drive that is not
+/// enabled. If the distance is larger in more than `most_lagging` images in sequence, this program
+/// sends the target position.
 constexpr double most_counts_apart = 100;
 constexpr int most_lagging = 4;
 // Bit 4 of the controlword in these modes.
@@ -21,7 +22,7 @@ constexpr std::uint16_t enable_interpolation = 0x10;
 constexpr std::uint16_t enable_operation = 0x000F;  // command in the controlword
 constexpr std::uint16_t stays_halted = 0x100;       // bit of the controlword, in all modes
 
-/// Returns true if drives obey the target position in this mode.
+/// Returns true if drives follow the target position in this mode.
 bool is_position_mode(std::int8_t mode) noexcept {
   return mode == std::to_underlying(DriveMode::profile_position) ||
          mode == std::to_underlying(DriveMode::interpolated_position) ||
@@ -33,7 +34,7 @@ bool missing(AxisSignals::Position signal, const ImageInput& input) {
 }
 
 /// Returns true if the image carries a target position and a controlword that enables operation, so
-/// that the drive obeys this target.
+/// that the drive follows this target.
 bool shows_set_points(const AxisSignals& signals, const ImageInput& input) {
   const std::int64_t controlword = input.values()[*signals.controlword];
   return signals.target_position && (controlword & enable_operation) == enable_operation;
@@ -93,7 +94,7 @@ void AxisControl::State::step(Axis& axis, const ImageInput& input) {
   axis.stale = missing(axis.signals.statusword, input) || missing(axis.signals.position, input);
   const auto mode = axis.signals.mode_display ? axis.signals.mode_display : axis.signals.mode;
   if (mode) axis.shown_mode = static_cast<std::int8_t>(input.values()[*mode]);
-  if (missing(axis.signals.statusword, input)) return;  // The last controlword is held.
+  if (missing(axis.signals.statusword, input)) return;  // The axis keeps its controlword.
   axis.statusword = static_cast<std::uint16_t>(input.values()[*axis.signals.statusword]);
   const bool known = axis.seeded || !missing(axis.signals.position, input);
   const bool placed = known && axis.lagging == 0;
@@ -150,7 +151,7 @@ void AxisControl::State::make_controls(std::span<const Index> chosen) {
   command.num_values = static_cast<std::int32_t>(command.values.size());
 }
 
-/// taktd leads the target position again as soon as the drive is in cyclic synchronous position
+/// taktd commands the target position again as soon as the drive is in cyclic synchronous position
 /// mode. Drives read a set-point of profile position mode only when the handshake begins.
 void AxisControl::State::put_position(Index index) {
   Axis& axis = at(index);
@@ -168,8 +169,8 @@ void AxisControl::State::put_position(Index index) {
 }
 
 /// Returns true if a drive that is not enabled would jump when it is enabled, because its target
-/// position is far from its actual one. taktd lets the target follow from the first command on,
-/// unless another program has commanded one before.
+/// position is far from its actual one. taktd lets the target follow the actual position from the
+/// first command on, unless another program has commanded a target before.
 bool AxisControl::State::lags(Index index) const {
   const Axis& axis = axes[static_cast<std::size_t>(index)];
   if (axis.drive.enabled() || axis.stale || !axis.signals.position) return false;

@@ -27,7 +27,7 @@ struct AxisControl::State {
     bool seeded = false;  // true if the target position has been set from a valid value
     DriveMode commanded_mode = DriveMode::cyclic_position;
     int lagging = 0;              // images in sequence in which the target position lags
-    bool sends_position = false;  // controls() sends target positions: taktd does not lead them
+    bool sends_position = false;  // controls() sends target positions instead of taktd
     bool halts = false;           // bit 8 of the controlword is set
     bool homes = false;           // bit 4 of the controlword is set in homing mode
   };

@@ -10,7 +10,8 @@ namespace {
 /// Most signals of a layout. It bounds the memory that a layout can make this program allocate.
 constexpr std::int32_t most_signals = 65536;
 constexpr std::int16_t most_parts = 4096;
-/// This number of unexpected images that follow each other determines the true cycle of the bus.
+/// After this number of unexpected images in sequence, their cycle number is accepted as that of
+/// the bus.
 constexpr int most_strange = 3;
 constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::int64_t quiet_periods = 20;
@@ -89,8 +90,9 @@ void ImageInput::finish() {
   stale_.assign(signals_.size(), 0);
 }
 
-/// While images of the present session arrive, a forged layout changes nothing. A taktd that was
-/// restarted repeats its layout once a second, so that nothing is lost.
+/// Returns true while images of the present session arrive. A layout of another session is then
+/// ignored, because it may be forged. If taktd was really restarted, nothing is lost, because it
+/// repeats its layout once a second.
 bool ImageInput::session_lives() const noexcept {
   return has_image_ && now_ns_ - image_ns_ < std::max(quiet_ns, quiet_periods * period_ns_);
 }
@@ -109,8 +111,8 @@ bool ImageInput::is_next(std::int64_t cycle) const noexcept {
   return new_cycle_ < 0 || cycles_between(new_cycle_, cycle) <= std::max(a_second, least_ahead);
 }
 
-/// Call this for an image that does not follow the newest one. Returns true if it is the third of
-/// such images in sequence that follow each other.
+/// Call this for an image that does not follow the newest one. Returns true for the third such
+/// image in sequence, if the cycle numbers of the three ascend without large gaps.
 bool ImageInput::is_confirmed(std::int64_t cycle) noexcept {
   if (strange_images_ != 0 && cycle == strange_cycle_) return false;  // same image, another part
   const bool follows = strange_images_ != 0 && cycle > strange_cycle_ &&

@@ -5,8 +5,8 @@
 
 namespace takt {
 
-/// Returns how to interpret a value of the image. A description that makes no sense gives raw
-/// counts.
+/// Returns how to interpret a value of the image. If the description is invalid, the value is
+/// interpreted as raw counts.
 ValueFormat format_of(const signal_t& signal);
 
 }  // namespace takt

@@ -51,8 +51,9 @@ std::string StreamBuffer::add(motion_point_t point) {
   return {};
 }
 
-/// The report does not say which points the bus thread has. The time of the stream is that of one
-/// of them minus `time_left`, and it does not pass faster than the cycles.
+/// The report does not say which of the sent points is the last one that the bus thread has. The
+/// time of the stream is the time of that point minus `time_left`. The function takes the newest
+/// sent point for which this time does not advance faster than the cycles.
 void StreamBuffer::observe(std::int64_t cycle, double time_left) noexcept {
   const double latest = passed_ + (static_cast<double>(cycle - passed_cycle_) + 0.5) * period_;
   for (std::int64_t number = next_ - 1; number >= first_; --number) {
@@ -87,7 +88,7 @@ std::int64_t StreamBuffer::waiting_before(std::int64_t number) const noexcept {
 
 bool StreamBuffer::is_open(std::int64_t number) const noexcept {
   if (number == 0) return true;
-  // Half a cycle is more than the times lose by rounding.
+  // Half a cycle is more than the rounding errors of the times.
   return time_of(number - 1) - passed_ < lead - period_ / 2 &&
          waiting_before(number) < most_waiting;
 }

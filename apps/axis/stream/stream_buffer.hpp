@@ -28,7 +28,8 @@ class StreamBuffer {
   /// Appends a point. Returns what is wrong with it, or an empty text. A point at time 0 replaces
   /// the point at which the stream begins.
   std::string add(motion_point_t point);
-  /// No further points come for the time being, so the stream begins with those that are there.
+  /// Call this if no further points come for the time being. The stream then begins with the points
+  /// that are there.
   void finish() noexcept { starts_ = true; }
   /// Takes a report of this cycle: the stream runs, and its points end in `time_left` seconds.
   void observe(std::int64_t cycle, double time_left) noexcept;
@@ -37,7 +38,7 @@ class StreamBuffer {
 
   /// Returns true if all points are sent, or are sent soon, so that further ones may come.
   bool has_room() const noexcept;
-  /// Returns true if there is a point after that where the stream begins.
+  /// Returns true if there is at least one point besides that at which the stream begins.
   bool has_points() const noexcept { return end() > 1; }
 
  private:
@@ -49,7 +50,7 @@ class StreamBuffer {
   }
   /// Returns the number of points before this one that are not reached yet.
   std::int64_t waiting_before(std::int64_t number) const noexcept;
-  /// Returns true if another point may be sent after those before this number.
+  /// Returns true if the point with this number may be sent now, after all points before it.
   bool is_open(std::int64_t number) const noexcept;
   void forget_reached();
   Due due(std::int64_t cycle) const noexcept;

@@ -16,7 +16,7 @@ struct TracedAxis {
   std::int8_t axis = 1;  ///< axis of the device, 1 to 8
   std::string name = {};
   bool has_velocity = false;  ///< its actual velocity (0x606C) is in a TPDO
-  std::string unit = {};      ///< of its positions; empty: raw counts
+  std::string unit = {};      ///< unit of its positions; empty: raw counts
 };
 
 /// Keeps the reports of taktd about the motions of all axes in each cycle. The memory is bounded:
@@ -28,8 +28,8 @@ class MotionTrace {
 
   /// Takes one message. The reports of one cycle may come in several messages.
   void take(const motion_t& message);
-  /// Returns the picture of these axes, or one without panels if nothing was reported of them.
-  /// `period` is that of SYNC, in seconds.
+  /// Returns the picture of these axes, or a picture without panels if taktd has reported nothing
+  /// about them. `period` is that of SYNC, in seconds.
   Plot plot(std::string title, std::span<const TracedAxis> axes, double period) const;
 
  private:

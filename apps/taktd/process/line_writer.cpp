@@ -48,8 +48,9 @@ std::size_t write_all(int fd, std::string_view text) noexcept {
 }
 
 /// Writes what the file accepts at once, although the descriptor may be blocking. A pipe that is
-/// ready accepts a short text as a whole. A terminal may be ready and yet accept nothing, so that
-/// its descriptor is non-blocking during this call; programs that share it hardly notice.
+/// ready accepts a short text as a whole. A terminal may be ready and yet accept nothing. Its
+/// descriptor is therefore made non-blocking during this call, which other programs that share the
+/// descriptor hardly notice.
 ssize_t write_at_once(int fd, std::string_view text) noexcept {
   const ssize_t sent = ::send(fd, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   if (sent >= 0 || errno != ENOTSOCK) return sent;

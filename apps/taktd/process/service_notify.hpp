@@ -17,7 +17,7 @@ class ServiceNotify {
     const auto us = std::chrono::duration_cast<std::chrono::microseconds>(limit).count();
     send("STOPPING=1\nEXTEND_TIMEOUT_USEC=" + std::to_string(us));
   }
-  /// Resets the watchdog. To be called while the daemon works, as often as convenient.
+  /// Resets the watchdog. Call this as often as convenient while the daemon works.
   void alive(Time now);
 
  private:

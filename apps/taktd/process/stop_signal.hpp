@@ -23,7 +23,7 @@ class StopSignal {
   /// ordered stop begins at once, whatever the front thread is doing. If a stop signal has already
   /// arrived, the call itself sets `request`.
   static void stop_with(std::atomic<bool>& request) noexcept;
-  /// Ends stop_with() for all flags. To be called before the first of them is destroyed.
+  /// Ends stop_with() for all flags. Call this before the first flag is destroyed.
   static void forget_stops() noexcept;
   /// From this call on, the signals interrupt the calling thread at any point. Threads that it
   /// starts inherit the mask.

@@ -4,7 +4,7 @@ namespace takt {
 namespace {
 
 constexpr IntegerRange feed_forward_axes{1, 8,
-                                         "(axes of a device)"};  // CiA 402-1: 8 axes, 0x800 apart
+                                         "(axes of a device)"};  // CiA 402: 8 axes, 0x800 apart
 
 /// Checks that a mass or a friction is not negative. If a positive torque moves the axis in the
 /// negative direction, the scale of the torque unit is negative instead.

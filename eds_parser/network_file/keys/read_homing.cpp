@@ -3,8 +3,7 @@
 namespace takt {
 namespace {
 
-constexpr IntegerRange numbers_of_axes{1, 8,
-                                       "(axes of a device)"};  // CiA 402-1: 8 axes, 0x800 apart
+constexpr IntegerRange numbers_of_axes{1, 8, "(axes of a device)"};  // CiA 402: 8 axes, 0x800 apart
 
 template <auto Member>
 void positive(const KeyInput& in, AxisHomingSpec& homing) {

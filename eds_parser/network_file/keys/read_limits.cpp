@@ -3,7 +3,7 @@
 namespace takt {
 namespace {
 
-constexpr IntegerRange axis_numbers{1, 8, "(axes of a device)"};  // CiA 402-1: 8 axes, 0x800 apart
+constexpr IntegerRange axis_numbers{1, 8, "(axes of a device)"};  // CiA 402: 8 axes, 0x800 apart
 
 /// Reads a limit without a sign, which must be greater than zero.
 template <auto Member>
