@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::int64_t halt_bit = 0x0100;  // bit 8 of the controlword
 
-/// Returns true if bit 10 of the statusword does not say that an axis is at standstill in this
-/// mode.
+/// Returns true for a mode in which bit 10 of the statusword does not mean that the axis is at
+/// standstill.
 bool has_own_set_points(DriveMode mode) noexcept {
   using enum DriveMode;
   return mode == profile_velocity || mode == cyclic_velocity || mode == profile_torque ||

@@ -12,7 +12,7 @@ using std::chrono::nanoseconds;
 
 /// Longest wait for the answer of taktd to a motion.
 constexpr std::chrono::seconds answer_time{2};
-/// Longest wait for the event with the reason of an end.
+/// Longest wait for the event that gives the reason why a motion has ended.
 constexpr std::chrono::milliseconds reason_time{100};
 /// Number of cycles between two stop messages, until the axes are at rest.
 constexpr std::int64_t cycles_between_stops = 4;
@@ -80,7 +80,8 @@ Done Axes::State::wait_for_begin(const MotionBounds& bounds) {
                     "a motion needs cyclic synchronous position mode (8) on all axes: call "
                     "set_mode() first");
   }
-  // taktd refuses a motion that comes from the image of a stop, or from an earlier one.
+  // taktd refuses a motion that was computed from the image of the newest stop or from an earlier
+  // image.
   const auto newer =
       wait_until([this] { return group.input().cycle() > stop_cycle_; }, options.longest);
   if (!newer) return obstacle(Obstacle::Kind::time_over, "no image has come since the stop");
@@ -237,7 +238,8 @@ Done Axes::State::stop() {
   stream_.reset();
   if (sending_ == Sending::nothing) return {};
   if (!has_motion_ && !moving()) return stop_set_points();
-  // taktd refuses a stop from an old image, so the messages that wait are read first.
+  // taktd refuses a stop that was computed from an old image, so the waiting messages are read
+  // first.
   const Done heard = step(Interruption::ignored);
   if (!is_current()) return heard;
   return stop_now();

@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint16_t function_object = 0x60B8;
 constexpr std::uint16_t status_object = 0x60B9;
 constexpr std::uint16_t first_position = 0x60BA;  // position of input 1 at its rising edge
-// Bits of the function and of the status for input 1; those of input 2 are 8 bits above.
+// Bits of the touch probe function and status for input 1. Those of input 2 are 8 bits higher.
 constexpr unsigned armed = 0x01;
 constexpr unsigned by_index_pulse = 0x04;
 constexpr unsigned at_rising = 0x10;

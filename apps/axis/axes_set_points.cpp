@@ -250,7 +250,7 @@ Done Axes::State::hand_over(std::span<const Index> chosen, const Values& positio
   return obstacle(Obstacle::Kind::refused, why);
 }
 
-/// Waits until the drives say that they have reached their targets.
+/// Waits until the drives report that they have reached their targets.
 Done Axes::State::wait_for_profiles(std::chrono::nanoseconds longest) {
   const AxisControl& known = group.axes();
   const std::int64_t patience = standing_time / std::max<std::chrono::nanoseconds>(
@@ -286,8 +286,8 @@ Done Axes::State::wait_for_profiles(std::chrono::nanoseconds longest) {
 }
 
 /// Brings axes to rest that are not in cyclic synchronous position mode. A drive in profile
-/// position mode gets a Halt and then its own position as target, because without this target it
-/// would continue when the Halt ends.
+/// position mode gets a Halt and then its own position as target, because otherwise the drive would
+/// continue to its old target when the Halt ends.
 Done Axes::State::stop_set_points() {
   profile_targets_.reset();
   const auto slowed = slow_down();

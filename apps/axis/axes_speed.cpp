@@ -4,8 +4,8 @@
 
 #include "apps/axis/axes_state.hpp"
 
-// The calls of Axes for speed axes. This program computes the words of the axes from each image.
-// taktd stops the axes when this program is silent.
+// The calls of Axes for speed axes. This program computes the control words and set speeds of the
+// axes from each image. taktd stops the axes when this program is silent.
 
 namespace takt {
 namespace {
@@ -60,8 +60,8 @@ void Axes::State::end_stopped_run() {
   if (!stopped_text_.empty()) speed->end_run();
 }
 
-/// Sends the words that follow from the newest image. A program that was silent for longer than its
-/// timeout must not make the drives run again by itself.
+/// Sends the control words and set speeds that follow from the newest image. A program that was
+/// silent for longer than its timeout must not make the drives run again by itself.
 void Axes::State::send_speeds() {
   const auto now = Clock::now();
   const bool was_silent = sending_ != Sending::nothing && now - last_sent_ > options.timeout;
@@ -197,8 +197,8 @@ Done Axes::State::begin_run(const Values& velocities, const MotionBounds& bounds
   }
   events_.clear();
   stopped_text_.clear();
-  // The messages that wait are read first: after a long silence, they report that the drives were
-  // stopped.
+  // The waiting messages are read first. After a long silence of this program, they report that the
+  // drives were stopped.
   if (const Done heard = step(Interruption::obeyed); !heard) return heard;
   if (const std::string why = why_speed_ended(); !why.empty()) {
     return obstacle(Obstacle::Kind::blocked, why);

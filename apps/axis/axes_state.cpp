@@ -162,7 +162,7 @@ void Axes::State::send_outputs() {
     send_speeds();
   } else {
     has_begun_ |= has_motion_ && course() != Course::unanswered && course() != Course::refused;
-    // taktd keeps a drive enabled by signs of life only after a motion of it has begun.
+    // Signs of life keep a drive enabled only after a motion of this drive has begun.
     const bool waits = sending_ == Sending::alive && !has_begun_;
     const bool lasts = waits || !held_.empty() || any([this](Index axis) {
                          return !is_in_mode_of_motions(axis) || !group.axes().in_mode(axis);

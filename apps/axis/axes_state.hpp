@@ -33,9 +33,9 @@ inline constexpr std::uint16_t target_reached = 0x0400;
 /// Number of cycles after a command in which a drive may still show its old statusword.
 inline constexpr std::int64_t settled_cycles = 10;
 
-/// The state and the functions of an Axes. Waiting is in axes_state.cpp; each other file has the
-/// code of the calls that it names: drives, halt, homing, motions, stream, gear, speed, set_points,
-/// objects, signals, ramps and probe.
+/// The state and the functions of an Axes. Waiting is in axes_state.cpp; each of the other files
+/// has the code of the calls after which it is named: drives, halt, homing, motions, stream, gear,
+/// speed, set_points, objects, signals, ramps and probe.
 class Axes::State {
  public:
   using Clock = ProgramClock;
@@ -102,9 +102,9 @@ class Axes::State {
   Done run_speed(const Values& velocities, const MotionBounds& bounds);
   Done wait_speed(std::chrono::nanoseconds longest);
   Done stop_speed();
-  /// Returns the obstacle of a call for drives of CiA 402.
+  /// Returns the obstacle of a call that only CiA 402 drives have, for a speed axis.
   Done no_drive() const;
-  /// Returns the obstacle of a call that needs positions.
+  /// Returns the obstacle of a call that needs positions, for a speed axis.
   Done no_position() const;
 
   Index size() const noexcept { return static_cast<Index>(names.size()); }
@@ -164,7 +164,7 @@ class Axes::State {
   Done stop_set_points();
   Eigen::VectorXd actual_positions() const;
 
-  /// Returns the object of this axis that has this index for the first axis of a device.
+  /// Returns an object of this axis; `index` is its index on the first axis of a device.
   Object object_of_axis(Index axis, std::uint16_t index) const;
   Done write_of_axis(Index axis, std::uint16_t index, std::int64_t raw, std::size_t bytes);
   std::expected<std::int64_t, Obstacle> read_of_axis(Index axis, std::uint16_t index);
@@ -201,14 +201,14 @@ class Axes::State {
   Done begin_run(const Values& velocities, const MotionBounds& bounds);
   std::string why_speed_ended() const;
   Done check_speeds(const Values& velocities, const MotionBounds& bounds) const;
-  /// Sends a sign of life if one is due. It names the axes only for a jog that runs and has to go
-  /// on, because this renews the jog.
+  /// Sends a sign of life if one is due. The sign of life names the axes only if a running jog has
+  /// to continue, because the names renew the jog.
   void keep_alive();
   std::vector<motion_goal_t> goals() const;
   bool all(const AxisCondition& is) const;
   bool any(const AxisCondition& is) const;
-  /// Returns the newest event of this kind since the newest motion began whose text contains
-  /// `part`, or an empty text.
+  /// Returns the text of the newest event of this kind that contains `part` and has come since the
+  /// newest motion began, or an empty text.
   std::string event_text(std::string_view kind, std::string_view part = {}) const;
 
   struct HomingRun;
@@ -249,8 +249,8 @@ class Axes::State {
   std::vector<motion_goal_t> goals_within(const MotionBounds& bounds) const;
   /// Returns the id of a motion that begins now.
   std::int32_t note_begin();
-  /// Waits until taktd has answered a motion that goes on. If the motion does not go on, returns
-  /// the reason.
+  /// Waits until taktd has answered the newest motion. If the motion does not run then, returns how
+  /// it has ended.
   Done wait_for_answer();
   Course course() const;
   /// Returns true if a motion runs, or if taktd may still answer it.

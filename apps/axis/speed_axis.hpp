@@ -9,7 +9,7 @@
 
 namespace takt {
 
-/// What a program wants of a speed axis.
+/// The goal that a program sets for a speed axis.
 enum class SpeedGoal : std::uint8_t {
   off,       ///< The drive is commanded not to move.
   standing,  ///< The drive is ready to run, and at standstill.
@@ -26,8 +26,8 @@ class SpeedAxis {
   /// `words` must have passed is_usable().
   explicit SpeedAxis(speed_axis_t words) : words_{std::move(words)} {}
 
-  /// Returns true if the axis can be commanded in this layout: its positions are those of the
-  /// outputs and inputs of one node, and its scales are finite and not 0.
+  /// Returns true if the axis can be commanded in this layout: its signals are outputs and inputs
+  /// of one node, and its scales are finite and not 0.
   static bool is_usable(const speed_axis_t& words, const ImageInput& input);
 
   /// Sets the goal. The set speed changes by at most `acceleration` per second, or at once if that

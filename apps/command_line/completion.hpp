@@ -6,7 +6,8 @@
 namespace takt {
 
 /// Returns what can be typed for the last of `words`, which follow the name of the program: one
-/// proposal a line, a tab and its meaning. The last word may be empty or incomplete.
+/// proposal on each line, followed by a tab and its meaning. The last word may be empty or
+/// incomplete.
 ///
 /// A line that begins with ':' asks the shell for more: `:files yaml yml` for files (with these
 /// extensions, if there are any) and folders, `:directories`, or `:ask KIND ...` for what

@@ -16,7 +16,7 @@ std::vector<std::string> broken(std::string_view text, std::size_t width);
 
 /// Returns a help text, broken into lines of at most `width` columns where words allow it. Options
 /// have their names in the first `column` columns of `options`; `notes` are paragraphs, and
-/// indented examples, whose lines stay apart.
+/// indented examples, whose lines are not joined.
 std::string wrapped_help(std::string_view options, std::size_t column, std::string_view notes,
                          std::size_t width);
 

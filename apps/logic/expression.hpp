@@ -48,9 +48,9 @@ struct ExpressionFault {
   std::size_t column = 0;  ///< counts from 0
 };
 
-/// Reads an expression. From the weakest to the strongest: `or`, `and`, `not`, comparisons
-/// (`== != < <= > >=`), and numbers, names, `true`, `false`, `rising(...)`, `falling(...)`,
-/// parentheses.
+/// Reads an expression. The operators from the lowest to the highest precedence are `or`, `and`,
+/// `not` and comparisons (`== != < <= > >=`). The operands are numbers, names, `true`, `false`,
+/// `rising(...)`, `falling(...)` and expressions in parentheses.
 std::variant<Expression, ExpressionFault> parse_expression(std::string_view text);
 
 /// Returns true if the text is one or more words of letters, digits and _ with points between.

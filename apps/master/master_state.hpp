@@ -16,7 +16,7 @@
 
 namespace takt {
 
-/// A running master with its bus, and the newest image. Front thread.
+/// A running master with its bus, and the newest image. Used only by the front thread.
 class Master::State {
  public:
   State(NetworkFile file, const LoadedNetwork& loaded_file, MasterOptions master_options);

@@ -27,7 +27,7 @@ class VirtualTime final : public Controller {
   /// errno if the machine refuses another thread.
   std::expected<std::thread, int> start(std::function<void()> body);
 
-  /// Returns the time of the bus. Front thread, outside next().
+  /// Returns the time of the bus. Call this on the front thread, outside next().
   Time now() const noexcept { return world_.now(); }
   /// Runs the bus to its next image. Returns false when the cycles are over.
   bool next() noexcept;

@@ -16,7 +16,7 @@ bool holds_all(AxisGroup& group);
 /// nodes of all axes.
 bool others_hold_all(AxisGroup& group, int sequence);
 /// Returns a sentence for each axis whose node is held by another program according to each of the
-/// newest `sequence` messages status_t. Empty if there is no such axis.
+/// newest `sequence` messages status_t. The text is empty if there is no such axis.
 std::string held_by_others(AxisGroup& group, int sequence);
 
 /// Sets the target of each axis that another program holds to its actual position, so that the axis

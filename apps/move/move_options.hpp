@@ -16,8 +16,8 @@ struct MoveOptions {
   std::vector<double> to;
   bool point = true;
   bool sine = true;
-  /// Longest duration of the move and the sine together. Empty means that the sine
-  /// follows the move until the tenth second, but for at least one period.
+  /// Longest duration of the move and the sine together. If empty, the sine follows the move until
+  /// 10 s after the start, but for at least one period.
   std::optional<double> seconds;
   std::optional<double> amplitude;
   double frequency = 0.5;

@@ -40,7 +40,7 @@ constexpr int held_in_motion = 6;
 constexpr double enable_seconds = 5.0;
 /// Longest wait for axes that do not confirm that they are disabled, seconds for all axes together.
 constexpr double disable_seconds = 2.0;
-/// Wait for the axes that were not disabled within that time or before a second signal, seconds.
+/// Last wait for axes that are not disabled after that time or after a second signal, seconds.
 constexpr double last_seconds = 0.2;
 constexpr int second_stop = 2;
 constexpr int any_stops = 3;
@@ -363,8 +363,8 @@ void MoveRun::disable() {
   }
 }
 
-/// Returns the names and limits of the axes that exceeded the allowed following error. Empty if all
-/// axes followed.
+/// Returns the names and limits of the axes that exceeded the allowed following error. The text is
+/// empty if all axes followed.
 std::string MoveRun::too_far() const {
   std::string text;
   for (std::size_t i = 0; i < sizes_.size(); ++i) {

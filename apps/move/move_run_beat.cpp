@@ -9,11 +9,11 @@ namespace takt {
 namespace {
 
 constexpr std::chrono::milliseconds beat_tick{2};
-/// Longest wait for the answer of taktd and for its next reports, in seconds; it is also at least
-/// this number of periods.
+/// Longest wait for the answer of taktd and for its next reports: this number of seconds or of
+/// periods, whichever is longer.
 constexpr double longest_silence = 2.0;
 constexpr int silent_periods = 20;
-/// Longest wait for the event with the reason of a stop.
+/// Longest wait for the event that gives the reason for a stop.
 constexpr int reason_images = 20;
 /// Largest number of restarts of a move, and largest number of restarts in sequence that come no
 /// nearer to the target.
@@ -22,8 +22,8 @@ constexpr int most_vain_begins = 3;
 /// A move has come nearer to its target if it has covered at least this part of its first distance
 /// since it began.
 constexpr double nearer = 0.01;
-/// Time before a move begins again, seconds. taktd discards the commands that come in the first
-/// 20 ms after a pause of its own, and does not answer them.
+/// Time before a move begins again, seconds. If taktd itself was paused, it discards the commands
+/// that come in the first 20 ms after the pause, and does not answer them.
 constexpr double pause_before_begin = 0.1;
 constexpr int signal_again = 2;
 
@@ -135,8 +135,8 @@ std::string MoveRun::watch_course() {
   }
 }
 
-/// Returns the time in bus_seconds() at which the move has to be over. The images may be as late as
-/// the motion with set-points of this program allows.
+/// Returns the time in bus_seconds() at which the move has to be over. This includes
+/// longest_step(), by which the images may be late.
 double MoveRun::beat_end() const {
   if (!options_.seconds || !beat_begin_) return std::numeric_limits<double>::infinity();
   return *beat_begin_ + *options_.seconds + longest_step();

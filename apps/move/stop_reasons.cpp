@@ -15,7 +15,7 @@ constexpr std::size_t most_reasons = 64;
 constexpr std::array<std::string_view, 3> pauses{"its sender was silent", "SYNC was missing",
                                                  "its set-points were not sent"};
 
-/// Returns the part of the text before the axis that has caused the stop.
+/// Returns the part of the text before the name of the axis that has caused the stop.
 std::string begin_of_reason(std::int32_t id) {
   return fmt::format("motion {} has stopped because of ", id);
 }

@@ -31,7 +31,7 @@ struct LegendEntry {
   Stroke stroke = Stroke::thin;
 };
 
-/// A picture with panels one below the other, which have the same times.
+/// A picture with panels one below the other. All curves have the same times.
 struct Plot {
   std::string title = {};
   std::vector<LegendEntry> legend = {};

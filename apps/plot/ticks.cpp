@@ -10,7 +10,7 @@ namespace {
 /// Numbers outside of these powers of ten are written with an exponent.
 constexpr double most_digits_after = 6.0;
 constexpr double most_digits_before = 6.0;
-/// A range that is narrower than this part of its values is only rounding.
+/// A range that is narrower than this part of its values counts as a rounding error.
 constexpr double narrowest = 1e-9;
 
 double round_step(double step) {

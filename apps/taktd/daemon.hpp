@@ -15,8 +15,8 @@
 
 namespace takt {
 
-/// The process taktd: its front thread, its signals and its buses. The command line names one
-/// network file today, so the list of buses has one element.
+/// The process taktd: its front thread, its signals and its buses. At present, the command line
+/// names one network file, so the list of buses has one element.
 class Daemon {
  public:
   Daemon(std::vector<LoadedNetwork> networks, DaemonOptions options);

@@ -38,8 +38,8 @@ class OtherMaster {
   /// Returns the reason why this daemon may not be the master. It is empty if this daemon may be
   /// the master.
   const std::optional<std::string>& refusal() const noexcept { return refusal_; }
-  /// Signs of another master that prove nothing, one sentence each: a foreign SYNC producer, or a
-  /// status that counts as a warning.
+  /// Returns signs of another master that are no proof, one sentence each: a foreign SYNC producer,
+  /// or a status that counts as a warning.
   std::vector<std::string> warnings() const;
 
  private:

@@ -22,7 +22,8 @@ class Reporter {
 
   /// `plan` is the plan of the bus that the notice is about.
   void announce(const BusPlan& plan, const Notice& notice);
-  /// Writes the sentence that waits for others of its cause. Call this after each round.
+  /// Writes the sentence that was held back to be merged with further notices of the same cause.
+  /// Call this after each round.
   void settle();
   /// Writes a sentence of the daemon itself to stderr.
   void say(Weight weight, const std::string& sentence);

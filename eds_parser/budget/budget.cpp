@@ -177,8 +177,8 @@ bool asks_for(const TrafficFrame& request, const TrafficFrame& answer) noexcept 
   return request.remote_request && request.cob_id == answer.cob_id;
 }
 
-/// The limit of an answer counts from its request, because the sender of the request waits since
-/// then.
+/// The limit of an answer counts from its request, because the sender of the request has waited
+/// since then.
 void limit_answers(std::vector<TrafficFrame>& frames, const Bounds& worst) {
   for (auto& answer : frames) {
     if (!answer.answers || !answer.limit) continue;

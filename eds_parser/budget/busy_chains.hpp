@@ -28,8 +28,8 @@ class BusyChains : protected CycleFrames {
     int rounds = 0;  ///< rounds of SDO requests whose answers may come; 0 = no limit
   };
 
-  /// The treatment of outputs that may end after the next SYNC is due. SYNC leaves the same
-  /// transmit queue.
+  /// The way in which the analysis treats outputs that may end after the next SYNC is due. SYNC
+  /// then waits behind them in the same transmit queue.
   enum class LateSync : std::uint8_t {
     in_time,      ///< no output ends that late
     follows_up,   ///< a chain of late SYNCs, each followed by the device time
@@ -64,8 +64,8 @@ class BusyChains : protected CycleFrames {
   /// Returns the busy period since the SYNC `cycles` cycles ago. It includes the device time.
   Busy busy_since_sync(std::size_t at, int cycles) const;
 
-  /// Returns the busy period since the SYNC `cycles` cycles ago, with no more service frames than
-  /// fitted in before the outputs of that cycle together with their answers.
+  /// Returns the busy period since the SYNC `cycles` cycles ago, with only as many service frames
+  /// as fit, together with their answers, before the outputs of that cycle.
   Busy busy_until_outputs(std::size_t at, int cycles) const;
 
   /// Returns the additional bus time of a chain of late SYNCs: the device time of each cycle, the
@@ -80,15 +80,14 @@ class BusyChains : protected CycleFrames {
     return std::max(std::max(outputs_end_, services_end_) - plan_.cycle.period, Time{0});
   }
 
-  /// Returns whether the frame at `at` waits for all service frames, because its priority is not
-  /// higher than that of any service frame. In one queue, all frames wait as long as the one with
-  /// the lowest priority.
+  /// Returns whether the frame at `at` waits for all service frames, because no service frame has a
+  /// lower priority. In one queue, all frames wait as long as the one with the lowest priority.
   bool waits_for_services(std::size_t at) const noexcept {
     return services_in_queue() && at >= lowest_service_;
   }
 
-  /// Returns whether service frames delay the frame at `at`: because it has no higher priority, or
-  /// because it waits behind SYNC in the same transmit queue.
+  /// Returns whether service frames delay the frame at `at`: because no service frame has a lower
+  /// priority, or because the frame waits behind SYNC in the same transmit queue.
   bool services_count(std::size_t at) const noexcept {
     return waits_for_services(at) || (services_in_queue() && late_ == LateSync::follows_up);
   }

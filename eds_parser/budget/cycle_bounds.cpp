@@ -28,7 +28,8 @@ class CycleAnalysis : BusyChains {
   }
 
  private:
-  /// Bounds SYNC. Outputs delay it, because all frames of the master leave one queue.
+  /// Computes the latest end of SYNC. Outputs delay SYNC, because all frames of the master leave
+  /// one queue.
   void bound_sync() {
     if (!sync_) return;
     const Time longest = frames_[*sync_].frame;
@@ -50,7 +51,8 @@ class CycleAnalysis : BusyChains {
     }
   }
 
-  /// Bounds one TPDO. TPDOs follow SYNC, so each TPDO of higher priority goes before it once.
+  /// Returns the latest end of one TPDO. TPDOs follow SYNC, so each TPDO of higher priority goes
+  /// before this one once.
   std::optional<Time> input_end(std::size_t at, std::size_t cycle) const {
     const auto& own = frames_[at];
     const auto chains = busy_before(at);
@@ -96,7 +98,7 @@ class CycleAnalysis : BusyChains {
     return wait.has_value();
   }
 
-  /// Bounds the outputs. Returns false if they have no bound.
+  /// Computes the latest ends of the outputs. Returns false if they have no bound.
   bool find_outputs() {
     for (const auto late : {LateSync::in_time, LateSync::follows_up, LateSync::at_any_time}) {
       late_ = late;
@@ -120,7 +122,7 @@ class CycleAnalysis : BusyChains {
     return false;
   }
 
-  /// Bounds the service frames that are in the queue before the outputs.
+  /// Computes the latest end of the service frames that are in the queue before the outputs.
   bool bound_services() {
     if (!services_in_queue()) return true;
     const auto end = end_in_queue(Time{0}, Time{0});
@@ -164,9 +166,9 @@ class CycleAnalysis : BusyChains {
     return end;
   }
 
-  /// Bounds the outputs. The master sends them at the output deadline from one queue in the order
-  /// of their identifiers. Frames with priority over the lowest output sent so far may come
-  /// between.
+  /// Computes the latest end of each output. The master sends the outputs at the output deadline
+  /// from one queue in the order of their identifiers. Frames with priority over the lowest output
+  /// sent so far may come between.
   bool bound_outputs() {
     Time before{};
     std::size_t lowest = 0;

@@ -16,18 +16,19 @@ struct Suggestion {
 /// Returns the names of the PDOs, for example "TPDO1 arm, TPDO2 arm".
 std::string names_of(const std::vector<PdoChange>& changes);
 
-/// Moves event-driven TPDOs that have priority over synchronous frames to identifiers behind all
-/// synchronous frames. Empty if there are no such TPDOs, or if not enough identifiers are free.
+/// Returns the changes that move event-driven TPDOs with priority over synchronous frames to
+/// identifiers behind all synchronous frames. The list is empty if there are no such TPDOs, or if
+/// not enough identifiers are free.
 std::vector<PdoChange> lower_priorities(const BusPlan& plan);
 Suggestion lower_priority_of(std::vector<PdoChange> pdos);
 
-/// Lets the last `count` synchronous TPDOs take turns at every second SYNC. Changes no PDO if there
-/// are fewer.
+/// Returns the change with which the last `count` synchronous TPDOs are sent at every second SYNC,
+/// in turns. The change contains no PDO if there are fewer such TPDOs.
 Suggestion by_turns(const BusPlan& plan, unsigned count);
 
-/// Lengthens the inhibit times of event-driven TPDOs to `factor` times the distance of two frames
-/// that the budget counts: the inhibit time, else the event timer or the SYNC period, whichever is
-/// shorter.
+/// Returns the change that lengthens the inhibit times of event-driven TPDOs to `factor` times the
+/// distance of two frames that the budget counts: the inhibit time, else the event timer or the
+/// SYNC period, whichever is shorter.
 Suggestion longer_inhibits(const BusPlan& plan, unsigned factor);
 
 /// Rounds a period up to the next value that people would write, in us.

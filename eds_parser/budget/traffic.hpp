@@ -10,7 +10,7 @@
 
 namespace takt {
 
-/// The assumptions of the analysis on what the plan does not contain.
+/// Assumptions of the analysis about values that the plan does not contain.
 struct BudgetOptions {
   /// Time that the slowest device needs from the end of SYNC until its TPDO is ready to be sent.
   Time device_time = std::chrono::microseconds{30};

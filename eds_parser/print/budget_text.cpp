@@ -146,7 +146,7 @@ class BudgetText {
     return worst;
   }
 
-  /// Returns for example ", or 96 us late".
+  /// Returns for example " or up to 96 us late".
   std::string steady_delay() const {
     Time delay{};
     for (const auto& row : budget_.rows) {

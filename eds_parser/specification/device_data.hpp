@@ -44,13 +44,13 @@ struct DeviceMatch {
 };
 
 /// The place of a statement in the device data, and its reason, which paraphrases the manual of the
-/// maker.
+/// manufacturer.
 struct DeviceFact {
   SourcePos pos;
   std::string reason;
 };
 
-/// The effects of the event timer of a TPDO and its events on each other.
+/// How the event timer of a TPDO and the events of this TPDO affect each other.
 enum class TimerMeaning : std::uint8_t {
   restarts,    ///< Every transmission restarts the timer, as CiA 301 demands.
   additional,  ///< The timer sends in addition to events, and events do not shift it.

@@ -9,10 +9,10 @@ namespace takt {
 /// The relation between the raw counts of a CiA 402 object and its quantity.
 struct ObjectQuantity {
   Quantity quantity = Quantity::position;
-  /// `sign` applies. If false, the value is a magnitude, such as a limit or a window.
+  /// True if `sign` of the unit applies. False for a magnitude, such as a limit or a window.
   bool directed = true;
-  /// The object is a place, so `offset` of positions applies. False for a distance, such as a
-  /// window. The offset of any other quantity always applies.
+  /// True for a position to which `offset` of the unit applies. False for a distance, such as a
+  /// window. For other quantities than positions, the offset always applies.
   bool absolute = false;
 };
 

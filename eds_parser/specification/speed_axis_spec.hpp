@@ -50,8 +50,8 @@ struct SpeedAxisSpec {
 std::string missing_part(const SpeedAxisSpec& axis);
 /// Returns `axis`, in which each part that `own` states replaces the same part.
 SpeedAxisSpec merged(SpeedAxisSpec axis, const SpeedAxisSpec& own);
-/// Returns the words of a CiA 402 drive in velocity mode (vl, mode 2). CiA 402-2: 0x6042 and 0x6044
-/// are in revolutions per minute unless 0x604C says something else.
+/// Returns the objects and the commands of a CiA 402 drive in velocity mode (vl, mode 2). CiA
+/// 402-2: 0x6042 and 0x6044 are in revolutions per minute unless 0x604C says something else.
 SpeedAxisSpec velocity_mode_axis();
 
 }  // namespace takt

@@ -40,7 +40,8 @@ struct DeviceTable {
   std::string model;             ///< "drive402", "io401", "lenze8400", "plain" ...
   std::vector<std::string> quirks;  ///< "late_bootup", ...
   std::string firmware{};           ///< "15.02.00"; empty = the newest version of the model
-  /// The mechanics behind the axes of a `drive402`. Empty: each motor is a simple lag.
+  /// The mechanics behind the axes of a `drive402`. If empty, each motor is simulated by simple
+  /// lags of velocity and position.
   std::optional<MechanicsTable> mechanics{};
 };
 

@@ -56,7 +56,8 @@ struct SpeedStates {
 };
 
 /// An axis that follows a set speed and has no position: an inverter, or a CiA 402 drive in mode
-/// vl. Its words are those of the device data, or of `speed_axis` in the network file.
+/// vl. Its objects and commands are those of the device data, or of `speed_axis` in the network
+/// file.
 struct SpeedAxisPlan {
   std::uint8_t node_index = 0;  ///< position in BusPlan::nodes
   SpeedSequence sequence = SpeedSequence::words;
@@ -93,7 +94,7 @@ struct SpeedOrders {
   }
 };
 
-/// Returns the control words of this axis for the checks of the bus thread.
+/// Returns the effects of the control words of this axis, for the checks of the bus thread.
 inline SpeedOrders orders_of(const SpeedAxisPlan& axis) noexcept {
   const SpeedCommands& words = axis.commands;
   const auto bits = [&](std::uint16_t word) {

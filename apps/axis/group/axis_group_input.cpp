@@ -11,8 +11,8 @@ namespace takt {
 namespace {
 
 constexpr std::size_t most_events = 256;
-/// Most rounds in which one call empties the queue, so that a flood of messages cannot hold the
-/// caller.
+/// Largest number of rounds in which one call empties the queue, so that a flood of messages cannot
+/// hold the caller.
 constexpr int most_rounds = 16;
 
 /// taktd accepts names of 1 to 64 bytes.

@@ -21,7 +21,8 @@
 
 namespace takt {
 
-/// The knowledge of an AxisGroup about its bus. It takes messages in axis_group_input.cpp.
+/// What an AxisGroup knows about its bus. The functions that take messages are in
+/// axis_group_input.cpp.
 class AxisGroup::State {
  public:
   using Clock = ProgramClock;

@@ -7,7 +7,8 @@
 namespace takt {
 namespace {
 
-/// Most signals of a layout. It bounds the memory that a layout can make this program allocate.
+/// Largest number of signals in a layout. It bounds the memory that a layout can make this program
+/// allocate.
 constexpr std::int32_t most_signals = 65536;
 constexpr std::int16_t most_parts = 4096;
 /// After this number of unexpected images in sequence, their cycle number is accepted as that of
@@ -19,8 +20,8 @@ constexpr std::int64_t longest_period_ns = 60 * second_ns;
 /// A gap of this number of cycles is accepted even if it is longer than a second.
 constexpr std::uint64_t least_ahead = 16;
 
-/// Returns the number of cycles from `from` to `to`, which is not smaller. The difference of any
-/// two values fits into the result.
+/// Returns the number of cycles from `from` to `to`. `to` must not be smaller than `from`. The
+/// difference of any two values fits into the result.
 std::uint64_t cycles_between(std::int64_t from, std::int64_t to) noexcept {
   return static_cast<std::uint64_t>(to) - static_cast<std::uint64_t>(from);
 }

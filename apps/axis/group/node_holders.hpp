@@ -11,7 +11,7 @@ namespace takt {
 /// Remembers which program holds each node.
 class NodeHolders {
  public:
-  /// `sender` is the name of this program in status_t, which no other running program has.
+  /// `sender` is the name of this program in status_t. No other running program has the same name.
   explicit NodeHolders(std::string_view sender) : sender_{sender} {}
 
   void take(const status_t& part);

@@ -7,8 +7,9 @@
 
 namespace takt {
 
-/// The services of the machine on which the program runs that the axis library uses. By default
-/// this is the real machine. A simulation gives a thread other surroundings, see UseSurroundings.
+/// The clocks, waits and random numbers that the axis library uses. By default, the machine on
+/// which the program runs provides them. A simulation gives a thread other surroundings, see
+/// UseSurroundings.
 class Surroundings {
  public:
   virtual ~Surroundings() = default;

@@ -6,8 +6,8 @@
 namespace takt {
 
 /// Determines how far along a trajectory the bus has taken the set-points: each image shows which
-/// set-points were sent. While taktd stalls, it sends none, and afterwards only the newest one
-/// counts. During this time, the motion must not run ahead of the axes.
+/// set-points were sent. While taktd stalls, it sends no set-points, and afterwards it sends only
+/// the newest one. During a stall, the motion must not run ahead of the axes.
 class TakenSetPoints {
  public:
   /// At the beginning of the trajectory, the axes are at rest at `begin`, in the form in which an

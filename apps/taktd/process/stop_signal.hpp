@@ -17,7 +17,7 @@ class StopSignal {
   static int count() noexcept;
   /// Returns true if SIGUSR1 has arrived since the last call.
   static bool take_recording_request() noexcept;
-  /// Most flags that one process can give to stop_with().
+  /// Largest number of flags that one process can give to stop_with().
   static constexpr std::size_t most_requests = 16;
   /// From this call on, a stop signal also sets `request` from within its handler, so that the
   /// ordered stop begins at once, whatever the front thread is doing. If a stop signal has already

@@ -27,7 +27,7 @@ struct IntegerRange {
 std::string to_string(IntegerRange range);
 
 /// Reads the integer in a scalar. Reports a value that looks octal (`010`), is out of range or is
-/// other text.
+/// no integer.
 std::optional<std::int64_t> read_integer(const YamlNode& node, std::string_view key,
                                          IntegerRange range, NetworkReport& report);
 std::optional<double> read_number(const YamlNode& node, std::string_view key,

@@ -127,7 +127,8 @@ class SpeedAxisCompiler {
     }
   }
 
-  /// Sets the time to live and the fallback of the words.
+  /// Sets the fallback of the control word and the set speed. Sets the time to live of all outputs
+  /// of the node, unless the network file states one.
   void stop_when_silent(const SpeedAxisPlan& axis) {
     // The fallback of a CiA 402 drive is set already.
     if (!plan_.nodes[index_].cia402) set_fallback(axis);

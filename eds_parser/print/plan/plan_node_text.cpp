@@ -124,7 +124,7 @@ class NodeText {
     lines_.line("    bit {:>2}..{:<2}  gap", first, first + bits - 1);
   }
 
-  /// Returns the object that the frames of an MPDO name.
+  /// Returns the object whose index and sub-index the frames of an MPDO contain.
   static std::string mpdo_object(const PdoRow& row) {
     return to_string(ObjectKey{static_cast<std::uint16_t>(row.header >> 8),
                                static_cast<std::uint8_t>(row.header >> 24)});

@@ -36,7 +36,7 @@ void add_node(PlanLines& lines, const BusPlan& plan, std::size_t index);
 void add_image(PlanLines& lines, const BusPlan& plan, const std::optional<NodeId>& only);
 /// Writes nothing if no output of the bus could have limits.
 void add_limits(PlanLines& lines, const BusPlan& plan, const std::optional<NodeId>& only);
-/// Returns one text for each axis or output with limits: its limits by their sources.
+/// Returns one text for each axis or output with limits: its limits, grouped by their sources.
 std::vector<std::string> brief_limits(const BusPlan& plan);
 void add_lcm(PlanLines& lines, const BusPlan& plan, const LcmOptions& options);
 void add_boot(PlanLines& lines, const NodePlan& node);
