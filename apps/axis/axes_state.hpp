@@ -271,7 +271,7 @@ class Axes::State {
   std::vector<Index> commanded_;  // axes whose controlwords are sent
   Readiness readiness_ = Readiness::not_enabled;
   std::map<std::size_t, std::int64_t> held_;  // raw values of outputs, by their place in the image
-  bool has_set_points_ = false;               // velocities or torques were commanded, and not ended
+  bool has_set_points_ = false;               // commanded velocities or torques are in effect
   // Decelerations of target velocities that drives follow at once.
   Eigen::VectorXd decelerations_{};
   std::optional<Eigen::VectorXd> profile_targets_;  // newest targets since the axes were stopped

@@ -49,7 +49,7 @@ void SpeedDrives::step(const ImageInput& input) {
 command_t SpeedDrives::command() const {
   command_t command{};
   for (const SpeedAxis& axis : axes_) {
-    if (axis.state() == SpeedState::unknown) continue;  // the words of the axis expire
+    if (axis.state() == SpeedState::unknown) continue;  // the commands of this axis then expire
     command.signals.push_back(axis.words().control);
     command.values.push_back(axis.control());
     command.signals.push_back(axis.words().set_speed);

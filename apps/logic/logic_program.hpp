@@ -75,7 +75,7 @@ class LogicProgram {
     Bound second;
     Target target;
     double value = 0.0;
-    bool was = false;  // `first`, at the image before
+    bool was = false;  // value of `first` at the previous image
     Time since{0};     // time for which `first` differs from the target
   };
 

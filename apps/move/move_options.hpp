@@ -27,7 +27,7 @@ struct MoveOptions {
   std::optional<double> following_limit;
   int stale_cycles = 5;
   std::string plot;            ///< file for a picture of the motions; empty: none
-  double wait_seconds = 10.0;  ///< longest wait for taktd, and again for its devices
+  double wait_seconds = 10.0;  ///< longest wait for taktd, and then for its devices
 };
 
 /// Result of reading the command line. If there is an exit code, the program ends with it.

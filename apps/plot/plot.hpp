@@ -11,7 +11,7 @@ enum class Stroke : std::uint8_t { thin, broad };
 /// One curve of a panel: a value for each time of the plot. NaN leaves a gap.
 struct Curve {
   std::vector<double> values = {};
-  std::size_t colour = 0;  ///< number of the colour: that of the axis
+  std::size_t colour = 0;  ///< number of the colour; the same for all curves of an axis
   Stroke stroke = Stroke::thin;
 };
 

@@ -55,7 +55,7 @@ std::optional<Exit> BusRun::open_lcm(LcmUrl url) {
     std::ranges::move(TypedChannels::heard(network_.plan), std::back_inserter(heard));
   }
   const std::vector<std::string> guarded = heard;
-  heard.push_back(channels.status);  // shows another master
+  heard.push_back(channels.status);  // its messages reveal another master
   heard.push_back(channel_name(network_.plan.name, "SECURED"));
   const bool by_environment = lcm_url_is_from_environment(front_.options.lcm_url, network_.lcm.url);
   const LcmLink::Hub hub = network_.lcm.broker && front_.options.lcm_url.empty() ? LcmLink::Hub::own

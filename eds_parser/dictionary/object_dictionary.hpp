@@ -40,7 +40,7 @@ struct SubObject {
   Access access = Access::rw;
   bool pdo_mappable = false;
   DataType type = DataType::unknown;
-  std::uint16_t type_code = 0;  ///< data type code of the file, also if takt does not know it
+  std::uint16_t type_code = 0;  ///< data type code of the file, even if takt does not know it
   std::uint32_t flags = 0;  ///< ObjFlags: bit 0 refuse write on download, bit 1 refuse read on scan
   SourcePos pos;            ///< place of its section
   SourcePos default_pos;    ///< place of DefaultValue, or of the section

@@ -315,7 +315,7 @@ class Loader {
   fs::path path_;
   DeviceDataUse use_;
   LoadedNetwork out_;
-  std::map<std::pair<fs::path, std::uint8_t>, EdsFile> files_;  // stable addresses
+  std::map<std::pair<fs::path, std::uint8_t>, EdsFile> files_;  // elements keep their addresses
   std::set<fs::path> reported_;
   std::map<std::string, std::string> paths_;  // absolute paths of the device files, by node
 };

@@ -31,7 +31,7 @@ constexpr std::uint32_t default_reboot_delay_ms = 1000;
 constexpr std::uint32_t default_reboot_delay_max_ms = 30'000;
 constexpr std::uint8_t stand_in_id = 127;
 constexpr std::uint8_t stray_index = 255;  // index of a node that has no place in the plan
-constexpr int stop_cycles = 10;  // cycles of an ordered stop without axes, which needs five
+constexpr int stop_cycles = 10;  // limit of an ordered stop without axes, which takes five cycles
 
 Time milliseconds(std::uint32_t value) { return std::chrono::milliseconds{value}; }
 

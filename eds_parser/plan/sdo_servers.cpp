@@ -123,9 +123,8 @@ class ServersOfFile {
   }
 
   bool has_wanted() const noexcept { return has_; }
-  std::uint16_t first() const noexcept {
-    return first_;
-  }  ///< index of the first server; 0 means that there is none
+  /// Returns the index of the first server; 0 means that there is none.
+  std::uint16_t first() const noexcept { return first_; }
   const std::string& list() const noexcept { return list_; }
 
  private:

@@ -12,7 +12,7 @@ namespace takt {
 enum class RtMode : std::uint8_t {
   enforce,  ///< refuse to start
   attempt,  ///< `try`: report what is missing and go on
-  off,      ///< do not request it
+  off,      ///< do not request real-time scheduling
 };
 
 /// `realtime:` of the network file.

@@ -69,7 +69,7 @@ constexpr StopLimits stop_limits(Time timeout, Time period) noexcept {
           .nmt = timeout - std::min(timeout / 20, 2 * period)};
 }
 inline constexpr Time stop_default = 5s;
-inline constexpr Time stop_longest = 30s;  ///< upper limit of a time that is derived from drives
+inline constexpr Time stop_longest = 30s;  ///< upper limit if the time follows from the drives
 /// Returns the time-out of a whole ordered stop in which the quick stop takes `stopping`. It
 /// includes a margin of a quarter for what the ramp does not cover: jerk, following error,
 /// detection.

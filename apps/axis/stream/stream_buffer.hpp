@@ -57,7 +57,7 @@ class StreamBuffer {
 
   double period_;
   bool starts_ = false;
-  std::deque<motion_point_t> points_;  // points from the newest one that is reached on
+  std::deque<motion_point_t> points_;  // points, beginning with the newest one that is reached
   std::int64_t first_ = 0;             // number of the first of these points
   std::int64_t next_ = 0;              // number of the first point that was never sent
   std::int64_t sent_cycle_ = 0;        // cycle of the newest message

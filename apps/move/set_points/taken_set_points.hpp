@@ -35,7 +35,7 @@ class TakenSetPoints {
   };
   static constexpr std::size_t most = 16;  // set-points that can be under way
 
-  std::array<SetPoint, most> under_way_;  // oldest first; the first is the newest one taken
+  std::array<SetPoint, most> under_way_;  // oldest first, from the newest taken one on
   std::size_t count_ = 1;
   double time_ = 0.0;
   Eigen::VectorXd apart_;

@@ -55,7 +55,7 @@ StopSignal::StopSignal() {
   for (const int number : stop_numbers) sigdelset(&wait_mask_, number);
   sigdelset(&wait_mask_, SIGUSR1);
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the file size limit fails instead
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the file size limit then only fails
 }
 
 void StopSignal::stop_with(std::atomic<bool>& request) noexcept {

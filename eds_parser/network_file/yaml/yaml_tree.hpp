@@ -50,7 +50,7 @@ class YamlTree {
 
  private:
   friend class YamlTreeBuilder;
-  std::deque<YamlNode> nodes_;  // stable addresses
+  std::deque<YamlNode> nodes_;  // elements keep their addresses
   const YamlNode* root_ = nullptr;
 };
 

@@ -76,7 +76,7 @@ struct EffectivePdo : PdoNumber {
   /// TPDO: period of the remote requests of the master in ms. 0 means none.
   std::uint32_t poll_ms = 0;
   std::uint16_t poll_syncs = 0;  ///< TPDO: a remote request at every n-th SYNC; 0 means none
-  bool rtr = false;              ///< Remote requests must be allowed.
+  bool rtr = false;              ///< The device must allow remote requests.
   bool drop_late = false;
   bool on_request = false;  ///< The PDO is sent and expected only on request.
   Mpdo mpdo = Mpdo::none;
