@@ -110,8 +110,8 @@ Done Axes::State::quick_stop() {
   return *rested;
 }
 
-/// An axis is at standstill when its drive says so, or when its position has stayed within a few
-/// counts: an encoder may flicker at standstill.
+/// An axis is at standstill when its drive reports standstill, or when its position has stayed
+/// within a few counts, because the position of an encoder may flicker at standstill.
 std::optional<Done> Axes::State::wait_for_rest(std::span<const Index> chosen,
                                                Interruption interruption) {
   struct Window {

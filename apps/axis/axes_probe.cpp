@@ -37,7 +37,7 @@ std::expected<std::int64_t, Obstacle> Axes::State::read_of_axis(Index axis, std:
   return static_cast<std::int64_t>(bits);
 }
 
-/// Waits until the status of the probe has, or has not, these bits.
+/// Waits until the bits `bits` of the touch probe status have the value `wanted`.
 Done Axes::State::wait_for_probe(Index axis, unsigned bits, unsigned wanted,
                                  std::chrono::nanoseconds longest) {
   const auto begin = Clock::now();

@@ -23,8 +23,8 @@ class VirtualTime final : public Controller {
 
   /// Connects `master`, whose controller this object is, to the bus.
   void attach(MasterRun& master);
-  /// Starts the bus thread for MasterRun::start(); it rests until the first next(). Returns the
-  /// errno if the machine refuses another thread.
+  /// Starts the bus thread for MasterRun::start(). The thread waits until the first next(). Returns
+  /// the errno if no thread can be created.
   std::expected<std::thread, int> start(std::function<void()> body);
 
   /// Returns the time of the bus. Call this on the front thread, outside next().

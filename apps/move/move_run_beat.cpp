@@ -35,8 +35,9 @@ std::vector<MotionLimits> MoveRun::limits() const {
   return limits;
 }
 
-/// Returns the time in seconds: that of the newest image by the cycles of the bus, plus the time
-/// since this image by the clock of this machine. `newest` is the result of the newest wait().
+/// Returns the bus time in seconds. The time of the newest image is counted in cycles of the bus.
+/// The time since this image is measured by the clock of this machine. `newest` is the result of
+/// the newest wait().
 double MoveRun::bus_seconds(Input newest) const {
   if (newest == Input::fresh) return cycle_seconds();
   return cycle_seconds() + std::chrono::duration<double>(group_.age()).count();

@@ -189,7 +189,7 @@ void limit_answers(std::vector<TrafficFrame>& frames, const Bounds& worst) {
   }
 }
 
-/// Computes everything except the columns that do not affect the verdict.
+/// Computes the budget with only those columns that affect the verdict.
 BusBudget judged(BusTraffic traffic, const BusPlan& plan, const BudgetOptions& options) {
   const Bounds quiet = bounds(traffic, plan, options, {});
   const Bounds steady = steady_bounds(traffic, plan, options);

@@ -94,8 +94,8 @@ Object mapping_record(std::uint16_t number, bool is_tpdo) {
   return object;
 }
 
-/// Sets the place of an object that the file counts but does not describe to the place of the
-/// count.
+/// Sets the place of an object and its sub-objects. Objects that the file counts but does not
+/// describe get the place of the count.
 void place(Object& object, SourcePos pos) noexcept {
   object.pos = pos;
   for (auto& sub : object.subs) {

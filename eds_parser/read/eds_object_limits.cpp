@@ -20,9 +20,9 @@ bool is_pattern(const std::optional<Value>& limit, std::string_view text) noexce
 
 }  // namespace
 
-/// Drops limits that exclude values which the file means to allow. CiA 306 does not say how the
-/// limit of a signed type is written. Vendors write bit patterns, and numbers above the range of
-/// the type.
+/// Drops limits that exclude values, although the author of the file meant to allow these values.
+/// CiA 306 does not say how the limit of a signed type is written. Vendors write bit patterns, and
+/// numbers above the range of the type.
 void ObjectReader::judge_limits(SubObject& sub, const ObjectFields& fields, ObjectKey key) {
   if (sub.low_limit && sub.high_limit && inverted(*sub.low_limit, *sub.high_limit)) {
     report_.warning(fields.pos(Keyword::low_limit), "limits-inverted", key, ": LowLimit ",

@@ -22,8 +22,8 @@ class ModuleLists {
   /// Adds a section of an object, or of a part of an object.
   void add_object(std::uint16_t module, ModulePart part, std::uint16_t index,
                   const IniSection& section);
-  /// Reports what the lists and the sections disagree on. `described` is the number of sections
-  /// [MxModuleInfo].
+  /// Reports the differences between the lists and the sections. `described` is the number of
+  /// sections [MxModuleInfo].
   void check(const IniFile& file, std::size_t described, Report& report) const;
 
  private:

@@ -9,13 +9,16 @@
 
 namespace takt {
 
-/// Returns the access of a word of AccessType (`ro`, `rw` ...) in any case. CiA 306, 4.6.3.2.
+/// Returns the access type that a word of AccessType (`ro`, `rw` ...) means. The case of the
+/// letters does not matter. CiA 306, 4.6.3.2.
 std::optional<Access> access_of_word(std::string_view text) noexcept;
 
-/// Returns the access of the letters `R` and `W` in any case, which some tools write for ro and wo.
+/// Returns the access type that a letter `R` or `W` means. Some tools write these letters for ro
+/// and wo; their case does not matter.
 std::optional<Access> access_of_letter(std::string_view text) noexcept;
 
-/// Returns the number of a word of ObjectType or DataType. A comment after the word is ignored.
+/// Returns the code that a word of ObjectType or DataType means. A comment after the word is
+/// ignored.
 std::optional<std::uint32_t> code_of_word(Keyword keyword, std::string_view text) noexcept;
 
 /// Reads ObjectType or DataType. Both are numbers, but some files contain the words instead:

@@ -85,7 +85,8 @@ class DcfWriter {
     return true;
   }
 
-  /// Returns whether the device would accept the value, read in the same way as in the written DCF.
+  /// Returns whether the device would accept the value. The value is read as it will be read from
+  /// the written DCF.
   bool good(const DcfValue& value, const SubObject& sub) {
     if (trim(value.text).size() != value.text.size()) {
       return refuse(sub.pos, "outer-blanks", value.object,
@@ -109,7 +110,7 @@ class DcfWriter {
                   ": the device would refuse it");
   }
 
-  /// Writes a value to the place that depends on how the file describes the object.
+  /// Writes a value. Its place depends on how the file describes the object.
   void place(ObjectKey key, std::string_view keyword, std::string text) {
     const auto* own = sections_.sub_object(key);
     const auto* main = sections_.object(key.index);

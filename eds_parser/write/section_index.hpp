@@ -25,7 +25,8 @@ class SectionIndex {
                                 std::string_view lower_key) const noexcept;
   /// Returns the entry of a value list for one sub-index. Its key may have leading zeros.
   std::optional<IniEntry> list_entry(const IniSection& list, std::uint8_t sub) const noexcept;
-  /// Returns the text behind which new lines of the section belong: its last entry, or its name.
+  /// Returns the text after which new lines of the section are inserted: its last entry, or its
+  /// name.
   std::string_view last_line(const IniSection& section) const noexcept;
 
  private:

@@ -60,7 +60,8 @@ const SubObject* element_of(const ObjectDictionary& dictionary, const IniSection
   return object == nullptr ? nullptr : described_by(*object, section);
 }
 
-/// Returns the value that was read at this entry, or std::nullopt if another entry counts.
+/// Returns the value that was read from this entry, or std::nullopt if the value comes from another
+/// entry.
 std::optional<Value> value_read(const SubObject& sub, Keyword keyword, const IniEntry& entry) {
   if (keyword == Keyword::low_limit) return sub.low_limit;
   if (keyword == Keyword::high_limit) return sub.high_limit;

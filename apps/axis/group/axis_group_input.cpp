@@ -120,7 +120,8 @@ void AxisGroup::State::take_status(std::span<const std::byte> data) {
   for (const node_status_t& node : part->nodes) nodes.insert_or_assign(node.node_id, node);
 }
 
-/// The speed axes come before their layout, so all parts are kept until both are there.
+/// The messages about speed axes come before the layout to which they belong. All parts are
+/// therefore kept until this layout is there.
 void AxisGroup::State::take_speed_axes(std::span<const std::byte> data) {
   auto part = decode<speed_axes_t>(data);
   constexpr std::int16_t most_parts = 128;

@@ -36,7 +36,7 @@ class StreamBuffer {
   /// Fills in the points of the message that is due in this cycle. Returns false if none is due.
   bool fill(std::int64_t cycle, motion_stream_t& message);
 
-  /// Returns true if all points are sent, or are sent soon, so that further ones may come.
+  /// Returns true if all points are sent or will be sent soon, so that further points may be added.
   bool has_room() const noexcept;
   /// Returns true if there is at least one point besides that at which the stream begins.
   bool has_points() const noexcept { return end() > 1; }

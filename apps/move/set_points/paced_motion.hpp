@@ -30,8 +30,8 @@ class Pace {
   double rate_ = 1.0;
 };
 
-/// Motion along one trajectory. A hold slows it down, and it never runs far ahead of the set-points
-/// that the bus has taken. All times are in seconds.
+/// Motion along one trajectory. A hold slows the motion down to standstill. The motion never runs
+/// far ahead of the set-points that the bus has taken. All times are in seconds.
 class PacedMotion {
  public:
   /// `begin` holds the set-points of time 0 as an image shows them. `ramp` is that of Pace. `lead`

@@ -36,7 +36,7 @@ std::optional<double> read_number(const YamlNode& node, std::string_view key,
 std::optional<bool> read_bool(const YamlNode& node, std::string_view key, NetworkReport& report);
 std::optional<std::string> read_text(const YamlNode& node, std::string_view key,
                                      NetworkReport& report);
-/// Reads the key of a map whose keys are numbers, such as that of the PDOs.
+/// Reads a key of a map whose keys are numbers, such as the numbers of PDOs.
 std::optional<std::int64_t> read_number_key(const YamlPair& pair, std::string_view key,
                                             IntegerRange range, NetworkReport& report);
 

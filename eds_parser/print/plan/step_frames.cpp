@@ -99,7 +99,7 @@ class Frames {
   }
 
   /// Returns the frames of a write whose value depends on the value that was read last. An earlier
-  /// step may have read it.
+  /// step may have read this value.
   StepFrames after_reading(ObjectKey object, std::string write) {
     if (cob_id_ == object) return {.first = std::move(write)};
     cob_id_ = object;
