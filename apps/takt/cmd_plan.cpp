@@ -123,7 +123,7 @@ int diff_devices(const PlanOptions& options) {
   return 0;
 }
 
-/// Prints one screen, in which the findings have their place.
+/// Prints a plan that fits on one screen, together with the findings.
 int print_brief(const LoadedNetwork& network) {
   std::ostringstream text;
   print_plan_brief(text, network.plan, network.findings);

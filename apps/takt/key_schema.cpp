@@ -34,7 +34,8 @@ Json scalar(std::string_view pattern, const std::vector<std::string>& types) {
   return {{"type", types}, {"pattern", pattern}};
 }
 
-/// Returns the schema with limits of its numbers. Those in quotes keep to its pattern only.
+/// Returns the schema with limits for numbers. A number in quotes is checked against the pattern
+/// only.
 Json within(const IntegerRange& range, Json schema) {
   schema["minimum"] = range.low;
   schema["maximum"] = range.high;
@@ -208,7 +209,7 @@ class SchemaWriter {
     std::vector<Json> forms;
     const auto or_map = [&] {
       if (value.parts != nullptr) forms.push_back(reference(value.parts));
-      if (forms.size() > 1 && value.type == KeyType::boolean) {  // then a map is written as a map
+      if (forms.size() > 1 && value.type == KeyType::boolean) {  // an empty value is then no map
         forms.back() = {{"type", "object"}, {"allOf", {forms.back()}}};
       }
       return any_of(std::move(forms));
@@ -293,7 +294,7 @@ class SchemaWriter {
     for (const auto& section : network_keys()) own[std::string{section.name}] = true;
     const Json every_node{{"patternProperties", {{hidden_name, true}}},
                           {"additionalProperties", schema}};
-    // `patternProperties` only exempts keys from `additionalProperties`.
+    // The names in `patternProperties` are exempt from `additionalProperties`.
     own["nodes"] = every_node;
     return {
         {"if",

@@ -28,7 +28,7 @@ class DeviceValues {
   std::optional<int> option(std::uint16_t index) const;
   /// Returns true if the device has at least one sub-index of this object.
   bool has(std::uint16_t index) const;
-  /// Returns true if by the EDS the object can be written and `value` is within its limits.
+  /// Returns true if the EDS permits writing to the object and `value` is within its limits.
   bool takes(ObjectKey key, std::int64_t value) const;
   const std::map<ObjectKey, std::uint64_t>& all() const noexcept { return values_; }
 
@@ -37,7 +37,7 @@ class DeviceValues {
   /// Removes an object because the device says that it does not exist. Adds a note.
   void missing(ObjectKey key);
   void note(std::string text) { notes_.push_back(std::move(text)); }
-  /// Returns the findings from the questions to the device.
+  /// Returns the notes that answered(), missing() and note() have added.
   const std::vector<std::string>& notes() const noexcept { return notes_; }
 
  private:

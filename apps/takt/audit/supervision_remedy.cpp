@@ -20,8 +20,8 @@ constexpr const char* master_line = "master: {heartbeat_producer: 100}   # ms";
 constexpr std::int64_t guard_ms = 100;
 constexpr std::int64_t life_time_factor = 3;
 
-/// Returns `heartbeat_multiplier` of the node, as the timeout of its own heartbeat shows it. Where
-/// the master does not watch a heartbeat of the node, that is the usual value.
+/// Returns `heartbeat_multiplier` of the node, computed from the timeout of its heartbeat. Returns
+/// the usual value if the master does not watch a heartbeat of the node.
 double multiplier_of(const NodePlan& node) {
   if (node.heartbeat_timeout == Time{} || node.heartbeat_period == Time{}) return usual_multiplier;
   return static_cast<double>(node.heartbeat_timeout.count()) /
@@ -83,7 +83,7 @@ class Adviser {
     return (std::int64_t{plan_.master_id.value()} << 16) | static_cast<std::int64_t>(accepted);
   }
 
-  /// Returns true if the entry accepts the master's node-ID and time.
+  /// Returns true if the device accepts the master's node-ID and time in this entry.
   bool takes_master(std::uint8_t sub) const {
     return values_.takes({0x1016, sub}, consumer_entry());
   }
@@ -96,9 +96,9 @@ class Adviser {
                : first_entry([this](auto sub) { return use_of(sub) == Entry::watches_nobody; });
   }
 
-  /// Returns true if the boot writes a value into this entry with which the device does not watch
-  /// the master. `sdo` of the network file does that. The boot replaces a value of a DCF by its own
-  /// value.
+  /// Returns true if an `sdo` entry of the network file lets the boot write a value into this entry
+  /// with which the device does not watch the master. Values of a DCF do not count, because the
+  /// boot replaces them by its own value.
   bool is_overwritten(std::uint8_t sub) const {
     return std::ranges::any_of(node_.boot_plan.steps, [&](const BootStep& step) {
       const std::uint64_t value = from_little_endian(step.value);
@@ -131,8 +131,9 @@ class Adviser {
     return true;
   }
 
-  /// Adds the lines with which the device watches the guarding requests of the master. A guard plan
-  /// without retries says that only `retry_factor: 0` keeps the master from guarding the node.
+  /// Adds the lines with which the device watches the guarding requests of the master. If the guard
+  /// plan has 0 retries, `retry_factor: 0` is the only reason why the master does not guard the
+  /// node.
   void watch_guarding() {
     const bool takes_factor = values_.takes({0x100D, 0}, life_time_factor);
     if (node_.boot && node_.guard.retries == 0) {
@@ -166,7 +167,8 @@ class Adviser {
   }
 
   /// Adds the line for an entry that watches nobody and accepts the master, because the entry
-  /// `chosen` of the boot does not accept it. Returns false if there is no such entry.
+  /// `chosen`, which the boot would use, does not accept the master. Returns false if there is no
+  /// such entry.
   bool name_another_entry(const std::string& chosen) {
     const auto wide = first_entry(
         [this](auto sub) { return use_of(sub) == Entry::watches_nobody && takes_master(sub); });

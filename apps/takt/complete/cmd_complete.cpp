@@ -17,9 +17,10 @@
 namespace takt {
 namespace {
 
-/// Without an answer within this time no bus runs. The status of a bus comes ten times a second.
+/// If no status has come within this time, no bus runs: a daemon sends its status ten times a
+/// second.
 constexpr Time silence = std::chrono::milliseconds{220};
-/// A running bus tells its layout once a second.
+/// Longest wait for the layout, which a daemon sends once a second.
 constexpr Time layout_period = std::chrono::milliseconds{1200};
 
 struct CompleteOptions {

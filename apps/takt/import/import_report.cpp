@@ -122,14 +122,15 @@ class RowCollector {
   }
 
   std::vector<Row> rows_;
-  std::size_t places_left_ = 2 * YamlTree::max_nodes;  // many aliases may name one long list
+  // Limits the work, because many aliases may name one long list.
+  std::size_t places_left_ = 2 * YamlTree::max_nodes;
   std::set<std::pair<SourcePos, std::string>> seen_;
 };
 
 KeyUse use_of(const Finding& finding) {
   if (finding.severity == Severity::error) return KeyUse::wrong;
   if (finding.severity == Severity::warning) return KeyUse::suspicious;
-  if (finding.rule == "cob-id") return KeyUse::suspicious;  // the device's bit 30 stays
+  if (finding.rule == "cob-id") return KeyUse::suspicious;  // the device keeps its own bit 30
   const bool ignored =
       finding.rule == "unused-key" || finding.rule == "placeholder" || finding.rule == "guarding";
   return ignored ? KeyUse::ignored : KeyUse::used;

@@ -30,9 +30,9 @@ struct ImportedKey {
 
 /// Report on the import of a file.
 struct ImportReport {
-  std::vector<ImportedKey> keys;     ///< keys in the order of the file
-  Findings others;                   ///< findings on no key: device files, missing entries
-  bool usable = false;               ///< true if taktd can run the file
+  std::vector<ImportedKey> keys;  ///< keys in the order of the file
+  Findings others;                ///< findings that concern no key: device files, missing entries
+  bool usable = false;            ///< true if taktd can run the file
   std::vector<std::string> unasked;  ///< actions of taktd that other readers do not take
 
   /// Returns the number of keys with this result.

@@ -251,7 +251,7 @@ class Importer {
     wrong(row.pos, "no-file", '`' + row.value + "` " + row.why);
   }
 
-  /// Takes the bit rate and the choice of the master from a DCF.
+  /// Reads from a DCF its bit rate, and whether this node is the manager of the network.
   void take_from(const fs::path& path, unsigned id, ListedNode& node, ImportedKey& row) {
     const EdsFile file = read_eds_file(path, NodeId::from(id));
     const auto& declared = file.dictionary.commissioning;

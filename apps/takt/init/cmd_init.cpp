@@ -50,8 +50,8 @@ std::uint64_t number_of_device(SdoDirect& device, ObjectKey object) {
   }
 }
 
-/// Returns the counts of a turn of the shaft behind the gear: 0x608F, encoder increments for motor
-/// revolutions, times 0x6091, motor revolutions for shaft revolutions. CiA 402-2.
+/// Returns the counts per turn of the shaft behind the gear: encoder increments per motor
+/// revolution (0x608F) times motor revolutions per shaft revolution (0x6091). CiA 402-2.
 std::optional<double> counts_a_turn(const std::string& bus, const ScannedDevice& found,
                                     Time timeout) {
   const ObjectDictionary* const dictionary = found.file.dictionary.get();

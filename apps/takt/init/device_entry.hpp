@@ -15,7 +15,7 @@ struct DeviceToWrite {
   std::string file{};  ///< path of its device file in the network file
   /// Device data of the family of the device; nullptr if there are none.
   const DeviceData* data = nullptr;
-  /// Counts of a turn of the shaft behind the gear, read from the device (0x608F, 0x6091).
+  /// Counts per turn of the shaft behind the gear, read from the device (0x608F, 0x6091).
   std::optional<double> counts_a_turn{};
   /// Another node-ID under which the device answers, through its second SDO channel; 0 if there is
   /// none.
@@ -34,9 +34,9 @@ struct ProposedLimit {
   bool has_numbers() const { return entry.find("...") == entry.npos; }
 };
 
-/// Returns true if `other` is not a separate device, because `device` answers under this node-ID
-/// through an SDO channel that the device data describe, such as channel 2 of the Lenze 8400 at
-/// 0x640 + node-ID.
+/// Returns true if `other` is not a separate device: `device` answers under the node-ID of `other`
+/// through another SDO channel, which the device data describe. An example is channel 2 of the
+/// Lenze 8400 at 0x640 + node-ID.
 bool is_second_channel(const DeviceToWrite& device, const DeviceToWrite& other);
 /// Returns the name of a node by its profile: `axis_5`, `io_10`, `inverter_3`.
 std::string node_name(const DeviceToWrite& device);

@@ -106,7 +106,7 @@ struct LearnedBus {
   std::uint64_t lss = 0;                    ///< frames with the identifiers 0x7E4 and 0x7E5
   bool started_all = false;                 ///< true after an NMT start by broadcast
   std::map<std::uint8_t, LearnedNode> nodes;
-  /// Keys are identifiers; only frames that may be SYNC.
+  /// Frames that may be SYNC, by their identifiers.
   std::map<std::uint32_t, LearnedSync> sync;
   Findings findings;
 

@@ -11,8 +11,8 @@ std::optional<T> at(const LearnedValues& values, ObjectKey key) {
   return number ? std::optional{static_cast<T>(*number)} : std::nullopt;
 }
 
-/// Returns all entries of a mapping, or std::nullopt if one is missing. An incomplete mapping has
-/// no use.
+/// Returns all entries of a mapping, or std::nullopt if one is missing. An incomplete mapping can't
+/// be used.
 std::optional<std::vector<std::uint32_t>> entries(const LearnedValues& values, std::uint16_t index,
                                                   std::uint8_t count) {
   std::vector<std::uint32_t> list;

@@ -50,7 +50,7 @@ bool Acknowledged::contains(const std::string& bus, int node, std::int64_t utime
   return found != until_.end() && utime <= found->second;
 }
 
-/// Forgets the node whose EMCYs are the oldest if there are too many.
+/// Removes the node with the oldest time if there are more than `most_nodes` nodes.
 void Acknowledged::add(const std::string& bus, int node, std::int64_t utime) {
   std::int64_t& until = until_[{printable_text(bus), node}];
   until = std::max(until, utime);

@@ -16,8 +16,8 @@ class Acknowledged {
   /// Returns the file: `takt/acknowledged` in XDG_STATE_HOME, or in ~/.local/state. Empty if
   /// neither XDG_STATE_HOME nor HOME is set.
   static std::optional<std::filesystem::path> file();
-  /// Reads the file. Nothing is acknowledged if there is none. Lines that cannot be read are left
-  /// out. Throws a Failure if the file exists and cannot be read.
+  /// Reads the file. If the file does not exist, nothing is acknowledged. Lines that cannot be read
+  /// are left out. Throws a Failure if the file exists and cannot be read.
   static Acknowledged load(const std::filesystem::path& path);
   /// Reads the text of such a file: one line with time, node-ID and bus for each node.
   static Acknowledged of(std::string_view text);

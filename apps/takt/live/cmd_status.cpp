@@ -33,10 +33,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(status_t, bus, interface, bitrate, realtime, 
 
 namespace {
 
-/// The layout comes once a second, the PDOs twice.
+/// Longest wait: the layout comes once a second, the status of the PDOs twice.
 constexpr Time wait_limit = std::chrono::milliseconds{1500};
 
-/// Returns true unless an image is still to come. A bus that does not run may send none.
+/// Returns true if an image has come, or if the bus does not run and may therefore send no image.
 bool has_image(const BusView& bus) {
   return bus.status()->diagnosis.state != 0 || !bus.values().empty();
 }

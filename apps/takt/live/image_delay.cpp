@@ -9,9 +9,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Tolerance of CLOCK_REALTIME minus CLOCK_MONOTONIC: the difference that the image states against
-/// that of this machine. On one machine both are equal, except for what NTP corrects between the
-/// two readings.
+/// Largest difference between the clock offset in an image and the clock offset of this machine, if
+/// the image comes from this machine. The offset is CLOCK_REALTIME minus CLOCK_MONOTONIC. On one
+/// machine, it changes only by the corrections of NTP.
 constexpr Time same_clock = 5ms;
 
 bool is_of_this_machine(const image_t& image, Time offset) noexcept {

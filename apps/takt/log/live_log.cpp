@@ -145,7 +145,7 @@ class LiveLog {
 }  // namespace
 
 void log_live(const LiveLogOptions& options) {
-  format_of(options.output);  // before waiting for a daemon
+  format_of(options.output);  // reports a wrong file name before the wait for a daemon
   LiveLog{options}.run();
 }
 

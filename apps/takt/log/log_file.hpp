@@ -22,8 +22,8 @@ class LogFile final : public mcap::ByteSink {
   /// Gives the file its final name. The error is a sentence with the name of the file.
   std::expected<void, std::string> commit();
 
-  /// Returns why reserve() or write() has failed first: `No space left on device`. The text is
-  /// empty if neither has failed.
+  /// Returns the reason of the first failure of reserve() or write(), for example `No space left on
+  /// device`. The text is empty if both have succeeded.
   const std::string& trouble() const noexcept { return trouble_; }
   const std::string& path() const noexcept { return path_; }
   std::uint64_t size() const noexcept { return size_; }

@@ -53,7 +53,7 @@ class LogWriter {
   virtual ~LogWriter() = default;
   virtual bool row(const LogRow& row) = 0;
   virtual bool event(const LogEvent& event) = 0;
-  /// Most formats can't contain frames.
+  /// Writes a frame. A format that can't contain frames leaves it out.
   virtual bool frame(const LogFrame& frame) {
     static_cast<void>(frame);
     return true;

@@ -15,7 +15,7 @@ namespace takt {
 /// The bytes of an object on the wire.
 using SdoValue = std::vector<std::byte>;
 
-/// The device that a command means, and the way to it.
+/// The device of a command line, and how to reach it.
 struct SdoRouteOptions {
   LiveOptions live;
   std::string bus;  ///< interface for direct access; empty means access through the daemon
@@ -38,7 +38,7 @@ class SdoRoute {
   SdoValue upload_file(ObjectKey object, std::size_t limit, const Progress& progress);
   void download_file(ObjectKey object, const SdoValue& value, const Progress& progress);
   int node() const noexcept { return node_; }
-  /// Returns what files and the daemon say about the device. Reads it when it is first needed.
+  /// Returns the data of the device from files and from the daemon. The first call reads them.
   const KnownDevice& device();
   /// Returns the object that the user means: by its index, or by its name. `examples` continues
   /// the sentence of the Failure if the word can be neither.

@@ -27,9 +27,9 @@ struct FaultFile {
 ///       - {kind: enable, axes: [elbow]}
 ///       - {kind: move, at: 2s, to: 1.5, velocity: 3, acceleration: 20}
 ///
-/// A node is given by name or number. All errors are listed at once. A fault of a program is an
-/// error if `applications` is 0 and, for a fault that concerns all programs, no program commands
-/// motions.
+/// A node is given by name or number. All errors are listed at once. `applications` is the number
+/// of applications. If it is 0, a fault of an application is an error; a fault that concerns all
+/// programs is an error if, in addition, no program commands motions.
 FaultFile read_fault_file(const std::filesystem::path& path, const BusPlan& plan,
                           std::size_t applications = 0);
 

@@ -28,7 +28,7 @@ WireStatistics::WireStatistics(const BusPlan& plan)
   content(plan.cycle.sync_cob_id) = {.kind = Content::Kind::sync};
 }
 
-/// Of several PDOs with one identifier, the first counts all frames.
+/// If several PDOs have the same identifier, all frames count for the first of them.
 void WireStatistics::list(Content::Kind kind, const std::vector<PdoRow>& pdos) {
   for (std::size_t row = 0; row < pdos.size(); ++row) {
     Content& carried = content(pdos[row].cob_id);

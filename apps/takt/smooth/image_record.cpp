@@ -8,7 +8,7 @@
 namespace takt::smooth {
 namespace {
 
-/// An image that is more cycles after the first one belongs to another run.
+/// An image that comes more cycles than this after the first one belongs to another run.
 constexpr std::int64_t most_cycles = 1'000'000'000;
 
 /// Returns the layout in the form of a map: the outputs of a node as one RPDO, the inputs as a

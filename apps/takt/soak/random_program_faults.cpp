@@ -114,7 +114,8 @@ void RandomProgramFaults::stall_application(Time now) {
   application().stall(now + stall);
 }
 
-/// Lets an application jump, by little more than its limits permit or by far more.
+/// Lets the set-points of an application jump, by little more than their limits permit or by far
+/// more.
 void RandomProgramFaults::let_jump(Time now) {
   const std::int64_t counts = std::int64_t{16} << random_.below(16);
   announce(now, "an application commands a jump", {});
@@ -150,7 +151,8 @@ void RandomProgramFaults::slow_down_lcm(Time now) {
   agenda_.add(now + lasts, [this] { cast_.lcm.set_delay(VirtualLcm::usual_delay); });
 }
 
-/// Messages that were sent during the fault may come, or time out, for some time after it.
+/// Reports a fault. Its effects last longer than the fault, because messages that were sent during
+/// the fault may arrive or expire later.
 void RandomProgramFaults::announce(Time now, const char* what, Time span) const {
   disturbed_(now + span + aftermath);
   if (!verbose_) return;

@@ -82,7 +82,7 @@ class End {
 /// A view on the whole terminal. Its first line stays while the others scroll.
 class View {
  public:
-  /// Does what the pressed keys ask for. Returns true if one of them ends the view.
+  /// Handles the pressed keys. Returns true if one of them ends the view.
   bool key_ends() {
     while (const int key = Screen::key()) {
       if (key == 'q' || key == 'Q') return true;

@@ -70,8 +70,8 @@ Table other_table(const BusView& bus, const std::vector<const node_status_t*>& n
   return table;
 }
 
-/// The words of drives: name, value in hex, and a meaning that may take several lines. In narrow
-/// terminals, each of them has lines of its own.
+/// The words of drives: the axis, the word with its value in hex, and its meaning, which may take
+/// several lines. In a narrow terminal, these three are on separate lines.
 class WordLines {
  public:
   WordLines(const std::vector<AxisView>& axes, std::size_t width) : width_{width} {

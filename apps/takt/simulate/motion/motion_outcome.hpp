@@ -17,8 +17,8 @@ struct SpeedWord {
 };
 
 /// The largest magnitudes that taktd has reported for an axis while an entry was in progress, in
-/// the unit of the axis and in seconds. `velocity` is commanded; for a speed axis, it is that of
-/// `speed_word`, and the others are 0.
+/// the unit of the axis and in seconds. `velocity` is the commanded velocity. For a speed axis, it
+/// is the speed that `speed_word` reports, and the other two magnitudes are 0.
 struct AxisMaxima {
   std::string axis;
   std::string unit;  ///< unit of positions; of speeds for a speed axis; empty for raw counts

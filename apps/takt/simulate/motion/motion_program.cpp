@@ -73,7 +73,7 @@ bool MotionProgram::open() {
   return opened.has_value();
 }
 
-/// During this time, the motion of the newest entry continues.
+/// Waits until `when`. Meanwhile, the motion of the newest entry continues.
 void MotionProgram::pass_until(Time when) {
   while (program_time() < when && !setting_.is_killed()) {
     const auto left = when - program_time();
@@ -142,7 +142,8 @@ std::optional<Time> MotionProgram::time_of_next() const {
   return next_ + 1 < entries_.size() ? entries_[next_ + 1].at : std::nullopt;
 }
 
-/// The library waits for the end. The next entry ends only this wait.
+/// Returns when the motion has ended, or at the time of the next entry. The motion itself then goes
+/// on.
 Done MotionProgram::move_by(const MotionEntry& entry) {
   interrupt_ = time_of_next();
   const Done done = axes_->move_by(entry.values, entry.bounds);
@@ -151,8 +152,8 @@ Done MotionProgram::move_by(const MotionEntry& entry) {
   return moves_on ? Done{} : done;
 }
 
-/// The library waits for room while points are given. The next entry of the script ends this wait,
-/// and the library then stops the axes.
+/// Gives the points to the library, which waits while it has no room for more. The next entry of
+/// the script ends this wait, and the library then stops the axes.
 Done MotionProgram::stream(const MotionEntry& entry, MotionOutcome& outcome) {
   if (Done begun = axes_->begin_stream(entry.bounds); !begun) return begun;
   interrupt_ = time_of_next();

@@ -36,7 +36,7 @@ std::vector<AxisMaxima> maxima_of(const BusPlan& plan) {
   return all;
 }
 
-/// Makes an outcome of each entry, for an entry that has not begun.
+/// Makes the outcome of each entry, in the state before the entry begins.
 std::vector<MotionOutcome> outcomes_of(const BusPlan& plan, const MotionScripts& scripts) {
   const std::vector<AxisMaxima> known = maxima_of(plan);
   std::vector<MotionOutcome> outcomes;

@@ -48,7 +48,7 @@ constexpr bool needs_position(MotionKind kind) noexcept {
   return (goes_on(kind) && kind != MotionKind::jog) || kind == MotionKind::home;
 }
 
-/// The possible ends of an entry that a file can expect: `ended` by its own script, or a word of
+/// The ends of an entry that a file can expect: `ended` if its own script ends it, or a word of
 /// MotionOutcome::result.
 inline constexpr std::array<std::string_view, 9> expectable_ends{
     "done",   "ended",     "refused",   "stopped",  "blocked",

@@ -169,7 +169,8 @@ motion_command_t MotionCommander::motion() {
   return command;
 }
 
-/// Returns nothing if no other axis can lead the one that was chosen.
+/// Lets an axis follow a leader; both are chosen at random. Returns nothing if both are the same
+/// axis.
 std::optional<motion_command_t> MotionCommander::choose_gear() {
   const Axis& axis = axes_[gear_random_.below(static_cast<std::uint32_t>(axes_.size()))];
   const Leader& leader = leaders_[gear_random_.below(static_cast<std::uint32_t>(leaders_.size()))];
@@ -191,8 +192,9 @@ std::optional<motion_command_t> MotionCommander::choose_gear() {
   return command;
 }
 
-/// Some leaders move next, so that the axis can follow within its limits. The phase of such a gear
-/// is near the present one, so that the axis is locked before its leader moves.
+/// Plans a motion of the leader that is so slow that the axis can follow it within its limits. The
+/// phase becomes one near the present difference, so that the axis is locked before its leader
+/// moves. If this program does not command the leader, no motion is planned.
 void MotionCommander::plan_leading(motion_goal_t& follower, const Axis& axis) {
   const double ratio = gear_.numerator.front();
   const auto leader = std::ranges::find_if(axes_, [&](const Axis& other) {
@@ -235,7 +237,8 @@ void MotionCommander::choose_stream(Time now) {
   if (gear_random_.chance(0.8)) streaming_->until += longest_wait;
 }
 
-/// Returns nothing if the path would take too long, or if the limits are those of the file.
+/// Returns nothing if the path would take too long, or if the motion has only the limits of the
+/// network file.
 std::optional<motion_command_t> MotionCommander::begin_stream(const Axis& axis, Time now) {
   motion_goal_t goal = goal_of(axis);
   if (goal.max_velocity == 0) return std::nullopt;

@@ -14,11 +14,11 @@
 
 namespace takt {
 
-/// Chooses the motions that a program commands. It sends a message every 20 ms, which may come
-/// 10 ms late; now and then it is silent for 300 ms, seldom for 2 s. Each process has its own
-/// limits and timeout. A target in counts has the number of the program in its low four bits. Some
-/// processes also let an axis follow another one, of any program, or lead an axis along the points
-/// of a stream.
+/// Chooses the motions that a program commands. It sends a message every 20 ms, which may come 10
+/// ms late; now and then it is silent for 300 ms, seldom for 2 s. Each process has its own limits
+/// and timeout. A target in counts has the number of the program in its low four bits. Some
+/// processes also let an axis follow another axis, which any program may command, or move an axis
+/// along the points of a stream.
 class MotionCommander {
  public:
   /// `nodes` are those of the program, in the order of BusPlan::nodes.

@@ -20,8 +20,9 @@ constexpr std::int64_t push_velocity = 4;  // counts per second for each unit of
 // Number of images between fault resets, which take several images.
 constexpr std::uint64_t images_a_reset = 60;
 constexpr std::uint16_t from_target_to_offset = 0x60B0 - 0x607A;
-constexpr double turn_before = 2000;  // distance from a limit, in counts
-// Longest time in which images come and none is used; the layout is published once a second.
+constexpr double turn_before = 2000;  // counts from a limit at which an axis turns back
+// Longest time for which a program may receive images without using one. It needs the layout, which
+// is published once a second.
 constexpr Time longest_deafness = 3s;
 constexpr Time longest_turn = 15s;  // longest turn with motions
 constexpr Time longest_set_points = 4s;
@@ -231,7 +232,7 @@ bool VirtualApplication::has_push(AxisControl::Index axis) const {
   return signals.target_velocity || signals.target_torque;
 }
 
-/// Shares the set-point between a target and its offset if the drive has both.
+/// Splits the set-point into a target and an offset if the drive has both.
 void VirtualApplication::put_shared(AxisSignals::Position target, AxisSignals::Position offset,
                                     std::int64_t value, command_t& command) {
   const auto put = [&](AxisSignals::Position signal, std::int64_t share) {

@@ -41,7 +41,7 @@ Time usual_period(std::span<const Time> syncs, std::optional<Time> planned) {
     return pair;
   }
   if (steady_share(single, 0.15) < 0.2 && steady_share(twofold, 0.1) > 0.9) return pair;
-  // The intervals are half of one length and half of another one.
+  // The intervals of two producers alternate between two lengths.
   const Time low = quantile(single, 0.2);
   const Time high = quantile(single, 0.8);
   const bool alternate = high > low * 3 / 2 && distance(low + high, pair) < scaled(pair, 0.06);

@@ -9,7 +9,7 @@
 
 namespace takt::soak {
 
-/// 6061 of a drive that obeys target positions of each cycle.
+/// Mode (6061) in which a drive follows a target position in each cycle.
 inline constexpr std::uint64_t cyclic_synchronous_position = 8;
 
 /// Returns true if the drive is in Operation enabled.

@@ -21,7 +21,7 @@ inline double most_cycles_of_way(Time period) noexcept {
   return std::max(fewest_cycles, static_cast<double>(longest_gap / period));
 }
 
-/// Largest age, in cycles, of the state of an axis that the master knows.
+/// Largest age, in cycles, of the knowledge that the master has of the state of an axis.
 inline constexpr unsigned state_doubt = 8;
 
 /// Returns the number of cycles from `from` to `to`, from 1 to `most`. A wake-up that is a little

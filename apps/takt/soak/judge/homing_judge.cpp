@@ -59,7 +59,8 @@ void HomingJudge::heard(const Frame& frame, Time now) {
   }
 }
 
-/// Before the drive changes to this mode, it follows the set-point that it has received.
+/// Notes the state of a drive. When a drive begins to follow set-points, the newest one that it has
+/// received must be near its actual position.
 void HomingJudge::take_inputs(std::size_t axis, const Frame& frame, Time now) {
   const MotionAxis& signals = signals_[axis];
   Axis& own = axes_[axis];

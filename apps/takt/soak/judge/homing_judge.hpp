@@ -14,8 +14,8 @@ namespace takt::soak {
 
 /// Checks the homing of axes by the frames on the wire and by the messages that programs receive:
 /// an axis is homed only after a run that its drive has reported as good, and not after its node
-/// was lost; and the set-points of a drive that obeys them never jump, also where homing begins and
-/// ends.
+/// was lost; and the set-points never jump while the drive follows them, not even at the begin and
+/// the end of homing.
 class HomingJudge {
  public:
   /// `velocity` is the largest one that programs command, in the unit of each axis per second.

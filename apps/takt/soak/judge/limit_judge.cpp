@@ -86,8 +86,8 @@ void LimitJudge::begin_cycle(Time now) {
   for (Place* const place : limited_) {
     if (place->doubt != 0) --place->doubt;
     if (place->mode_doubt != 0) --place->mode_doubt;
-    // A babbling node may have sent a hundred positions in a cycle. All of them may have waited in
-    // the queue while the master was stopped.
+    // All positions of the newest cycles are kept. A babbling node may send a hundred positions in
+    // a cycle, and they may have waited in the queue while the master was stopped.
     while (place->actual.size() > fewest_remembered &&
            place->actual.front().when < cycles_.front()) {
       place->actual.pop_front();
@@ -270,8 +270,9 @@ void LimitJudge::judge(Time now) {
 }
 
 /// Returns the value to which the limits of an output apply: the sum with its offset if the drive
-/// adds both. The result is empty if they hold for a sum to which the output belongs, or if the
-/// mode has changed so recently that this is uncertain.
+/// adds both. The result is empty if the output is an offset that the drive adds to a target,
+/// because the limits then apply to the sum. It is also empty if the mode has changed so recently
+/// that it is uncertain whether the drive adds both.
 std::optional<double> LimitJudge::limited_value(const Place& place) const noexcept {
   const OutputLimit& limit = *place.limit;
   const double value = sent_[limit.signal - plan_.layout.inputs];

@@ -70,7 +70,8 @@ void WireJudge::sent(std::span<const Frame> frames, Time now) {
 void WireJudge::judge(SignalIndex index, std::uint64_t value, Time now) {
   const Signal& signal = plan_.layout.signals[index];
   Output& output = this->output(index);
-  // The first value of an output is the one that the device has (607A from 6064).
+  // An output that was not sent for five periods begins with the value of the device (607A with
+  // that of 6064).
   const bool begins = now > output.when + 5 * plan_.cycle.period;
   const bool differs = value != output.last;
   const bool changed = !begins && differs;
@@ -100,8 +101,9 @@ void WireJudge::judge(SignalIndex index, std::uint64_t value, Time now) {
   }
 }
 
-/// Returns true if a motion may be the cause of the value: it leads the output, it has led the axis
-/// to its position, or its sender keeps the outputs of the node valid.
+/// Returns true if a motion may be the cause of the value: it sets the output, it has moved the
+/// axis to its present position, it has set a velocity offset to 0, or its sender keeps the outputs
+/// of the node valid.
 bool WireJudge::by_motion(SignalIndex index, std::uint64_t value, bool differs,
                           Time now) const noexcept {
   const Signal& signal = plan_.layout.signals[index];
@@ -113,7 +115,7 @@ bool WireJudge::by_motion(SignalIndex index, std::uint64_t value, bool differs,
 
 void WireJudge::judge_holder(const Signal& signal, const Known& known, Time now) {
   ++moves_;
-  if (!std::has_single_bit(known.senders)) return;  // two programs commanded the same value
+  if (!std::has_single_bit(known.senders)) return;  // several programs have commanded the value
   holders_.moved(signal.node_index,
                  {.sender = known.senders,
                   .computed_from = known.computed_from,

@@ -55,8 +55,8 @@ bool GearWatch::keeps(double difference) const noexcept {
   return high - low <= 2 * rounding + slack;
 }
 
-/// The first differences of a span may still be those of the phase-in. So the span begins anew when
-/// the axis is locked.
+/// The first differences of a span may still be those of the phase-in. Therefore the span begins
+/// anew when the axis is locked.
 void GearWatch::take(double difference, double own, Time now) noexcept {
   if (!span_) span_ = Span{.low = difference, .high = difference, .own_low = own, .own_high = own};
   span_->low = std::min(span_->low, difference);

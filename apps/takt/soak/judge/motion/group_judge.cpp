@@ -50,8 +50,8 @@ void GroupJudge::forget(std::size_t axis) {
   });
 }
 
-/// When an axis has reached its velocity, its position is the same as if its velocity had jumped in
-/// the middle of the acceleration.
+/// Finds the time at which the axis has begun. An axis that has reached its velocity is where it
+/// would be if its velocity had jumped to this value in the middle of the acceleration.
 void GroupJudge::look(Begin& axis, Group& group, double value, Time now) const {
   axis.value = value;
   const MotionBounds& bounds = axis.member.bounds;

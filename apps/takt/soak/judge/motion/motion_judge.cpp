@@ -19,8 +19,8 @@ constexpr unsigned hold_tolerance = 5;  // a lease may end this much early
 // Number of cycles in which a late frame may be followed by an early one.
 constexpr unsigned cycles_after_late = 3;
 constexpr unsigned most_cycles_of_frame = 2;  // one frame may be missing
-constexpr Time short_rest = 150ms;            // a motion that ends has ended by then
-constexpr Time long_rest = 100ms;             // no motion runs
+constexpr Time short_rest = 150ms;  // time without a change after which an axis is judged to rest
+constexpr Time long_rest = 100ms;   // time without a change after which no motion runs
 
 }  // namespace
 
@@ -123,7 +123,8 @@ void MotionJudge::begin_cycle(Time now) {
   }
 }
 
-/// In the first cycles after a failure, the master may not know of the failure.
+/// Notes that a drive is disabled or silent, but only after some cycles, because the master may not
+/// know of a failure in the first cycles after it.
 void MotionJudge::judge_failure(std::size_t axis, Time now) {
   const PdoRow& row = plan_.pdos.tpdos[plan_.layout.signals[orders_.axes()[axis].statusword].row];
   const bool every_cycle = row.cyclic() && row.transmission == 1;
@@ -152,7 +153,7 @@ void MotionJudge::judge_rest(std::size_t axis) {
        .computed_from = cause->computed_from,
        .held_until = cause->computed_from + cause->timeout - hold_tolerance * plan_.cycle.period},
       own.when);
-  if (!cause->creeps) orders_.arrived(axis, *cause);  // otherwise the motion may still end
+  if (!cause->creeps) orders_.arrived(axis, *cause);  // a slow motion may still run
 }
 
 /// Takes a SYNC. If SYNC was missing in more than one period before, the motions have ended at
@@ -193,7 +194,7 @@ void MotionJudge::sent(SignalIndex target, std::int64_t value, const Cause& caus
   paths_.sent(*found, counts, cause.by_set_point);
   const auto syncs = static_cast<unsigned>(std::min<std::uint64_t>(syncs_ - axis.syncs, 1000));
   axis.syncs = syncs_;
-  // The drive has not yet followed.
+  // Without a SYNC since the last frame, a repeated value has had no effect.
   if (plan_.cycle.sync && syncs == 0 && axis.value == counts) return;
   if (cause.begins) axis.doubt = state_doubt;
   groups_.sent(*found, counts, now);

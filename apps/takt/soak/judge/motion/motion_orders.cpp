@@ -118,8 +118,8 @@ void MotionOrders::add(const SentMotion& sent, const motion_goal_t& goal, std::s
   orders.push_back(order);
 }
 
-/// A missing beat delays a stream by a period. The remaining points may take twice their time, and
-/// the points before may have taken a tenth more.
+/// A missed cycle delays a stream by a period. Therefore the end is computed with twice the time of
+/// the remaining points, and with a tenth of the elapsed time in addition.
 void MotionOrders::take_points(const SentMotion& sent, OrderedMotion& order,
                                Time now) const noexcept {
   if (order.stream != sent.command.id || order.sender != sent.sender) return;
@@ -163,8 +163,9 @@ Time MotionOrders::end_of(std::size_t axis, const OrderedMotion& order) const no
   return std::min({silent, order.ended, order.points_end});
 }
 
-/// An axis that waits for others may move by less than a count in each second. An axis that follows
-/// a leader moves again when its leader moves.
+/// The motion of an axis at standstill may not have ended. An axis that waits for the others of its
+/// group may need seconds for one count, and an axis that follows a leader moves again when its
+/// leader moves.
 void MotionOrders::stood(std::size_t axis, Time since, Time now) {
   std::erase_if(orders_[axis], [&](const OrderedMotion& order) {
     return !order.follows && latest_begin(order) < since &&

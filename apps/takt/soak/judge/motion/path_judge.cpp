@@ -12,7 +12,8 @@ using namespace std::chrono_literals;
 
 // Longest time from the cycle of a message until the daemon knows it.
 constexpr Time longest_message = 40ms;
-// Part of the limits; with 0.8, an axis does not fall behind.
+// A leader within this part of the limits of the axis is judged. Up to 0.8, an axis does not fall
+// behind.
 constexpr double part_for_leader = 0.7;
 constexpr double part_for_phase = 0.1;  // part of the velocity for catching up
 constexpr int phase_ins = 6;            // number of stopping times until the velocities are equal

@@ -3,7 +3,7 @@
 
 namespace takt::soak {
 
-/// The knowledge about a target position that has to be on a path.
+/// The result of comparing a target position with its path.
 enum class PathVerdict : std::uint8_t {
   on,       ///< the position is on the path
   off,      ///< the position is not on the path
