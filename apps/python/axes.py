@@ -9,18 +9,18 @@ How to try it on the simulated bus of share/demo/two_axes.yaml:
     taktd share/demo/two_axes.yaml --bus sim &
     venv/bin/python apps/python/axes.py demo
 
-Each axis moves away from its actual position by the distance of its unit (MOVES below) and back.
-In each cycle of the bus, the daemon publishes an image of all inputs. This program computes one
-set-point for each axis from it and sends all of them in one command.
+Each axis moves away from its actual position by a distance that depends on its unit (MOVES below), and
+back. In each cycle of the bus, the daemon publishes an image of all inputs. From each image, this program
+computes one set-point for each axis, and sends all set-points in one command.
 
 If the following error of an axis exceeds its limit, or an axis leaves Operation enabled, or its PDOs
-stop, all axes are disabled in order and the program ends with a message. It does the same after
-Ctrl-C, SIGTERM or SIGHUP (the terminal is closed), but first slows the motion down; a second signal
-other than SIGHUP ends it at once. However it ends, it releases its outputs, and the drives take the
-fallback of the network file.
+stop, all axes are disabled in order and the program ends with a message. The program does the same after
+Ctrl-C, SIGTERM or SIGHUP (the terminal is closed), but first slows the motion down; a second signal other
+than SIGHUP ends the program at once. In every case, the program releases its outputs at its end, and the
+drives take the fallback of the network file.
 
-If another program holds an axis, the commands of this one are refused: it names the other program and
-ends. It first waits up to 2 s, because the daemon holds the axes of a program that has died until the
+If another program holds an axis, the daemon refuses the commands of this program. This program then names
+the other program and ends, but first waits up to 2 s: a program that has died holds its axes until the
 time to live of its last command has run out.
 
 Exit codes: 0 the axes moved, 1 an axis did not follow, another program holds it, or the motion did not
@@ -60,17 +60,17 @@ MOVE_TIME = 2.0  # seconds there and back
 SLOW_DOWN_TIME = 0.5  # seconds from full speed to standstill after a signal
 ENABLE_TIME = 30.0  # seconds until all axes have to be in Operation enabled
 HELD_TIME = 2.0  # seconds until another program has to give up the axes
-TAKEN_TIME = 0.5  # seconds in motion until it counts that another program has taken an axis
+TAKEN_TIME = 0.5  # seconds for which another program may hold an axis during the motion
 DISABLE_TIME = 2.0  # seconds until all axes have to be disabled
-LAYOUT_TIME = 10.0  # seconds until the daemon has to be heard
+LAYOUT_TIME = 10.0  # seconds until the first layout and image have to come
 IMAGE_TIME = 1  # seconds between two images
 MOST_STALE_IMAGES = 50  # images in sequence without the PDOs of an axis
 MOST_CYCLES = 5  # The motion advances by at most this many cycles, so missed cycles are no jump.
 MOST_AHEAD = 16  # cycles between two images that follow each other
-MOST_STRANGE = 3  # This number of images in sequence is believed in any case.
+MOST_STRANGE = 3  # This number of images in sequence is accepted, whatever came before.
 
-# The CiA 402 state machine: a state is seen in some bits of the statusword (0x6041). The controlword
-# (0x6040) leads one step further on the way to Operation enabled, or on the way back.
+# The CiA 402 state machine: some bits of the statusword (0x6041) show the state. The controlword (0x6040)
+# commands the next state on the way to Operation enabled, or on the way back.
 State = collections.namedtuple("State", "name mask bits to_enable to_disable is_disabled")
 OPERATION_ENABLED = State("Operation enabled", 0x6F, 0x27, 0x0F, 0x07, False)
 STATES = (
@@ -111,8 +111,8 @@ class OrderedStop(Failure):
 
 
 class StopSignals:
-    """Remembers Ctrl-C, SIGTERM and SIGHUP until the motion has slowed down. A second one ends at
-    once, except SIGHUP: it may come several times when a terminal is closed."""
+    """Remembers Ctrl-C, SIGTERM and SIGHUP until the motion has slowed down. A second signal ends the
+    program at once, except SIGHUP, which may come several times when a terminal is closed."""
 
     def __init__(self):
         self.name = None
@@ -144,7 +144,7 @@ class Bus:
         self.signals, self.values, self.stale = {}, {}, set()  # by place in the image
         self.strange = []  # the newest images in sequence that do not follow self.image
         self.holders = {}  # {node id: name of the program that commands its outputs}
-        self.refusal = ""  # what the daemon says to commands without a key
+        self.refusal = ""  # message of the daemon about a command without a key
         self.command = command_t()
         self.command.schema = SCHEMA
         self.command.instance = random.SystemRandom().randrange(1, 2**63)  # tells two senders apart
@@ -188,7 +188,7 @@ class Bus:
         try:
             image = image_t.decode(data)
         except (ValueError, struct.error):
-            return  # It is of another schema, which the layout shows, or incomplete.
+            return  # The message is incomplete, or of another schema, which the layout shows.
         if not self.believes(image):
             return
         self.strange = []
@@ -200,8 +200,9 @@ class Bus:
         self.fresh = image.part + 1 == image.parts
 
     def believes(self, image):
-        """One forged or late image changes nothing. An image that does not follow the newest one
-        counts only as the third in sequence, so that a restart of the daemon is seen."""
+        """Returns whether to use an image. A single forged or late image is not used. An image that does
+        not follow the newest one is used only if it is the third in a sequence, as after a restart of the
+        daemon."""
         if self.layout is None or image.schema != SCHEMA:
             return False
         if identity(image) == identity(self.layout):
@@ -274,8 +275,8 @@ class Bus:
         self.complete = True
 
     def next_image(self):
-        """Waits for the next image; returns the seconds by which the motion advances. They are
-        more than 0 after any image, so that every time limit that is made of them ends."""
+        """Waits for the next image. Returns the seconds by which the motion advances: more than 0 for
+        each image, so that every time limit that counts these seconds ends."""
         last = self.image.cycle
         self.receive_until(lambda: self.fresh, IMAGE_TIME, Failure(f"no image for {IMAGE_TIME} s"))
         while self.receive(0):
@@ -298,7 +299,7 @@ class Bus:
     def release(self):
         """Gives up all outputs; the drives take their fallback at once."""
         if self.command.session == 0 or self.restarted():
-            return  # It has commanded nothing in this session of the daemon.
+            return  # This program has commanded nothing in this session of the daemon.
         self.command.release = True
         try:
             self.send({})
@@ -316,7 +317,8 @@ class Bus:
 
 
 def identity(message):
-    """The run of the daemon and the order of the values: that of a layout is that of its images."""
+    """Identifies the run of the daemon and the order of the values: a layout and its images have the same
+    identity."""
     return message.session, message.hash if isinstance(message, layout_t) else message.layout_hash
 
 
@@ -339,7 +341,7 @@ def refuse_unknown_schema(schema):
 
 
 class Axis:
-    """One CiA 402 axis: what the image says about it, and its set-points. Positions are raw."""
+    """One CiA 402 axis: its values in the image, and its set-points. Positions are raw."""
 
     def __init__(self, name, places, position_signal, following_limit=None):
         self.name = name
@@ -381,12 +383,14 @@ class Axis:
         return (self.target - self.actual) * self.scale
 
     def stay(self):
-        """Holds the axis where it is. Its target follows its position until it is enabled."""
+        """Holds the axis where it is. Until the axis is enabled, its target follows its actual
+        position."""
         if self.start is None or not self.is_enabled():
             self.start = self.target = self.actual
 
     def go(self, seconds):
-        """Sets the target of this time of the motion: a sine from the start position and back."""
+        """Sets the target for this time of the motion, which is a sine from the start position and
+        back."""
         share = (1.0 - math.cos(2.0 * math.pi * seconds / MOVE_TIME)) / 2.0  # 0 .. 1 .. 0
         self.target = self.start + round(share * self.move.distance / self.scale)
 
@@ -443,7 +447,7 @@ def held_by_others(bus, axes):
 
 
 def enable(bus, axes, stop):
-    """Brings all axes to Operation enabled, each at its actual position, and holds them."""
+    """Brings all axes to Operation enabled, each at its actual position, and holds them there."""
     waited, held = 0.0, 0.0
     while True:
         step = bus.next_image()
@@ -514,7 +518,7 @@ def check_motion(axes):
 
 
 def disable(bus, axes):
-    """Disables all axes in order. Returns a line for each axis that did not confirm it."""
+    """Disables all axes in order. Returns a line for each axis that did not confirm this."""
     waited = 0.0
     while True:
         waited += bus.next_image()
@@ -566,7 +570,7 @@ def run(options):
         unit = axis.unit or "counts"
         print(f"{axis.name} moves by {axis.move.distance:g} {unit} and back; its following error may "
               f"be up to {axis.move.following_limit:g} {unit}")
-    seconds = MOVE_TIME * math.ceil(options.seconds / MOVE_TIME)  # It ends where it began.
+    seconds = MOVE_TIME * math.ceil(options.seconds / MOVE_TIME)  # The motion ends where it began.
     try:
         enable_move_disable(bus, axes, seconds, stop)
     finally:

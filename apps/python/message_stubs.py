@@ -1,4 +1,4 @@
-"""Makes type hints for the classes of lcm-gen, which have none, of the files of share/lcm. setup.py uses it."""
+"""Makes type hints for the classes that lcm-gen makes from share/lcm, because lcm-gen makes none. setup.py uses this module."""
 import re
 
 FIELD = re.compile(r"^\s*(\w+)\s+(\w+)\s*((?:\[\w+\])*)\s*;", re.MULTILINE)
@@ -8,18 +8,18 @@ NUMBERS = {"boolean": "bool", "byte": "int", "double": "float", "float": "float"
 
 
 def fields_of(text):
-    """(name, type in Python) of the fields of a message type, in their order."""
+    """Yields (name, type in Python) for each field of a message type, in order."""
     for kind, name, dimensions in FIELD.findall(COMMENT.sub("", text).partition("{")[2]):
         plain = NUMBERS.get(kind, kind)
         if kind == "byte" and dimensions:
             plain = "bytes"
-        elif dimensions:  # a list when it is made, and a tuple of numbers when it was received
+        elif dimensions:  # a program sets a list; a received message has a tuple of numbers
             plain = f"Sequence[{plain}]" if kind in NUMBERS else f"list[{plain}]"
         yield name, plain
 
 
 def stub_of(name, text):
-    """The file of type hints for the message type `name`, whose definition is `text`."""
+    """Returns the file of type hints for the message type `name`, whose definition is `text`."""
     fields = list(fields_of(text))
     others = sorted({match[1] for _, kind in fields if (match := re.fullmatch(r"(?:list\[)?(\w+_t)\]?", kind))})
     return "\n".join(["from collections.abc import Sequence", "",

@@ -1,8 +1,8 @@
-"""object_names.py EDS... - makes the table of names of objects for takt.dictionary of the EDS files of share/eds. setup.py uses it.
+"""object_names.py EDS... - makes the table of names of objects for takt.dictionary from EDS files. setup.py uses it.
 
-A name is that of the object in lower case, as in the layout of a bus: "position_actual_value"; with sub-objects,
-"identity_object.vendor_id". Names that stand for several objects are left out, except those of the further axes of a
-drive, which are 0x800 higher each: the name is that of the first axis.
+The name of an object is in lower case, as in the layout of a bus: "position_actual_value". A sub-object has two names:
+"identity_object.vendor_id". A name that several objects have is left out, unless these objects differ only by a multiple of
+0x800, as those of the axes of a drive do. The name then means the object of the first axis.
 """
 import configparser
 import re
@@ -14,13 +14,13 @@ AXIS_STEP = 0x800
 
 
 def snake_case(text):
-    """As taktd writes names in a layout."""
+    """Returns the text as taktd writes names in a layout."""
     words = re.sub(r"([a-z])([A-Z])", r"\1_\2", text)
     return re.sub(r"[^0-9A-Za-z]+", "_", words).strip("_").lower()
 
 
 def objects_of(path):
-    """(name, index, sub-index, data type) of an EDS file."""
+    """Yields (name, index, sub-index, data type) for each object of an EDS file."""
     eds = configparser.ConfigParser(interpolation=None, strict=False, delimiters=("=",), comment_prefixes=(";",))
     eds.read(path, encoding="latin-1")
     for section in eds.sections():
@@ -34,7 +34,7 @@ def objects_of(path):
 
 
 def table_of(paths):
-    """The text of the module takt.objects."""
+    """Returns the text of the module takt.objects."""
     found = {}
     for path in paths:
         for name, index, sub, code in objects_of(path):

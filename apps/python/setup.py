@@ -1,4 +1,4 @@
-"""What pyproject.toml can't say: the modules that are made of share/lcm and share/eds when the package is built."""
+"""Adds what pyproject.toml can't describe: the modules that the build of the package makes from share/lcm and share/eds."""
 import pathlib
 import subprocess
 import sys
@@ -25,7 +25,7 @@ class BuildWithTypes(build_py):
         subprocess.run(["lcm-gen", "-p", "--ppath", folder, *types], check=True)
         for path in types:
             (package / f"{path.stem}.pyi").write_text(stub_of(path.stem, path.read_text()))
-        (package / "__init__.py").write_bytes(own)  # lcm-gen appends the types, which takt.messages has
+        (package / "__init__.py").write_bytes(own)  # removes the types that lcm-gen has appended: takt.messages has them
         (package / "objects.py").write_text(table_of(sorted((SHARE / "eds").glob("*.eds"))))
 
 

@@ -1,4 +1,4 @@
-"""takt in Python: programs that command CANopen devices by way of a taktd that runs.
+"""takt in Python: programs that command CANopen devices through a running taktd.
 
     import takt
 
@@ -10,12 +10,12 @@
         print(bus.signal("shoulder.position_actual_value"), bus.sdo_read("shoulder.statusword"))
 
 `Bus` has the image of a bus, its events and nodes, set-points, and the objects of its devices.
-`Axes` is a `Bus` that also moves axes. What blocks a call is an `Obstacle`, in words. The types of
-the LCM messages are names of this package, too: `takt.image_t`. share/doc/python.md describes the
-package, share/doc/axis_library.md all calls.
+`Axes` is a `Bus` that also moves axes. A call that something blocks raises `Obstacle`, whose text
+names the cause. The types of the LCM messages are names of this package, too: `takt.image_t`.
+share/doc/python.md describes the package, share/doc/axis_library.md all calls.
 
-The package needs the module `lcm` and no other. It makes no threads: messages are taken while a
-call waits. An object is for one thread.
+The package needs the module `lcm` and no other. It starts no threads, and takes messages only while
+a call waits. Use each object in one thread only.
 """
 from pkgutil import extend_path
 
@@ -28,7 +28,7 @@ from .envelopes import Envelopes, read_keys
 from .image import Image
 from .link import Obstacle
 from .nodes import Node
-from .messages import *  # last: the names of types stand for classes, and not for their modules
+from .messages import *  # last, so that the name of a type means the class and not its module
 from .messages import __all__ as _types
 
 __version__ = "0.1.0"

@@ -13,24 +13,24 @@ from .nodes import Node, node_of
 from .outputs import Outputs, release
 from .services import Services
 
-MOST_EVENTS = 1000  # that wait for take_events(); the oldest ones are lost above
+MOST_EVENTS = 1000  # events that wait for take_events(); if more come, the oldest are lost
 
 
 class Bus:
     """One bus, by its name in the network file. Messages are taken only while a call waits: a
-    program that has nothing to do calls run() instead of time.sleep(). Signals have the names of
-    their nodes and their own, "io.digital_input_1"; their values are in the units of the network
-    file, raw counts without one.
+    program that has nothing to do calls run() instead of time.sleep(). The name of a signal
+    consists of the name of its node and its own name: "io.digital_input_1". Values are in the units
+    of the network file, or raw counts if the signal has no unit.
 
     Each call raises Obstacle if something blocks it."""
 
     def __init__(self, bus: str, *, timeout: float = 0.5, longest: float = 10.0,
                  keys: str | None = None, check_images: bool | None = None):
-        """Waits until the bus is heard. `timeout`: seconds of silence of this program after which
-        its set-points end, 1 ms to 10 s. `longest`: seconds that a call waits at most for what has
-        no time of its own. `keys`: file with the key of the bus; None: TAKT_KEYS of the
-        environment. `check_images`: accept only messages that taktd has signed; None:
-        TAKT_CHECK_IMAGES is "true". share/doc/security.md describes both."""
+        """Waits until an image of the bus has come. `timeout`: seconds of silence of this program
+        after which its set-points end, 1 ms to 10 s. `longest`: most seconds that a call waits,
+        unless the call has an argument for this time. `keys`: file with the key of the bus; None:
+        TAKT_KEYS of the environment. `check_images`: accept only messages that taktd has signed;
+        None: TAKT_CHECK_IMAGES is "true". share/doc/security.md describes both."""
         if not 0.001 <= timeout <= 10.0:
             raise Obstacle("wrong use", f"a timeout of {timeout} s is outside 1 ms to 10 s")
         self._link = Link(bus, timeout, longest, keys, check_images)
@@ -65,28 +65,28 @@ class Bus:
         return list(self._link.places)
 
     def signal(self, name: str) -> float:
-        """The newest value of an input or output of any node, in its unit. The name is that of the
-        node and of the signal in layout_t, "io.digital_input_1", or its object, "io.0x6000:1"."""
+        """The newest value of an input or output of any node, in its unit. `name` consists of the
+        node and the signal in layout_t, "io.digital_input_1", or of the node and the object,
+        "io.0x6000:1"."""
         return self._outputs.signal(name)
 
     def next_image(self, seconds: float = 2.0) -> Image:
-        """Waits for the next image of the bus; images before it that have come already are
-        skipped."""
+        """Waits for the next image of the bus. Images that have come before are skipped."""
         return newest_image(self._link, seconds)
 
     # Set-points.
 
     def set(self, name: str, value: float) -> None:
         """Sets an output of any node, and returns when taktd sends it. The value stays while this
-        program is alive: calls that wait repeat it. After a silence of `timeout` the node takes
-        the fallback of `on_timeout`, and the value is not sent again. The end of the program, or
-        release(), ends it, too."""
+        program is alive: calls that wait repeat it. After a silence of `timeout` the node takes the
+        fallback of `on_timeout`, and the value is not sent again. The end of the program, or
+        release(), also ends the value."""
         self._outputs.confirm(self._outputs.raw(name, value))
 
     def command(self, values: Mapping[str, float], life: float = 0.0) -> None:
         """Sends these set-points once, from the newest image, and returns at once. They end after
-        `life` seconds, if the network file does not end them earlier; 0: as it says. taktd reports
-        what it refuses by the event "command_refused"."""
+        `life` seconds, or earlier if the network file says so; 0: after the time in the network
+        file. taktd reports refused set-points by the event "command_refused"."""
         raw: dict[int, int] = {}
         for name, value in values.items():
             raw |= self._outputs.raw(name, value)
@@ -111,8 +111,8 @@ class Bus:
         return events
 
     def wait_event(self, kind: str = "", node: str = "", seconds: float = float("inf")) -> event_t:
-        """Waits for an event of this kind and node; without them, for any. Events that have come
-        since the last take_events() count. The event and those before it are taken."""
+        """Waits for an event of this kind and node; an empty text means any. Events that have come
+        since the last take_events() count. The call takes the event and all events before it."""
         found: list[event_t] = []
 
         def comes() -> bool:
@@ -133,7 +133,8 @@ class Bus:
 
     @property
     def status(self) -> status_t:
-        """The newest status_t: load, errors and counters of the bus. Its nodes may be a part."""
+        """The newest status_t: load, errors and counters of the bus. It may have only a part of the
+        nodes."""
         self._link.wait(lambda: self._status is not None, self._link.longest)
         if self._status is None:
             raise Obstacle("no bus", f"no status of bus {self._link.bus} has come")
@@ -147,15 +148,16 @@ class Bus:
     # Time.
 
     def run(self, seconds: float) -> None:
-        """Lets this time pass, in which set-points and motions go on. Says if set-points were given
-        up because this program was silent."""
+        """Waits for this time; set-points and motions go on. Raises Obstacle if set-points were
+        discarded because this program was silent."""
         self._link.wait(lambda: False, seconds)
         lost = self._outputs.take_loss()
         if lost:
             raise Obstacle("stopped", lost)
 
     def wait_until(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Takes messages until `condition()`; False if the time is over before."""
+        """Takes messages until `condition()` is true. Returns False if the time is over before
+        that."""
         return self._link.wait(condition, seconds)
 
     # Objects of the devices.
@@ -163,8 +165,9 @@ class Bus:
     def sdo_read(self, name: str, type: str | None = None) -> Value:
         """Reads an object by SDO: "shoulder.statusword", "shoulder.0x6041:00" (hexadecimal), or
         "shoulder.identity_object.vendor_id". The value is that of the device, without scale. `type`
-        (u8 to u64, i8 to i64, r32, r64, b, vs) is for objects whose type is not known; their values
-        are bytes without it. taktd makes the transfer; motions go on. An abort is an obstacle."""
+        (u8 to u64, i8 to i64, r32, r64, b, vs) is for objects whose type is not known; without
+        `type`, their values are bytes. taktd makes the transfer; motions go on. An abort is an
+        obstacle."""
         node, index, sub, known = find_object(self._link, name)
         code = code_of(name, type, known)
         return from_bytes(name, code, self.read(node, index, sub))
@@ -180,7 +183,7 @@ class Bus:
         return self._services.read(node, index, sub)
 
     def read_number(self, node: str, index: int, sub: int = 0, signed: bool = False) -> int:
-        """Like read(), of an object that is a whole number."""
+        """Like read(), for an object that is a whole number."""
         return int.from_bytes(self.read(node, index, sub), "little", signed=signed)
 
     def write(self, node: str, index: int, sub: int, data: bytes) -> None:
@@ -188,7 +191,7 @@ class Bus:
         self._services.write(node, index, sub, data)
 
     def write_number(self, node: str, index: int, sub: int, value: int, size: int) -> None:
-        """Like write(), of an object that is a whole number of `size` bytes."""
+        """Like write(), for an object that is a whole number of `size` bytes."""
         try:
             data = value.to_bytes(size, "little", signed=value < 0)
         except OverflowError as why:

@@ -21,7 +21,8 @@ INTERPOLATED_POSITION, CYCLIC_SYNCHRONOUS_POSITION = 7, 8
 INTERPOLATE = 0x10  # bit 4 of the controlword in interpolated position mode
 START_HOMING = 0x10  # bit 4 of the controlword in homing mode
 HALT = 0x100  # bit 8 of the controlword
-# Bit 10, and bits 12 and 13, of the statusword; bit 12 in profile velocity mode.
+# Bits of the statusword: bit 10, bits 12 and 13 in homing mode, and bit 12 in profile velocity
+# mode.
 TARGET_REACHED, HOMING_RESULT, SPEED_IS_0 = 0x0400, 0x3000, 0x1000
 ENABLED, QUICK_STOP = "operation enabled", "quick stop active"
 FAULTS = ("fault", "fault reaction active")
@@ -37,7 +38,7 @@ STATES = ((0x4F, 0x00, "not ready to switch on", "bit 0 (ready to switch on)", 0
           (0x4F, 0x08, "fault", "bit 3 (fault)", 1))
 ENABLE_OPERATION = 0x0F  # controlword
 # The controlword for each state on the way to Operation enabled, on the way back, and to keep the
-# state. Disable voltage is 0, which is for all other states.
+# state. For all other states, it is 0 (Disable voltage).
 ENABLING = {"switch on disabled": 0x06, "ready to switch on": 0x07, "switched on": 0x0F,
             ENABLED: ENABLE_OPERATION}
 DISABLING = {ENABLED: 0x07, "switched on": 0x06}
@@ -48,20 +49,20 @@ QUICK_STOPPING = {ENABLED: 0x02, QUICK_STOP: 0x02}
 
 
 class Axis:
-    """What the messages say about one axis, and what this program commands it."""
+    """The reported values of one axis, and the commands of this program for it."""
 
     def __init__(self, name: str, node: str, node_id: int, number: int):
         self.name, self.node, self.node_id, self.number = name, node, node_id, number
-        # Of its objects, by the index that the first axis of a device has: places in the layout,
-        # and their signal_t.
+        # Places of its objects in the layout, and their signal_t. The keys are the indices that
+        # these objects have on the first axis of a device.
         self.places, self.signals = {}, {}
         self.statusword = None  # of the newest image
         self.motion, self.motion_cycle = None, -1  # the newest axis_motion_t and its cycle
-        self.held = 0  # status_t in sequence in which another program holds the node
+        self.held = 0  # number of status_t in sequence in which another program holds the node
         self.mode = CYCLIC_SYNCHRONOUS_POSITION  # commanded mode of operation
-        self.mode_bits = 0  # of the controlword in Operation enabled: what the mode defines
+        self.mode_bits = 0  # bits of the controlword that the mode defines, in Operation enabled
         self.target = None  # raw target position of a set-point in profile position mode
-        self.has_own_target = False  # this program has commanded one, and not taktd
+        self.has_own_target = False  # this program, and not taktd, has commanded a target
 
     @property
     def state(self) -> str:
@@ -76,18 +77,18 @@ class Axis:
 
     @property
     def has_target(self) -> bool:
-        """taktd can give it positions."""
+        """True if taktd can command positions of the axis."""
         return self.target_object in self.places
 
     @property
     def target_object(self) -> int:
-        """The object of the target that taktd gives it."""
+        """The object in which taktd commands positions."""
         return TARGET if TARGET in self.places else INTERPOLATION_TARGET
 
     @property
     def motion_mode(self) -> int:
-        """The mode in which taktd moves it: cyclic synchronous position, or interpolated position
-        if 0x60C1:01 is in its RPDOs and 0x607A is not."""
+        """The mode in which taktd moves the axis: cyclic synchronous position, or interpolated
+        position if 0x60C1:01 is in its RPDOs and 0x607A is not."""
         interpolates = self.has_target and self.target_object == INTERPOLATION_TARGET
         return INTERPOLATED_POSITION if interpolates else CYCLIC_SYNCHRONOUS_POSITION
 
@@ -96,13 +97,15 @@ class Axis:
         return self.mode == self.motion_mode
 
     def change_mode(self, mode: int) -> None:
-        """Cyclic synchronous position stands for the mode in which taktd moves the axis."""
+        """Sets the commanded mode. Cyclic synchronous position means the mode in which taktd moves
+        the axis."""
         self.mode = self.motion_mode if mode == CYCLIC_SYNCHRONOUS_POSITION else mode
         self.mode_bits = INTERPOLATE if self.mode == INTERPOLATED_POSITION else 0
         self.target = None
 
     def says_rest(self, halted: bool) -> bool:
-        """The drive says that it stands. In other modes bit 10 has another meaning, or none."""
+        """True if the statusword shows that the drive is at rest. In modes that are not named here,
+        bit 10 has another meaning or none."""
         if not self.enabled:
             return False
         if self.mode == PROFILE_VELOCITY:

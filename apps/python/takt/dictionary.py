@@ -1,4 +1,5 @@
-"""Names and data types of objects: what "shoulder.statusword" means for SDO. Used by Bus."""
+"""Names and data types of objects: finds the object that "shoulder.statusword" means. Used by
+Bus."""
 from __future__ import annotations
 
 import re
@@ -20,9 +21,9 @@ INDEX = re.compile(r"(?:0[xX])?([0-9A-Fa-f]{4})(?::([0-9A-Fa-f]{1,2}))?")
 
 
 def find_object(link: Link, name: str) -> tuple[str, int, int, int | None]:
-    """Node, index, sub-index and data type of "shoulder.statusword" or "shoulder.0x6041:00". The
-    index and the sub-index are hexadecimal. The names are those of the signals of the node, then
-    those of CiA 301, 401, 402 and 406. The type is None where it is not known."""
+    """Returns node, index, sub-index and data type of "shoulder.statusword" or
+    "shoulder.0x6041:00". The index and the sub-index are hexadecimal. Names of signals of the node
+    take precedence over names of CiA 301, 401, 402 and 406. The type is None if it is not known."""
     node, _, part = name.partition(".")
     signals = [signal for signal in link.signals.values() if signal.node == node]
     number = INDEX.fullmatch(part)
@@ -43,8 +44,8 @@ def find_object(link: Link, name: str) -> tuple[str, int, int, int | None]:
 
 
 def standard_objects() -> dict[str, tuple[int, int, int]]:
-    """Index, sub-index and data type by name. Empty in the tree of sources: share/wheel.sh makes
-    the table of the EDS files of takt."""
+    """Returns index, sub-index and data type by name. The result is empty in the source tree,
+    because share/wheel.sh makes the table from the EDS files of takt."""
     try:
         from .objects import OBJECTS
     except ImportError:
@@ -53,7 +54,7 @@ def standard_objects() -> dict[str, tuple[int, int, int]]:
 
 
 def code_of(name: str, word: str | None, known: int | None) -> int | None:
-    """The data type that the caller has given, else the known one."""
+    """Returns the data type that the caller has given, else the known one."""
     if word is None:
         return known
     if word not in TYPES:
@@ -62,7 +63,7 @@ def code_of(name: str, word: str | None, known: int | None) -> int | None:
 
 
 def from_bytes(name: str, code: int | None, data: bytes) -> Value:
-    """The value of an object; its bytes where the type is not known or is none of TYPES."""
+    """Returns the value of an object, or its bytes if the type is not known or is none of TYPES."""
     size = SIGNED.get(code or 0) or UNSIGNED.get(code or 0) or {8: 4, 0x11: 8}.get(code or 0)
     if size and len(data) != size:
         raise Obstacle("refused", f"{name}: its type has {size} bytes, and the device has sent "
@@ -75,7 +76,7 @@ def from_bytes(name: str, code: int | None, data: bytes) -> Value:
 
 
 def to_bytes(name: str, code: int | None, value: Value) -> bytes:
-    """The bytes of a value for an object of this type."""
+    """Returns the bytes of a value for an object of this type."""
     try:
         if isinstance(value, bytes):
             return value

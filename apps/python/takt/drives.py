@@ -9,32 +9,32 @@ from .link import Link, Obstacle
 from .outputs import command, release
 
 NOT_ENABLED, MOVES, STOPS = 0, 2, 3  # axis_motion_t::state
-# What this program has made of the drives, and so whether it may move them.
+# The state to which this program has brought the drives, which decides whether it may move them.
 IDLE, READY, HALTED = "not enabled", "enabled", "halted"
 BOOT_READY = 2  # node_status_t::boot_state
-# status_t (10 in a second) in sequence in which another program holds an axis before enable()
-# gives up.
+# enable() gives up if another program holds an axis in this number of status_t in sequence. There
+# are ten status_t in a second.
 HELD_STATUSES = 20
-WORD_CYCLES = 10  # in which a drive may show words from before a command
-# Counts by which the position of an axis at rest may vary, and the cycles for which. Both stand for
-# the same speed; the second one is for fine encoders.
+WORD_CYCLES = 10  # cycles in which a drive may still show its words from before a command
+# Counts by which the position of an axis at rest may vary, and the number of cycles. Both pairs
+# mean the same speed; the second pair is for encoders with many counts.
 REST_WINDOWS = ((2, WORD_CYCLES), (20, 10 * WORD_CYCLES))
-MOST_COUNTS_APART = 100  # of the target and the actual position of a drive that is enabled
+MOST_COUNTS_APART = 100  # counts by which target and actual position may differ at enable()
 LOW_TIME = 0.1  # seconds for which bit 7 of the controlword is low before its rising edge
 
 
 class Drives:
     """Sends controlwords and modes while a state or a mode changes, and until the first motion has
-    begun. In the modes in which taktd moves axes, the values stay valid after that as long as this
-    program gives signs of life; in other modes they are sent from each image."""
+    begun. In the modes in which taktd moves axes, the values then stay valid while this program
+    gives signs of life. In other modes, they are sent for each image."""
 
     def __init__(self, link: Link):
         self._link = link
         for axis in link.axes:
             axis.change_mode(CYCLIC_SYNCHRONOUS_POSITION)
-        self.words = None  # the controlword for each state, while it is sent
+        self.words = None  # the controlword for each state; None while no controlwords are sent
         self.readiness = IDLE
-        self._has_begun = False  # a motion of taktd, since the drives were enabled
+        self._has_begun = False  # taktd has begun a motion since the drives were enabled
         link.in_each_cycle.append(self._send)
 
     def enable(self) -> str:
@@ -75,7 +75,7 @@ class Drives:
                 for axis in link.axes if not over(axis)))
 
     def keep(self) -> None:
-        """The axes keep their states and modes from now on."""
+        """From now on, the axes keep their states and modes."""
         obey = all(axis.obeys_motions for axis in self._link.axes)
         self.words = None if obey else KEEPING
 
@@ -96,7 +96,7 @@ class Drives:
             raise Obstacle("blocked", self.why_not_ready())
 
     def set_mode(self, mode: int, axes: list[Axis]) -> None:
-        """The other axes keep their modes."""
+        """Sets the mode of these axes. The other axes keep their modes."""
         link = self._link
         for axis in axes:
             axis.change_mode(mode)
@@ -145,9 +145,9 @@ class Drives:
             raise Obstacle("time over", "the axes still move")
 
     def wait_for_rest(self, axes: list[Axis]) -> bool:
-        """Waits until the drives say that they stand, or their positions have stayed within a few
-        counts, and taktd moves none of the axes: an encoder may flicker at standstill. False: they
-        still move."""
+        """Waits until taktd moves none of the axes, and each drive shows standstill or its position
+        has stayed within a few counts (an encoder may flicker at standstill). Returns False if the
+        axes still move."""
         link = self._link
         begin = [link.raw(axis, POSITION) for axis in axes]
         windows = [[counts, cycles, link.cycle, begin] for counts, cycles in REST_WINDOWS]
@@ -196,7 +196,8 @@ class Drives:
             raise Obstacle("blocked", self.why_not_ready())
 
     def follow(self) -> bool:
-        """True if all axes are enabled, and taktd can move those whose mode is for its motions."""
+        """True if all axes are enabled, and taktd can move those that are in the mode of its
+        motions."""
         return all(axis.enabled and (not axis.obeys_motions or can_move(axis))
                    for axis in self._link.axes)
 
@@ -204,7 +205,7 @@ class Drives:
         return "; ".join(filter(None, map(self.why, self._link.axes)))
 
     def why(self, axis: Axis) -> str:
-        """Says why taktd can't move the axis. Empty: it can."""
+        """Returns why taktd can't move the axis, or an empty text."""
         node = self._link.nodes.get(axis.node_id)
         if axis.held:
             return (f"{axis.name} belongs to '{node.holder}', and the commands of this program are "
@@ -225,15 +226,16 @@ class Drives:
             f"{axis.motion_mode}, and is its target position sent?")
 
     def _target(self, axis: Axis) -> int | None:
-        """The target position to send. An axis whose target was commanded by this program must not
-        jump there in cyclic synchronous position mode, so its target follows its actual position
-        until taktd moves it. None: taktd commands it."""
+        """Returns the target position to send, or None if taktd commands it. In cyclic synchronous
+        position mode, an axis must not jump to a target that this program has commanded before.
+        Therefore the target follows the actual position until taktd moves the axis."""
         if not axis.has_own_target or axis.obeys_motions and can_move(axis):
             return None
         return self._link.raw(axis, POSITION) if axis.target is None else axis.target
 
     def _target_is_far(self, axis: Axis) -> bool:
-        """A program that has died may have left a target position to which the drive would jump."""
+        """True if the drive would jump to its target position. A program that has died may have
+        left such a target."""
         target, position = (self._link.raw(axis, index)
                             for index in (axis.target_object, POSITION))
         return None not in (target, position) and abs(target - position) > MOST_COUNTS_APART

@@ -1,4 +1,4 @@
-"""Signed envelopes, where a bus has keys. share/doc/security.md describes them."""
+"""Signed envelopes, for a bus that has keys. share/doc/security.md describes them."""
 from __future__ import annotations
 
 import hashlib
@@ -12,11 +12,12 @@ import time
 from .messages import envelope_t
 
 MAC_SIZE = 32  # bytes, at the end of the encoded envelope
-OLDEST = 1_000_000  # microseconds between the clocks of sender and receiver
+OLDEST = 1_000_000  # largest difference between utime and the clock of the receiver, microseconds
 
 
 def read_keys(path: str) -> dict[str, bytes]:
-    """Returns {name: secret} of a key file. ValueError says why a file is refused, as taktd does."""
+    """Returns {name: secret} of a key file. Raises ValueError with the reason if it refuses the
+    file, by the rules of taktd."""
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError as wrong:
@@ -86,8 +87,9 @@ class Envelopes:
 
 
 def envelopes_of(path: str | None, check: bool | None) -> tuple[Envelopes | None, bool]:
-    """The envelopes of a program, and whether it accepts signed messages only. None: TAKT_KEYS and
-    TAKT_CHECK_IMAGES of the environment decide. ValueError says why a key file is refused."""
+    """Returns the envelopes of a program, and whether the program accepts only signed messages. If
+    an argument is None, TAKT_KEYS or TAKT_CHECK_IMAGES of the environment decides. Raises
+    ValueError with the reason if the key file is refused."""
     path = os.environ.get("TAKT_KEYS") if path is None else path
     check = os.environ.get("TAKT_CHECK_IMAGES") == "true" if check is None else check
     if check and not path:

@@ -1,4 +1,4 @@
-"""Which axes of a bus a program commands. Used by Axes."""
+"""Finds the axes of a bus that a program commands. Used by Axes."""
 from __future__ import annotations
 
 from .link import Link, Obstacle
@@ -7,8 +7,9 @@ LAYOUT_TIME = 1.5  # seconds for the speed axes of a layout, which come once a s
 
 
 def find_axes(link: Link, names: tuple[str, ...]) -> list:
-    """Leaves the axes with these names in link.axes, in their order; without names, all axes with
-    positions. If these are speed axes, returns their speed_axis_t, and link.axes stays empty."""
+    """Puts the axes with these names into link.axes, in the order of the names. Without names,
+    takes all axes with positions, or all speed axes if no axis has a position. For speed axes,
+    returns their speed_axis_t and leaves link.axes empty."""
     inverters = _inverters(link, names)
     with_position = [axis for axis in link.found_axes if axis.name not in inverters]
     if inverters and (set(names) & set(inverters) if names else not with_position):
@@ -32,7 +33,8 @@ def find_axes(link: Link, names: tuple[str, ...]) -> list:
 
 
 def _inverters(link: Link, names: tuple[str, ...]) -> dict:
-    """The speed axes of the bus. Waits for them if they may be meant."""
+    """Returns the speed axes of the bus by name. Waits for them if the names may be those of speed
+    axes."""
     with_position = {axis.name for axis in link.found_axes if axis.has_target}
     wanted, begin = set(names) - with_position if names else not with_position, link.now()
     while wanted and not link.speed_words() and link.now() < begin + LAYOUT_TIME:

@@ -8,11 +8,12 @@ from .link import Link, Obstacle
 
 HOMED, HOMING_FAILED = 2, 3  # axis_motion_t::homing
 START_TIME = 1.0  # seconds for which a drive may show that it has not begun
-LONGEST_RUN = 60.0  # seconds, if taktd names none
+LONGEST_RUN = 60.0  # seconds, if taktd reports no time
 
 
 def home(link: Link, drives: Drives, axes: list[Axis], seconds: float) -> None:
-    """Homes these axes together. Then, also after an obstacle, they are back in their mode."""
+    """Homes these axes together. At the end, also after an obstacle, sets the mode in which taktd
+    moves them."""
     try:
         _enter(link, drives, axes)
         _run(link, drives, axes, seconds)
@@ -20,7 +21,7 @@ def home(link: Link, drives: Drives, axes: list[Axis], seconds: float) -> None:
         try:
             _leave(link, drives, axes)
         except Obstacle:
-            pass  # the first obstacle is the one to tell
+            pass  # the first obstacle is raised
         raise
     _leave(link, drives, axes)
 
@@ -44,8 +45,8 @@ def _enter(link: Link, drives: Drives, axes: list[Axis]) -> None:
 
 
 def _run(link: Link, drives: Drives, axes: list[Axis], seconds: float) -> None:
-    """taktd reports how the runs stand. A report of the cycle in which the start was sent, or of a
-    later one, is about this run."""
+    """Waits for the results that taktd reports. Reports from the first WORD_CYCLES cycles after the
+    start are not used, because they may be about the state before this run."""
     for axis in axes:
         axis.mode_bits = START_HOMING
     started, moved = {}, {axis: link.now() for axis in axes}
@@ -78,8 +79,9 @@ def _run(link: Link, drives: Drives, axes: list[Axis], seconds: float) -> None:
 
 
 def _leave(link: Link, drives: Drives, axes: list[Axis]) -> None:
-    """Ends the runs, waits until the axes are at rest, and goes back. taktd lets the target
-    positions follow the actual ones until the drives obey them."""
+    """Ends the runs, waits until the axes are at rest, and sets the mode in which taktd moves them.
+    Until the drives follow target positions again, taktd lets the targets follow the actual
+    positions."""
     for axis in axes:
         axis.mode_bits = 0
     if not drives.wait_for_rest(axes):

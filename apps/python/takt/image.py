@@ -9,7 +9,8 @@ from .signals import decode
 
 class Image(Mapping[str, float]):
     """The values of all signals in one cycle, by their names ("shoulder.position_actual_value"), in
-    their units; raw counts without one. Values are computed when they are asked for."""
+    their units, or in raw counts if they have no unit. A value is computed when the program reads
+    it."""
 
     def __init__(self, link: Link):
         self.cycle = link.cycle  # number of the SYNC
@@ -28,11 +29,12 @@ class Image(Mapping[str, float]):
         return len(self._names)
 
     def raw(self, name: str) -> int:
-        """The number of the device, without scale; a REAL as its bits."""
+        """The raw number of the device, without scale; for a REAL, the number of its bits."""
         return self._values[self._names[name]]
 
     def is_stale(self, name: str) -> bool:
-        """The PDO of the signal has not arrived when it was expected: the value is an older one."""
+        """True if the PDO of the signal did not arrive when it was expected, so that the value is
+        older."""
         return self._names[name] in self._stale
 
 

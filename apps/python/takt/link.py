@@ -1,4 +1,4 @@
-"""The messages of one bus: what they say, and how a program waits for them. Used by Axes."""
+"""The messages of one bus: their newest content, and how a program waits for them. Used by Axes."""
 from __future__ import annotations
 
 import os
@@ -19,8 +19,8 @@ from .messages import (event_t, image_t, layout_t, motion_t, signal_t, speed_axe
 
 SCHEMA = 2  # of the LCM messages that this module knows
 IMAGE_TIME = 2.0  # seconds without an image after which the bus is gone
-FLOOD = 100  # messages that are taken in sequence; more do not hold the program
-MOST_EVENTS = 64  # that are remembered
+FLOOD = 100  # most messages that are taken in sequence, so that the program is not blocked
+MOST_EVENTS = 64  # number of events that are kept
 
 
 class Obstacle(Exception):
@@ -33,20 +33,20 @@ class Obstacle(Exception):
 
 
 class Link:
-    """The newest messages of a bus, and the messages to it. The tables of functions at the end of
-    __init__ are filled by those who use it."""
+    """The newest messages of a bus, and the messages to it. The users of this class add their
+    functions to in_each_cycle, in_each_step and when_abandoned."""
 
     def __init__(self, bus: str, timeout: float, longest: float, keys: str | None = None,
                  check_images: bool | None = None):
-        """Waits until the bus is heard, for `longest` seconds at most. `keys` and `check_images`
-        are those of Bus."""
+        """Waits until an image of the bus has come, for at most `longest` seconds. `keys` and
+        `check_images` are those of Bus."""
         try:
             self._envelopes, self._checks = envelopes_of(keys, check_images)
         except ValueError as why:
             raise Obstacle("wrong use", str(why)) from None
         self._handlers: dict[str, list[Callable[[str, bytes], None]]] = {}  # by channel
         self.bus, self.timeout, self.longest = bus.upper(), timeout, longest
-        # A random number tells two senders apart, also in one process.
+        # A random number distinguishes two senders, also in one process.
         self.instance = random.SystemRandom().randrange(1, 2**63)
         program = os.path.basename(sys.argv[0])[:32] or "python"
         self.sender = f"{program} {os.getpid()} {self.instance & 0xFFFF_FFFF:08x}"
@@ -54,7 +54,7 @@ class Link:
         self.found_axes: list[Axis] = []  # all axes of the bus with their words in PDOs
         self.axes: list[Axis] = []  # those of them that this program commands
         self.session, self.period, self.cycle, self.image_time = None, 0.0, -1, self.now()
-        # Of the newest image that has come in full, by the places of the layout.
+        # Data of the newest image that has come in full. The keys are places in the layout.
         self.values: dict[int, int] = {}
         self.stale: set[int] = set()
         self.signals: dict[int, signal_t] = {}
@@ -90,23 +90,25 @@ class Link:
     def names(self) -> str:
         return ", ".join(axis.name for axis in self.axes)
 
-    # What the newest messages say.
+    # The content of the newest messages.
 
     def raw(self, axis: Axis, index: int) -> int | None:
         return self.values.get(axis.places.get(index))
 
     def value(self, axis: Axis, index: int) -> float:
-        """In the unit of the object; 0 where no PDO carries it."""
+        """Returns a value in the unit of the object; 0 if no PDO carries the object."""
         raw, signal = self.raw(axis, index), axis.signals.get(index)
         return 0.0 if raw is None else raw * signal.scale + signal.offset
 
     def event(self, kind: str, part: str = "") -> str:
-        """The text of the newest event of this kind that contains `part`."""
+        """Returns the text of the newest event of this kind that contains `part`, or an empty
+        text."""
         return next((event.text for event in reversed(self.events)
                      if event.kind == kind and part in event.text), "")
 
     def refused_envelope(self, channel: str) -> str:
-        """What taktd has said about a message without the key of the bus. Empty: nothing."""
+        """Returns the event text of taktd about a message without the key of the bus, or an empty
+        text."""
         return self.event("envelope_refused", f" {self.bus}_{channel} ")
 
     def holder(self, axis: Axis) -> str:
@@ -124,7 +126,8 @@ class Link:
     # How a program waits.
 
     def wait(self, reached: Callable[[], bool], seconds: float) -> bool:
-        """Takes messages and sends what is due until `reached()`. False: the time is over."""
+        """Takes messages and sends what is due until `reached()` is true. Returns False if the time
+        is over before that."""
         end = self.now() + seconds
         try:
             while True:
@@ -134,7 +137,7 @@ class Link:
                 if self.now() >= end:
                     return False
         except BaseException:
-            for abandon in self.when_abandoned:  # who catches it may wait again
+            for abandon in self.when_abandoned:  # the program may catch this and wait again
                 abandon()
             raise
 
@@ -166,8 +169,9 @@ class Link:
     # Messages.
 
     def subscribe(self, channel: str, kind: Any, handler: Callable[[Any], None]) -> None:
-        """Hands over each message of this type. One that is incomplete, or of another type, changes
-        nothing."""
+        """Passes each message of this type to `handler`. Incomplete messages and messages with
+        other fields are ignored. A layout_t with other fields raises Obstacle until a layout has
+        come."""
         def decode(name: str, data: bytes) -> None:
             try:
                 message = kind.decode(data)
@@ -192,7 +196,8 @@ class Link:
         self._lcm.publish(name, data)
 
     def fill(self, message) -> None:
-        """Writes what each command has. A move_by needs a later utime than each motion before."""
+        """Writes the fields that all commands have. Each utime is later than all before, because a
+        move_by needs this."""
         self._utime = max(self._utime + 1, int(time.time() * 1e6))
         message.utime, message.schema = self._utime, SCHEMA
         message.session, message.cycle = self.session, self.cycle
@@ -265,7 +270,8 @@ class Link:
     def _on_event(self, event: event_t) -> None:
         if event.session != self.session:
             return
-        # A stop that somebody has requested is a note, but it is the reason why a motion has ended.
+        # The event of a stop that a program has requested is only a note, but it is kept, because
+        # it is the reason why a motion has ended.
         if event.severity > 0 or event.kind == "motion_stopped":
             self.events = self.events[1 - MOST_EVENTS:] + [event]
 

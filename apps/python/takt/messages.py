@@ -1,5 +1,6 @@
-"""The types of the LCM messages of takt. lcm-gen makes them of share/lcm when the package is built;
-the modules of the package use them from here. A type is also a name of the package: takt.image_t.
+"""The types of the LCM messages of takt. lcm-gen makes them from share/lcm when the package is
+built; the modules of the package import them from here. Each type is also a name of the package:
+takt.image_t.
 """
 from .axis_motion_t import axis_motion_t
 from .command_t import command_t

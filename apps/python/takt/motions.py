@@ -1,4 +1,4 @@
-"""The motions of an Axes, which taktd runs: how they begin, how they stand, how they end. Used by
+"""The motions of an Axes, which taktd runs: their begin, their state and their end. Used by
 Axes."""
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ LOCKED = 2  # axis_motion_t::gear
 DONE, STOPPED, REFUSED = 1, 2, 4  # axis_motion_t::outcome
 ANSWER_TIME, REASON_TIME = 2.0, 0.1  # seconds
 STOP_PAUSE, SILENCE = 0.05, 0.05  # seconds between two stops, and between two signs of life
-# Cycles after the first stop. A motion begins three cycles after taktd has taken it, so one that is
-# about to begin shows in the first number of cycles, also if messages take a few cycles. One that
-# taktd has not answered in the second never begins.
+# Numbers of cycles after the first stop. A motion begins three cycles after taktd has taken it. A
+# motion that is about to begin is therefore seen within the first number of cycles, even if
+# messages take a few cycles. A motion that taktd has not answered within the second number never
+# begins.
 SETTLED_CYCLES, UNANSWERED_CYCLES = 10, 100
 
 
@@ -26,9 +27,9 @@ class Motions:
         self._link, self._drives = link, drives
         self._number = random.randrange(1, 2**30)  # of the newest motion
         self._has_motion, self._begun = False, 0.0
-        # Something was begun, and no stop since then has led to standing axes.
+        # A motion was begun, and no stop since then has brought the axes to rest.
         self._may_move = False
-        self._jog_wanted = False  # only then signs of life name the axes, which renews a jog
+        self._jog_wanted = False  # if true, signs of life name the axes, which renews the jog
         self._stream = None  # the StreamBuffer of a stream until it has ended
         self._stop_cycle, self._stop_sent, self._alive_sent = -1, 0.0, 0.0
         link.in_each_cycle.append(self._serve_stream)
@@ -36,7 +37,7 @@ class Motions:
         link.when_abandoned.append(self.abandon)
 
     def abandon(self) -> None:
-        """Renews no jog and sends no points any longer, so that they end."""
+        """Stops renewing a jog and sending points, so that the jog or the stream ends."""
         self._jog_wanted, self._stream = False, None
 
     @property
@@ -69,11 +70,11 @@ class Motions:
             self._wait_begun()
         except BaseException:
             self._jog_wanted = False
-            self._stop_what_moves()  # a jog before this one may go on
+            self._stop_what_moves()  # an earlier jog may still run
             raise
 
     def gear(self, leader: str, signal: str, numbers: dict, limits: dict) -> None:
-        """`numbers`: ratio, phase, modulo, filter_time and max_phase_error."""
+        """Begins a gear. `numbers` has ratio, phase, modulo, filter_time and max_phase_error."""
         message, phase = motion_gear_t(), numbers["phase"]
         message.numerator, message.denominator = self._each(numbers["ratio"]), self._each(1.0)
         message.max_phase_error = self._each(numbers["max_phase_error"])
@@ -145,7 +146,7 @@ class Motions:
         self.abandon()
         if not link.commanding:
             return
-        link.serve(0)  # the stop is for the newest image: one of an old image may be refused
+        link.serve(0)  # takes the newest image, because taktd may refuse a stop from an old image
         if not self._may_move and not self.moving:
             return
         self._stop_now()
@@ -175,7 +176,7 @@ class Motions:
     # What a motion needs.
 
     def _each(self, value) -> list[float]:
-        """One number for each axis, of such a list or of one number for all axes."""
+        """Returns one number for each axis, from a list or from one number for all axes."""
         many = isinstance(value, (list, tuple))
         return [float(one) for one in (value if many else [value] * len(self._link.axes))]
 
@@ -185,7 +186,7 @@ class Motions:
                                         f"axes, got {len(values)} values")
 
     def _ready_goals(self, kind: str, values, limits: dict) -> list[motion_goal_t]:
-        """The goals of a motion, which may begin now."""
+        """Returns the goals of a motion. Raises Obstacle if a motion may not begin now."""
         link, drives = self._link, self._drives
         self._jog_wanted = False
         self._check(values)
@@ -193,7 +194,7 @@ class Motions:
             raise Obstacle("blocked", "the axes follow a stream: call wait() or stop()")
         self._stream = None
         drives.check_may_move()
-        # taktd refuses motions from before a stop.
+        # taktd refuses a motion from an image that is not newer than the last stop.
         if not link.wait(lambda: link.cycle > self._stop_cycle, link.longest):
             raise Obstacle("time over", "no image has come since the stop")
         if not drives.ready():
@@ -222,7 +223,7 @@ class Motions:
         self._number += 1
         self._has_motion, self._may_move, self._begun = True, True, self._link.now()
 
-    # How the newest motion stands.
+    # The state of the newest motion.
 
     def _wait_begun(self) -> None:
         self._link.wait(lambda: self._course() != "unanswered", ANSWER_TIME)
@@ -230,7 +231,9 @@ class Motions:
             self._raise_end()
 
     def _course(self) -> str:
-        """taktd also refuses points of a stream that runs, and copies of points when it is over."""
+        """Returns the state of the newest motion. A refusal counts only before the end of the
+        motion: taktd also refuses points of a stream that runs, and repeated points after its
+        end."""
         if not self._has_motion:
             return "none"
         courses = {self._course_of(axis.motion) for axis in self._link.axes}
@@ -249,7 +252,7 @@ class Motions:
         return ends.get(motion.outcome, "replaced")
 
     def _is_under_way(self) -> bool:
-        """The newest motion runs, or taktd may still answer it."""
+        """True if the newest motion runs, or if taktd may still answer it."""
         course = self._course()
         in_time = self._link.now() <= self._begun + ANSWER_TIME
         return course == "runs" or course == "unanswered" and in_time
@@ -276,8 +279,8 @@ class Motions:
     # What is sent.
 
     def _send(self, kind: str, goals: list[motion_goal_t], number: int = 0) -> None:
-        """`number`: of a motion. That of a stop or sign of life is 0, so that its refusal is not
-        taken for that of a motion."""
+        """`number` is the number of a motion. It is 0 for a stop or a sign of life, so that their
+        refusal is not taken for the refusal of a motion."""
         command = motion_command_t()
         self._link.fill(command)
         command.kind, command.id, command.goals, command.num_goals = kind, number, goals, len(goals)

@@ -16,12 +16,12 @@ class Node:
 
     name: str
     node_id: int
-    state: str  # of NMT: "boot-up", "stopped", "operational", "pre-operational" or "unknown"
+    state: str  # NMT state: "boot-up", "stopped", "operational", "pre-operational" or "unknown"
     boot: str  # "idle", "booting", "ready", "failed" or "lost"
-    heartbeat_age: float | None  # seconds; None: none was seen
+    heartbeat_age: float | None  # seconds; None if no heartbeat has come
     error_register: int  # 0x1001
     emcys: tuple[int, ...]  # error codes, the newest first, at most ten
-    holder: str  # the program that commands its outputs; empty: none
+    holder: str  # the program that commands its outputs; empty if there is none
 
 
 def node_of(status: node_status_t) -> Node:

@@ -5,14 +5,14 @@ from .link import Link, Obstacle
 from .messages import command_t
 from .signals import decode, encode
 
-ANSWER_TIME = 2.0  # seconds after which a value that taktd has not taken is refused
+ANSWER_TIME = 2.0  # seconds after which a value that taktd has not taken counts as refused
 # The shortest time to live in cycles: a command needs some of them to arrive.
 SHORTEST_LIFE = 3
 
 
 class Outputs:
-    """Raw values that are sent from each image, by their places in the layout. Their time to live
-    is the timeout of the program. After a longer silence they are not sent again."""
+    """Raw values that are sent for each image, by their places in the layout. Their time to live is
+    the timeout of the program. After a longer silence they are not sent again."""
 
     def __init__(self, link: Link):
         self._link, self._sent, self._lost = link, 0.0, ""
@@ -29,7 +29,7 @@ class Outputs:
         return decode(link.signals[place], link.values[place])
 
     def raw(self, name: str, value: float) -> dict[int, int]:
-        """The place and the raw number of a value for an output."""
+        """Returns {place: raw number} for a value of an output."""
         link, place = self._link, self._place(name)
         signal = link.signals[place]
         if not signal.output:
@@ -43,7 +43,8 @@ class Outputs:
         return {place: raw}
 
     def confirm(self, values: dict[int, int]) -> None:
-        """Holds these values, and waits until taktd sends them. If it refuses one, none is held."""
+        """Holds these values, and waits until taktd sends them. If taktd refuses one of them, none
+        of them is held any longer."""
         link = self._link
         nodes = {link.signals[place].node_id for place in values}
         link.events.clear()
@@ -63,13 +64,13 @@ class Outputs:
                            f"taktd has not taken {', '.join(late)}")
 
     def refusal(self, nodes: set[int]) -> str:
-        """What taktd has said against the newest values for these nodes, or an empty text."""
+        """Returns why taktd has refused the newest values for these nodes, or an empty text."""
         limited = (event.text for event in self._link.events
                    if event.kind == "limit_exceeded" and event.node_id in nodes)
         return self._link.event("command_refused", self._link.sender) or next(limited, "")
 
     def hold(self, values: dict[int, int]) -> None:
-        """Sends these values now and from each image."""
+        """Sends these values now and for each image."""
         self._drop_after_silence()
         self._values |= values
         self._has_nodes = True
@@ -77,12 +78,13 @@ class Outputs:
         self._send()
 
     def send_once(self, values: dict[int, int], cycles: int) -> None:
-        """Sends these values now; they end after this number of cycles. 0: as configured."""
+        """Sends these values once. They end after this number of cycles; 0: after the time in the
+        network file."""
         self._has_nodes = True
         command(self._link, values, cycles)
 
     def drop(self) -> bool:
-        """Sends no value any longer. Returns whether some were sent."""
+        """Stops sending values. Returns whether taktd may count nodes as held by this program."""
         had, self._has_nodes, self._values = self._has_nodes, False, {}
         return had
 
@@ -101,7 +103,8 @@ class Outputs:
                                     f"{', '.join(known) or 'no signals of this node'}")
 
     def take_loss(self) -> str:
-        """Says, once, that values were discarded after a silence. Empty: none were."""
+        """Returns, only once, a sentence if values were discarded after a silence; otherwise an
+        empty text."""
         lost, self._lost = self._lost, ""
         return lost
 
@@ -124,8 +127,8 @@ class Outputs:
 
 
 def command(link: Link, values: dict[int, int], time_to_live: int = 0) -> None:
-    """Sends raw values by their places in the layout. `time_to_live` in cycles; 0: as
-    configured."""
+    """Sends raw values by their places in the layout. `time_to_live` is in cycles; 0: the time in
+    the network file."""
     message = command_t()
     link.fill(message)
     message.signals, message.values = list(values), list(values.values())

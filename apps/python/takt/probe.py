@@ -10,7 +10,7 @@ from .services import Services
 EDGES = ("rising", "falling")
 # Bits of 0x60B8 and 0x60B9 for input 1; those of input 2 are 8 bits above.
 ENABLE, INDEX_PULSE, FIRST_EDGE, FIRST_STORED = 0x01, 0x04, 0x10, 0x02
-PAUSE = 0.01  # seconds between two looks by SDO, so that they do not fill the bus
+PAUSE = 0.01  # seconds between two reads by SDO, so that they do not fill the bus
 
 
 class Probe:
@@ -31,7 +31,7 @@ class Probe:
         place, shift = EDGES.index(edge), 8 * (number - 1)
         armed = (ENABLE | (INDEX_PULSE if index_pulse else 0) | FIRST_EDGE << place) << shift
         stored = FIRST_STORED << place << shift
-        others = self._read(PROBE_FUNCTION) & (0xFF00 >> shift)  # the other input goes on
+        others = self._read(PROBE_FUNCTION) & (0xFF00 >> shift)  # the other input stays as it is
         try:
             self._write(others)
             self._await(lambda: not self._read(PROBE_STATUS) & stored, WORD_CYCLES,
@@ -44,14 +44,15 @@ class Probe:
             try:
                 self._write(others)
             except Obstacle:
-                pass  # the first obstacle is the one to tell
+                pass  # the first obstacle is raised
             raise
         self._write(others)
         signal = self._axis.signals[POSITION]
         return (raw - (raw >> 31 << 32)) * signal.scale + signal.offset
 
     def _await(self, reached, cycles: float, words: str) -> None:
-        """Looks at least once after this number of cycles. An axis that is lost ends it."""
+        """Waits until `reached()` is true. Tests it at least once after this number of cycles. The
+        loss of the axis ends the wait."""
         begin, in_pdo = self._link.cycle, PROBE_STATUS in self._axis.places
         while True:
             late = self._link.cycle > begin + cycles
@@ -62,7 +63,7 @@ class Probe:
             self._link.wait(lambda: False, 0.0 if in_pdo else PAUSE)
 
     def _read(self, index: int) -> int:
-        """An unsigned number."""
+        """Returns an object as an unsigned number."""
         raw = self._link.raw(self._axis, index)
         if raw is not None:
             return raw & 0xFFFF_FFFF

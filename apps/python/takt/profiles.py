@@ -16,27 +16,29 @@ CYCLIC_VELOCITY = 9
 # Bits of the controlword and of the statusword in profile position mode.
 NEW_SET_POINT, CHANGE_AT_ONCE = 0x10, 0x20
 ACKNOWLEDGED = 0x1000
-STANDING_TIME = 1.0  # seconds after which an axis that stands before its target has not reached it
+STANDING_TIME = 1.0  # seconds at standstill after which an axis has missed its target
 BOUNDS = {"velocity": 0x6081, "acceleration": 0x6083, "deceleration": 0x6084}
 
 
 class Profiles:
-    """What the drives themselves make of a target in modes other than cyclic synchronous
+    """Motions that the drives compute themselves, in modes other than cyclic synchronous
     position."""
 
     def __init__(self, link: Link, drives: Drives, services: Services, outputs: Outputs):
         self._link, self._drives = link, drives
         self._services, self._outputs = services, outputs
-        # Of profile position mode: the cycle of the newest set-points until they are reached, and
-        # the set-points since the last stop.
+        # In profile position mode: the cycle of the newest set-points until they are reached, and
+        # the newest set-points since the last stop.
         self._given, self._targets = None, None
-        # Counts of the velocity per second, along which stop() lowers what a drive follows at once.
+        # Decelerations in counts of the velocity per second. stop() lowers a target velocity with
+        # them if the drive follows it at once.
         self._decelerations: dict[Axis, int] = {}
         link.when_abandoned.append(self.rest)
 
     @property
     def moving(self) -> bool:
-        """A set-point in profile position mode is not reached, as far as this program knows."""
+        """True if a set-point in profile position mode is not yet reached, as far as this program
+        knows."""
         return self._given is not None
 
     def rest(self) -> None:
@@ -45,7 +47,8 @@ class Profiles:
             self.hold_zeros()
 
     def hold_zeros(self) -> None:
-        """Commands 0 to all of them that are in RPDOs."""
+        """Commands 0 for target velocities, target torques and touch probes, if they are in
+        RPDOs."""
         self._outputs.hold({axis.places[index]: 0 for axis in self._link.axes
                             for index in (*MODES_OF, PROBE_FUNCTION) if index in axis.places})
 
@@ -64,7 +67,7 @@ class Profiles:
             raise
 
     def move(self, positions, bounds: dict, relative: bool, at_once: bool) -> None:
-        """Hands over a set-point in profile position mode."""
+        """Gives the drives a set-point in profile position mode."""
         axes = self._link.axes
         self._check((PROFILE_POSITION,), positions)
         self._check_mapped(TARGET)
@@ -126,7 +129,8 @@ class Profiles:
         self._given = None
 
     def _learn_decelerations(self) -> None:
-        """A drive whose deceleration can't be read gets the target velocity 0 at once."""
+        """Reads the decelerations with which _slow_down() lowers target velocities. A drive whose
+        deceleration can't be read gets the target velocity 0 at once."""
         self._decelerations = {}
         for axis in self._link.axes:
             if axis.mode == CYCLIC_VELOCITY:
@@ -161,7 +165,7 @@ class Profiles:
 
     def discard(self) -> None:
         """Makes halted axes forget their set-points: the actual positions become the set-points, so
-        that they stand when the Halt ends."""
+        that the axes stay at rest when the Halt ends."""
         axes = [axis for axis in self._link.axes
                 if axis.mode == PROFILE_POSITION and axis.enabled]
         if self._given is not None and axes:
@@ -174,7 +178,7 @@ class Profiles:
             raise Obstacle("wrong use", f"expected one value for each of {len(link.axes)} axes, "
                                         f"got {len(values)} values")
         self._drives.check_may_move()
-        link.step()  # after a long silence, the messages that wait tell that the drives stopped
+        link.step()  # after a long silence, the waiting messages show that the drives stopped
         self._check_enabled("blocked", link.axes)
         wrong = [axis for axis in link.axes if axis.mode not in modes]
         if wrong:
@@ -201,7 +205,8 @@ class Profiles:
         return raw
 
     def _set_bound(self, axis: Axis, index: int, value: float) -> None:
-        """In the unit of the velocity, per second for accelerations."""
+        """Writes a bound. It is in the unit of the velocity, or in this unit per second for
+        accelerations."""
         known = (axis.signals.get(index) for index in (VELOCITY, TARGET_VELOCITY, TARGET))
         raw = round(value / abs(next(filter(None, known)).scale))
         if not 0 < raw < 1 << 32:
@@ -215,8 +220,8 @@ class Profiles:
             self._outputs.confirm({place: raw})
 
     def _hand_over(self, targets: dict[Axis, int], bits: int) -> None:
-        """The handshake of the set-point: bit 4 of the controlword rises while bit 12 of the
-        statusword is 0, and falls when it is 1."""
+        """Gives the drives a set-point by the handshake of CiA 402-2: bit 4 of the controlword
+        rises while bit 12 of the statusword is 0, and falls when bit 12 is 1."""
         link, drives = self._link, self._drives
         nodes = {axis.node_id for axis in targets}
         for axis, target in targets.items():

@@ -7,19 +7,19 @@ import time
 from .link import SCHEMA, Link, Obstacle
 from .messages import reply_t, request_t
 
-# Commands of NMT, by their words for `takt nmt`. Before those that end the exchange of PDOs, taktd
-# stops the axes in order; `stop_timeout` is at most 60 s.
+# NMT commands, by their words for `takt nmt`. Before a command that ends the exchange of PDOs,
+# taktd stops the axes in order; `stop_timeout` is at most 60 s.
 NMT = {"start": 1, "stop": 2, "preop": 128, "reset": 129, "reset-comm": 130}
 AFTER_AXES, STOP_TIME = ("stop", "preop"), 65.0
 
 
 class Services:
-    """One request at a time. Motions go on while a request waits."""
+    """Sends one request at a time. Motions go on while a request waits."""
 
     def __init__(self, link: Link):
         self._link = link
-        self._number = random.randrange(1, 2**40)  # of the newest request
-        self._reply: reply_t | None = None  # to it
+        self._number = random.randrange(1, 2**40)  # number of the newest request
+        self._reply: reply_t | None = None  # the reply to it
         link.subscribe("REPLY", reply_t, self._on_reply)
 
     def read(self, node: str, index: int, sub: int) -> bytes:

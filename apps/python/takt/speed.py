@@ -35,7 +35,7 @@ class SpeedAxis:
         self.goal, self.state, self.control = OFF, UNKNOWN, words.off
         self.target = self.acceleration = self.commanded = self.actual = 0.0
         self.counts, self.status, self.cycle, self.reset_steps = 0, 0, None, None
-        self.silent_images, self.was_enabled = 0, False  # was_enabled: in the newest image, of CiA 402
+        self.silent_images, self.was_enabled = 0, False  # was_enabled: Operation enabled (CiA 402) in the newest image
 
     def want(self, goal: str, speed: float = 0.0, acceleration: float = 0.0) -> None:
         self.goal, self.target, self.acceleration = goal, speed if goal == RUNNING else 0.0, acceleration
@@ -43,7 +43,8 @@ class SpeedAxis:
             self.commanded = 0.0
 
     def read(self, values: dict, stale: set) -> None:
-        """Takes the status of an image. A fault, and a CiA 402 drive that has left Operation enabled by itself, end all wishes."""
+        """Takes the status of the axis from an image. The goal becomes OFF after a fault, and if a CiA 402 drive has left
+        Operation enabled by itself."""
         words = self.words
         if words.status in stale:
             self.silent_images += 1
@@ -149,7 +150,7 @@ class SpeedDrives:
             axis.want(RUNNING, speed, asked if asked > 0 else axis.words.max_acceleration)
 
     def end_run(self, why: str) -> None:
-        """Ends the run of all axes, which must not run again by themselves when the cause is gone."""
+        """Ends the run of all axes. They must not run again by themselves when the cause is gone."""
         self.stopped = why
         for axis in self.axes:
             if axis.goal == RUNNING:
@@ -160,8 +161,8 @@ class SpeedDrives:
         return any(axis.goal == RUNNING for axis in self.axes)
 
     def step(self, values: dict, stale: set, cycle: int, period: float, timeout: float | None, why_ended) -> None:
-        """Takes an image. A program that was silent for longer than `timeout`, or whose run was ended as `why_ended()` says,
-        does not make the drives run again."""
+        """Takes an image and computes the commands. The run ends if the program was silent for longer than `timeout`, or if
+        `why_ended()` returns a reason. The drives then do not run again by themselves."""
         silence = time.monotonic() - self.sent
         if timeout is not None and silence > timeout and self.moving:
             self.end_run(f"this program was silent for {silence:.3f} s, so the drives were stopped")
@@ -175,7 +176,7 @@ class SpeedDrives:
         self.sent = time.monotonic()
 
     def values(self) -> dict[int, int]:
-        """The outputs of the axes whose status word is known; those of the others expire."""
+        """Returns the outputs of the axes whose status word is known. The outputs of the other axes expire."""
         known = [axis for axis in self.axes if axis.state != UNKNOWN]
         return {place: value for axis in known
                 for place, value in ((axis.words.control, axis.control), (axis.words.set_speed, axis.raw))}

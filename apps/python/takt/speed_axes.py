@@ -11,7 +11,7 @@ WORDS_BEFORE_RELEASE = 3  # cycles in which the last words are sent
 
 
 class SpeedAxes:
-    """Sends the words of the speed axes from each image. `words`: their speed_axis_t."""
+    """Sends the words of the speed axes for each image. `words` has their speed_axis_t."""
 
     def __init__(self, link: Link, words: list):
         self._link = link
@@ -76,7 +76,7 @@ class SpeedAxes:
             raise Obstacle("blocked", self._why())
 
     def jog(self, speeds, limits: dict) -> None:
-        """An older run does not go on if the new one fails."""
+        """Begins a run. If it fails, an older run does not go on either."""
         try:
             self._begin_run(speeds, **limits)
         except BaseException:
@@ -115,7 +115,7 @@ class SpeedAxes:
             raise Obstacle("blocked", f"{link.names}: call enable() first")
         link.events.clear()
         drives.stopped = ""
-        link.step()  # after a long silence, the messages that wait tell that the drives stopped
+        link.step()  # after a long silence, the waiting messages show that the drives stopped
         if self._ended():
             raise Obstacle("blocked", self._ended())
         drives.run(speeds, asked)
@@ -138,7 +138,7 @@ class SpeedAxes:
                                       f"limit of {axis.name}, {words.max_acceleration} {unit}/s")
 
     def _ended(self) -> str:
-        """What has ended the newest run."""
+        """Returns what has ended the newest run, or an empty text."""
         nodes = {axis.node_id for axis in self._link.axes}
         fallback = next((event.text for event in self._link.events
                          if event.kind == "fallback_begun" and event.node_id in nodes), "")

@@ -1,7 +1,7 @@
 """The points of a stream on their way to taktd: which of them to send in a cycle. Used by Axes.
 
-The time of the stream is known from the reports of taktd. Each message repeats the points that are not reached yet, so that a
-message that was lost does no harm. The stream begins when its points reach LEAD seconds ahead, or with `starts`.
+The time of the stream is known from the reports of taktd. Each message repeats the points that are not reached yet, so that the
+loss of a message does no harm. The stream begins when it has points for LEAD seconds, or when `starts` is set.
 """
 from .messages import motion_point_t
 
@@ -9,13 +9,14 @@ LEAD = 0.4  # seconds for which points are sent in advance
 LONGEST_STEP = 4.0  # seconds between two points; taktd takes no point more than 5 s in advance
 MOST_WAITING = 60  # points at taktd, which has room for 64
 PAUSE = 0.02  # shortest time between two messages with new points in seconds, as long as enough points wait
-# Seconds after which the newest message is repeated. It is not, shortly before the points end: the stream would be over when the
-# message arrives.
+# Seconds after which the newest message is repeated. Shortly before the points end, it is not repeated, because the stream would
+# be over when the message arrives.
 REPETITION, LAST_REPETITION, LAST_REPETITION_CYCLES = 0.05, 0.1, 10
 
 
 class StreamBuffer:
-    """Points from the newest one that is reached on. Times are in seconds, `period` is that of SYNC."""
+    """The points of a stream, from the newest one that the axes have reached on. Times are in seconds; `period` is the period of
+    SYNC."""
 
     def __init__(self, positions, period, goals):
         self.goals, self.begun, self.starts = goals, False, False
@@ -26,8 +27,8 @@ class StreamBuffer:
         self._points.append(_message(0.0, positions, zeros, zeros))
 
     def add(self, time, position, velocity, acceleration=()) -> str:
-        """Appends a point. Returns what is wrong with it, or an empty text. A point at time 0 replaces that where the stream
-        begins."""
+        """Appends a point. Returns what is wrong with it, or an empty text. A point at time 0 replaces the point at which the
+        stream begins."""
         last, time = self._points[-1], float(time)
         number = 0 if self._end() == 1 and time == 0.0 else self._end()
         if not len(position) == len(velocity) == last.num_axes or len(acceleration) not in (0, last.num_axes):
@@ -42,13 +43,13 @@ class StreamBuffer:
         return ""
 
     def has_room(self) -> bool:
-        """All points are sent, or are sent soon, so that further ones may come."""
+        """True if all points are sent or are sent soon, so that further points may come."""
         return self._is_open(self._end())
 
     def observe(self, cycle, time_left) -> None:
-        """Takes a report of this cycle: the stream runs, and its points end in `time_left`. The report does not say which points
-        the bus thread has. The time of the stream is that of one of them minus `time_left`, and it does not pass faster than
-        the cycles."""
+        """Takes a report of this cycle that the stream runs and that its points end in `time_left`. The report does not say which
+        points the bus thread has. The time of the stream is therefore the time of one of the sent points minus `time_left`, and
+        it does not pass faster than the cycles."""
         latest = self._passed + (cycle - self._passed_cycle + 0.5) * self._period
         times = [point.time - time_left for point in self._points[:self._next - self._first]]
         times = [time for time in times if time <= latest]
@@ -56,7 +57,8 @@ class StreamBuffer:
             self._passed, self._passed_cycle = max(times[-1], 0.0), cycle
 
     def points_due(self, cycle) -> tuple:
-        """The number of the first point and the points of the message that is due in this cycle; no points if none is."""
+        """Returns the number of the first point, and the points, of the message that is due in this cycle. If no message is due,
+        there are no points."""
         while self._first + 1 < self._next and self._points[1].time <= self._passed:
             self._points.pop(0)
             self._first += 1
@@ -74,14 +76,14 @@ class StreamBuffer:
         return self._first + len(self._points)
 
     def _waiting_before(self, number) -> int:
-        """Points before this one that are not reached yet."""
+        """Number of points before this one that are not reached yet."""
         return max(0, number - self._first - (self._points[0].time <= self._passed))
 
     def _left_before(self, number) -> float:
         return self._points[number - 1 - self._first].time - self._passed
 
     def _is_open(self, number) -> bool:
-        """Another point may be sent after those before this number."""
+        """True if the point with this number may be sent after the points before it."""
         margin = self._period / 2  # more than the times lose by rounding
         return not number or (self._left_before(number) < LEAD - margin and
                               self._waiting_before(number) < MOST_WAITING)

@@ -1,4 +1,4 @@
-"""What the newest messages say about the axes of an Axes. Used by Axes."""
+"""The newest reported values of the axes of an Axes. Used by Axes."""
 from __future__ import annotations
 
 from .cia402 import POSITION, VELOCITY
@@ -56,14 +56,14 @@ class View:
 
     @property
     def moving(self) -> bool:
-        """At least one axis moves or stops, as taktd has reported last, or a profile_move() is
-        under way."""
+        """True if at least one axis moves or is stopping, as taktd has reported last, or if a
+        profile_move() is under way."""
         return self._speed.moving if self._speed else self._motions.moving or self._profiles.moving
 
     @property
     def homed(self) -> list[bool]:
-        """True: taktd has seen a homing run of this axis end well since its node began to exchange
-        PDOs."""
+        """True for an axis if taktd has seen a homing run of it end well since its node began to
+        exchange PDOs."""
         return [axis.motion is not None and axis.motion.homing == HOMED
                 for axis in self._link.axes]
 
@@ -74,7 +74,7 @@ class View:
 
     @property
     def phase_errors(self) -> list[float]:
-        """Of gears: how far each axis is ahead of the position that its gear prescribes."""
+        """How far each axis is ahead of the position that its gear prescribes."""
         return [axis.motion.phase_error if axis.motion else 0.0 for axis in self._link.axes]
 
     @property
