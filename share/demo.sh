@@ -1,7 +1,7 @@
 #!/bin/sh
 # demo.sh - from EDS files to axes that move: builds taktd and takt-move, runs the daemon on a simulated bus and moves two axes
-# through LCM for about 15 s. No CAN hardware, no root rights beyond missing Debian packages, no network.
-#   DEMO_NETWORK  another network file        DEMO_SECONDS  how long the axes move (15)
+# through LCM for about 15 s. It needs no CAN hardware and no network; it needs root rights only to install missing Debian packages.
+#   DEMO_NETWORK  another network file        DEMO_SECONDS  seconds for which the axes move (15)
 #   TAKT_DEMO_BIN  programs that have been built already
 set -eu
 from_here() {

@@ -36,7 +36,7 @@ trap 'rm -f "$log"' EXIT
 apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qy "$@" >"$log" 2>&1 </dev/null; }
 # shellcheck disable=SC2086
 install() { apt install --no-install-recommends $missing; }
-# The package lists of a new or old system may lack a package: only in this case, fetch the lists.
+# The package lists of a new or old system may lack a package. The lists are fetched only in this case.
 # shellcheck disable=SC2086
 if ! { apt install -s --no-install-recommends $missing && install; }; then
   apt update && install || { cat "$log" >&2; echo "apt-get failed (above)." >&2; exit 1; }

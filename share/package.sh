@@ -1,10 +1,10 @@
 #!/bin/sh
 # package.sh [--arch arm64] [FOLDER] - builds the Debian packages takt, libtakt-dev and takt-doc in FOLDER (default: build/packages),
 # and prints their names. The debian folder comes from share/debian; the sources are the files that git knows, or all files but .git
-# and build. The build is reproducible: the time in the files is SOURCE_DATE_EPOCH, otherwise that of the newest commit. lintian's
-# complaints go to stderr; an error of lintian is exit code 1.
-# For another architecture, the script builds in a separate Debian system, because LCM's libraries of two architectures exclude each
-# other. This needs root, and downloads about 500 MB.
+# and build. The build is reproducible: the time in the files is SOURCE_DATE_EPOCH, otherwise that of the newest commit. The
+# findings of lintian go to stderr; if lintian reports an error, the exit code is 1.
+# For another architecture, the script builds in a separate Debian system, because the LCM packages of two architectures can't be
+# installed together. This needs root, and downloads about 500 MB.
 #   TAKT_JOBS       parallel jobs (number of processors)
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)

@@ -1,9 +1,9 @@
 #!/bin/sh
 # test.sh - runs everything that CI runs and prints one line for each stage; at the end it prints the count. Exit code 0: all tests
 # passed.
-#   TAKT_STAGES  only these of: format release asan tsan fuzz tidy alone mutation trajectories packages (without: all but the last four,
-#                which belong to a release: they compile each source alone, and 200 changed copies, plan 10^8 trajectories, and build the
-#                Debian packages twice and install them into a new Debian, which needs root)
+#   TAKT_STAGES  only these stages of: format release asan tsan fuzz tidy alone mutation trajectories packages. Without this variable, all
+#                stages run but the last four, which belong to a release. They compile each source alone, compile 200 changed copies,
+#                plan 10^8 trajectories, and build the Debian packages twice and install them into a new Debian, which needs root.
 #   TAKT_FUZZ    seconds of the stage fuzz for EDS files; half of it for network files, a third for each other target (60)
 #   TAKT_PCH     OFF: no precompiled headers
 #   TAKT_JOBS    parallel jobs (number of processors)
@@ -79,14 +79,14 @@ read_sources() {
     ninja -C "$build" takt_lcm_headers && python3 "test/house/$script.py" "$build" "$jobs"
 }
 check_tidy() { read_sources tidy build/tidy -DTAKT_UNITY=ON; }
-# Proves that each source includes what it uses: the builds compile the sources of a library together. Each run of the tests checks
-# the same by names (test/house/check_includes.py).
+# Proves that each source includes what it uses, because the other builds compile the sources of a library together. Each run of the
+# tests checks the includes by names (test/house/check_includes.py).
 check_alone() { read_sources alone build/alone -DTAKT_UNITY=OFF -DTAKT_WERROR=ON; }
 
 # The copy of the tree and its programs stay in build/mutation, so a second run compiles only what has changed.
 check_mutation() { python3 test/mutation/mutate.py --seed 1 --count 200 --jobs "$jobs"; }
 
-# Beside ruckig. CI compares a million trajectories (test/motion/judge_trajectories.py).
+# Compares trajectories with those of ruckig. CI compares a million of them (test/motion/judge_trajectories.py).
 check_trajectories() {
   python3 test/motion/judge_many.py --cases 100000000 && python3 test/motion/judge_many.py --cases 1000000 --class "wide limits"
 }
@@ -161,7 +161,7 @@ for wanted in $stages; do
         stage benchmarks run_benchmarks
       fi
       ;;
-    # The tests under ASan and UBSan and the fuzz targets are programs of one build: the preset fuzz is asan with clang.
+    # The tests under ASan and UBSan and the fuzz targets are programs of one build, because the preset fuzz is the preset asan with clang.
     asan) stage asan-build build fuzz clang++-19 takt_host_tests && stage asan-tests run_tests fuzz -L host ;;
     fuzz) stage fuzz fuzz ;;
     tsan) stage tsan-build build tsan c++ takt_threaded_tests taktd takt takt-follow takt-home takt-jog takt-logic takt-move && stage tsan-tests run_tests tsan -L threaded ;;

@@ -1,6 +1,6 @@
 #!/bin/sh
 # wheel.sh [FOLDER] - builds the Python package takt-VERSION-py3-none-any.whl in FOLDER (default: build/), and prints its name. The
-# script needs lcm-gen and the setuptools of Debian, and no network. The build is reproducible: the time in the file is
+# script needs lcm-gen and the setuptools of Debian, but no network. The build is reproducible: the time in the file is
 # SOURCE_DATE_EPOCH, otherwise 2026-01-01.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -11,7 +11,7 @@ folder=$(cd "$folder" && pwd)
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 
-# setuptools writes beside its sources, and the rights of files in the wheel are those of the sources.
+# This is done in a copy: setuptools writes beside its sources, and the files in the wheel get the access rights of the sources.
 mkdir -p "$tmp/apps" "$tmp/share"
 cp -r "$root/apps/python" "$tmp/apps"
 cp -r "$root/share/lcm" "$root/share/eds" "$tmp/share"

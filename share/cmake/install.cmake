@@ -16,7 +16,7 @@ install(DIRECTORY apps/python/takt DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/pyt
 install(DIRECTORY share/devices share/eds share/demo DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)
 
 # The pages link only to each other and to CHANGELOG.md. CHANGELOG.md is installed beside the pages, so the installed index has
-# another link to this file. COMPONENT: they can be installed without a build.
+# another link to this file. With COMPONENT, the pages can be installed without a build.
 install(DIRECTORY share/doc/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc
         FILES_MATCHING PATTERN *.md PATTERN *.svg PATTERN index.md EXCLUDE)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS share/doc/index.md)
@@ -25,7 +25,8 @@ string(REPLACE "(../../CHANGELOG.md)" "(CHANGELOG.md)" index_page "${index_page}
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/index.md "${index_page}")
 install(FILES LICENSE CHANGELOG.md ${CMAKE_CURRENT_BINARY_DIR}/index.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
 
-# What the programs write about themselves. When takt is built for another machine, CMAKE_CROSSCOMPILING_EMULATOR runs them.
+# The schema and the manual pages, which the programs write. If takt is built for another architecture,
+# CMAKE_CROSSCOMPILING_EMULATOR runs the programs.
 set(written ${PROJECT_BINARY_DIR}/written)
 file(MAKE_DIRECTORY ${written}/manual)
 add_custom_command(OUTPUT ${written}/network.schema.json DEPENDS takt

@@ -1,5 +1,5 @@
-# takt_precompile(TARGET OWNER HEADERS...): parses HEADERS once, for OWNER and for all targets that name it; these have equal
-# flags. Sources still include every header that they use.
+# takt_precompile(TARGET OWNER HEADERS...): parses HEADERS once, for OWNER and for all targets that name OWNER. These targets
+# have equal flags. Sources still include every header that they use.
 function(takt_precompile target owner)
   if(NOT TAKT_PCH)
     return()

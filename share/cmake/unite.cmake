@@ -1,5 +1,5 @@
-# takt_unite(LIST NAME): with TAKT_UNITY, replaces the test files (*_test.cpp) of the list variable LIST by generated files
-# that have several of them each. GCC then needs a third of the time, because it instantiates each template of the standard
+# takt_unite(LIST NAME): with TAKT_UNITY, replaces the test files (*_test.cpp) of the list variable LIST by generated files,
+# each of which has several test files. GCC then needs a third of the time, because it instantiates each template of the standard
 # library, of GoogleTest and of takt once for all these files.
 function(takt_unite united_list name)
   if(NOT TAKT_UNITY)
