@@ -84,7 +84,7 @@ bool is_network(const std::string& file) {
   return file.ends_with(".yaml") || file.ends_with(".yml");
 }
 
-/// Prints the frames that the options select, up to their number.
+/// Prints the frames that the options select, until it has printed as many as --count permits.
 class Printer {
  public:
   /// A `node` of 0 means all nodes.

@@ -80,8 +80,8 @@ Json json_of(const NodeAudit& node) {
   return json;
 }
 
-/// Returns the number of devices for each verdict, for example "2 safe without the master, 1 held
-/// at the last set-points".
+/// Returns how many devices have each verdict, for example "2 safe by themselves, 1 with their last
+/// set-points for ever".
 std::string summary(const Audit& audit) {
   std::array<unsigned, 4> count{};
   for (const NodeAudit& node : audit.nodes) ++count[std::to_underlying(node.verdict)];

@@ -34,7 +34,7 @@ class DeviceValues {
 
   /// Takes a value that the device has answered. Adds a note if it is not the expected value.
   void answered(ObjectKey key, std::span<const std::byte> bytes);
-  /// Removes an object because the device says that it does not exist. Adds a note.
+  /// Removes an object because the device has answered that the object does not exist. Adds a note.
   void missing(ObjectKey key);
   void note(std::string text) { notes_.push_back(std::move(text)); }
   /// Returns the notes that answered(), missing() and note() have added.

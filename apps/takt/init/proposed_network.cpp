@@ -20,8 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t periods_us[] = {1000, 2000, 4000, 5000, 10'000, 20'000, 50'000, 100'000};
-/// The period of SYNC for the trial of a single device. It is so long that the bus has time for the
-/// frames.
+/// The period of SYNC for the trial of a single device. It is long enough for all frames of the
+/// device.
 constexpr std::uint32_t patient_period_us = 100'000;
 constexpr double most_load = 0.6;
 constexpr std::uint8_t usual_master = 127;

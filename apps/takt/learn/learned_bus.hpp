@@ -70,11 +70,11 @@ struct LearnedNode {
   /// master sends it NMT commands or guarding requests. SDO requests without an answer do not
   /// suffice.
   bool is_there() const noexcept;
-  /// Returns the writes of the boot with the most writes, and then those that only other boots
+  /// Returns the writes of the boot with the most writes, and then the writes that only other boots
   /// have.
   std::vector<LearnedWrite> configuration() const;
-  /// Returns the values of the objects at the end of that boot, and then those of objects that only
-  /// other boots have.
+  /// Returns the values of the objects at the end of the boot with the most writes, and then the
+  /// values of objects that only other boots have.
   LearnedValues values() const;
 };
 
@@ -114,7 +114,7 @@ struct LearnedBus {
   std::optional<std::uint8_t> master() const;
   /// Returns all nodes except the master and those in strangers().
   std::vector<const LearnedNode*> devices() const;
-  /// Returns the node-IDs that were asked by SDO but never heard, for example in a scan.
+  /// Returns the node-IDs that got SDO requests but sent no frame, for example in a scan.
   std::vector<std::uint8_t> strangers() const;
 
  private:

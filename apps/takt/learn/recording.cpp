@@ -17,7 +17,7 @@ constexpr std::size_t most_boots = 16;
 constexpr std::size_t most_writes = 4096;   // limit for one boot
 constexpr std::size_t most_objects = 8192;  // limit for one boot
 constexpr std::size_t most_line = 512;
-constexpr std::size_t most_early = 16;  // interfaces of error frames before the first data frame
+constexpr std::size_t most_early = 16;  // limit of interfaces with early error frames
 
 bool is_node(unsigned id) { return id >= 1 && id <= 127; }
 
@@ -60,8 +60,8 @@ void Recording::add(std::string_view text, std::uint32_t line) {
   }
 }
 
-/// Keeps an error frame until the first other frame has chosen the interface; only then it is
-/// counted.
+/// Keeps an error frame until the first frame of another kind has chosen the interface. The error
+/// frame is counted only then.
 void Recording::early_error(const std::string& interface) {
   const auto known = std::ranges::find(early_, interface, &EarlyErrors::interface);
   if (known != early_.end()) {

@@ -46,8 +46,8 @@ class TimingListener {
         timing_channel_{channel_name(bus, "TIMING")},
         image_channel_{channel_name(bus, "IMAGE")} {}
 
-  /// Returns the next timing_t, with the delays of the images that arrived since the one before.
-  /// Returns std::nullopt if none comes in time, or after Ctrl-C.
+  /// Returns the next timing_t, with the delays of the images that have arrived since the previous
+  /// timing_t. Returns std::nullopt if none comes in time, or after Ctrl-C.
   std::optional<timing_t> next() {
     newest_.reset();
     const Time until = monotonic_now() + silence_limit;

@@ -39,7 +39,7 @@ class DaemonClient {
   /// Sends a message on the channel BUS_WHAT, in an envelope if there is a key.
   void send(std::string_view what, Bytes message);
   /// Passes arriving messages to `handler`, for dialogues of more than one message. Returns after
-  /// the first ones, at the latest at `until` (monotonic).
+  /// the first messages that have arrived, at the latest at `until` (monotonic).
   void serve(const MessageHandler& handler, Time until);
   /// Returns true if the daemon has refused messages because they came without an envelope, and
   /// this program has no key.

@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time repeat_after = 300ms;  // without a state, a message was probably lost
+constexpr Time repeat_after = 300ms;  // if no state comes, a message was probably lost
 constexpr Time ask_every = 1s;        // interval of status messages while the transfer runs
 constexpr Time most_silence = 5s;     // longest time without a message from the daemon
 constexpr std::size_t window = Transfers::parts_at_once * Transfers::part_bytes;

@@ -53,9 +53,9 @@ struct SoakCounts {
   std::uint64_t groups = 0;    ///< groups whose begin was seen and judged
   std::uint64_t gears = 0;     ///< gears that the programs commanded
   std::uint64_t streams = 0;   ///< streams that the programs began
-  /// Number of these that were compared with their paths up to the ends.
+  /// Streams that were compared with their paths up to their ends.
   std::uint64_t judged_streams = 0;
-  std::uint64_t judged_gears = 0;    ///< gears that were compared with their leaders, locked
+  std::uint64_t judged_gears = 0;    ///< locked gears that were compared with their leaders
   std::uint64_t homings = 0;         ///< homing runs of programs that have ended well
   std::uint64_t forged = 0;          ///< forged messages
   std::uint64_t program_faults = 0;  ///< faults of programs: stalls, deaths, rivals, replays ...

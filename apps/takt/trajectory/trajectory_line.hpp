@@ -35,7 +35,7 @@ std::expected<TrajectoryAnswer, std::string> answer_trajectory(TrajectoryRequest
 constexpr std::size_t most_samples = 1'000'000;
 
 /// Returns the answer as one line of JSON, with the states of all axes at intervals of `sample` if
-/// that is given. The error says that there would be more than most_samples.
+/// that is given. The error is that there would be more than most_samples samples.
 std::expected<std::string, std::string> trajectory_json(const TrajectoryAnswer& answer,
                                                         std::optional<Time> sample);
 

@@ -22,7 +22,8 @@ int print_devices(const LssOptions& options, const std::vector<LssAddress>& devi
   return devices.empty() ? 1 : 0;
 }
 
-/// Returns true if each number is the lowest possible one: every question of the scan was answered.
+/// Returns true if every question of the scan was answered: each number that the user has not given
+/// is then 0.
 bool all_answered(const LssOptions& options, const LssAddress& found) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i] != parse_unsigned(options.parts[i]).value_or(0)) return false;

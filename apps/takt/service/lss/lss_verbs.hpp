@@ -14,7 +14,7 @@ int lss_find(const LssOptions& options);
 /// Finds all devices of a product. After each found device, it scans the higher serial numbers of
 /// the same revision, then the higher revisions.
 int lss_scan(const LssOptions& options);
-/// Tells whether a device has no node-ID.
+/// Prints whether a device without node-ID answers.
 int lss_unconfigured(const LssOptions& options);
 /// Prints the address and the node-ID of one device.
 int lss_inquire(const LssOptions& options);

@@ -15,8 +15,8 @@
 
 namespace takt {
 
-/// A program in virtual time whose code may wait, as that of a real program does. It runs on a
-/// thread of its own, and only while act() waits for it. So equal seeds give equal runs.
+/// A program in virtual time whose code may wait, as that of a real program does. It runs on its
+/// own thread, and only while act() waits for it. Therefore equal seeds give equal runs.
 class VirtualProcess final : public Actor, private Surroundings {
  public:
   VirtualProcess(VirtualLcm& lcm, const Clocks& clocks, sim::Random random);

@@ -18,7 +18,7 @@ constexpr Time as_good_as_new = 2s;
 constexpr std::int64_t low_bits = 15;  // bits of a position that identify its sender
 constexpr std::int64_t nobody = 6;     // value of these bits that no program uses
 constexpr std::int64_t fewest_away =
-    50'000;                       // least cycles between a forged cycle and the true one
+    50'000;  // shortest distance, in cycles, of a forged cycle from the true one
 constexpr Time least_away = 10s;  // this distance as a time; no lease lasts longer than 1 s
 constexpr std::int64_t never_reached = std::int64_t{1} << 62;  // cycle number
 

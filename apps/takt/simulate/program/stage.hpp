@@ -12,7 +12,8 @@ class Actor {
   virtual ~Actor() = default;
   /// Returns the time of the actor's next action; `never` if it only reacts to others.
   virtual Time next() const noexcept = 0;
-  /// Performs the action that is due at `now`. Afterwards next() is later, or again due at once.
+  /// Performs the action that is due at `now`. Afterwards, next() returns a later time, or `now` if
+  /// another action is due.
   virtual void act(Time now) = 0;
 };
 

@@ -11,8 +11,8 @@
 namespace takt {
 
 /// The port of a bus thread in virtual time that runs beside other actors. Whenever the bus thread
-/// sleeps, all actors on the stage act that are due before it wakes. Therefore they can act between
-/// any two steps of the bus thread, like other threads of the same machine.
+/// sleeps, it lets those actors on the stage act that are due before it wakes. Therefore actors can
+/// act between any two steps of the bus thread, like other threads of the same machine.
 class StagedPort {
  public:
   /// Called with the frames that the master passes to the interface.

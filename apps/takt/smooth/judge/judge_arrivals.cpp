@@ -149,7 +149,8 @@ Finding beat_finding(const AxisView& view, const Arrivals& seen, const Rhythm& r
           .first = earliest({seen.late, seen.early, seen.skipped, seen.overwritten})};
 }
 
-/// Returns the share of the late set-points before which the bus was busy from their usual time on.
+/// Returns the share of the late set-points for which the bus was busy from their usual time until
+/// their arrival.
 double share_behind_others(const AxisView& view, const Arrivals& seen, const Rhythm& rhythm) {
   std::size_t busy = 0;
   for (const std::size_t at : seen.late_cycles) {

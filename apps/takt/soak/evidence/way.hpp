@@ -36,9 +36,9 @@ inline unsigned cycles_between(Time from, Time to, Time period, double most) noe
 }
 
 /// Returns true if `way` after `last` needs more than the acceleration `bend`, in counts per cycle
-/// squared. Each of the three values is rounded to a count, which may look like an acceleration. A
-/// distance over several cycles may have begun in any of them, if the same value was commanded
-/// again before.
+/// squared. Each of the three values is rounded to a count, which may look like an acceleration. If
+/// the same value was commanded again before, a distance over several cycles may have begun in any
+/// of them.
 inline bool is_too_sharp(double bend, const Way& way, const Way& last) noexcept {
   const auto sharp = [&](unsigned cycles, double before, unsigned gap) {
     const double found = std::abs(way.length / cycles - before);

@@ -63,7 +63,7 @@ class LimitJudge {
     bool enables = false;           ///< the last controlword sent enables operation
     bool enabled = true;            ///< the last statusword received is enabled
     unsigned doubt = 0;             ///< cycles in which the master may not know the state
-    unsigned mode_doubt = 0;        ///< doubt about the mode, as `doubt`
+    unsigned mode_doubt = 0;        ///< cycles in which the master may not know the mode
     Change change = Change::none;
     std::deque<Seen> actual{};  ///< actual values since cycles_[0], newest last
   };

@@ -66,7 +66,7 @@ class MotionJudge {
     Time when{};                    ///< time at which `value` was first sent
     Time sent_at{};                 ///< time at which the last frame was sent
     std::optional<Way> last_way{};  ///< way of that frame; empty if the drive did not follow
-    std::uint64_t syncs = 0;        ///< SYNCs on the wire until that frame
+    std::uint64_t syncs = 0;        ///< number of SYNCs on the wire until that frame
     bool enabled = false;           ///< the last statusword is that of an enabled drive
     unsigned doubt = 0;             ///< cycles in which the master may not know the state
     unsigned disabled_cycles = 0;   ///< cycles that have begun since the drive was disabled
