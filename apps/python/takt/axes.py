@@ -175,8 +175,8 @@ class Axes(View, Bus):
         self.wait()
 
     def begin_move(self, *positions: float, **limits: float | list[float]) -> None:
-        """Begins a move and returns at once. A new target is possible during a motion. See
-        wait()."""
+        """Begins a move and returns at once. A call during a motion gives the axes a new target.
+        See wait()."""
         self._needs_position()
         self._motions.begin("move", positions, limits)
 
@@ -197,8 +197,8 @@ class Axes(View, Bus):
         stop. `ratio`: units of an axis per unit of the leader. Without `phase`, only the velocities
         are matched; with `phase`, the positions become ratio * position of the leader + phase.
         `modulo`: value at which the signal begins again. `filter_time`: filter time for the
-        velocity of the signal, 0 for 20 ms. `max_phase_error`: above this phase error, the axes
-        stop if they were locked; 0: the axes fall behind and catch up. See `locked`."""
+        velocity of the signal, 0 for 20 ms. `max_phase_error`: phase error above which the axes
+        stop, once they are locked; 0: the axes fall behind and catch up. See `locked`."""
         self._needs_position()
         numbers = {"ratio": ratio, "phase": phase, "modulo": modulo, "filter_time": filter_time,
                    "max_phase_error": max_phase_error}
@@ -256,8 +256,8 @@ class Axes(View, Bus):
                      at_once: bool = True, wait: bool = True) -> None:
         """Moves the axes in profile position mode, which set_mode(1) sets: the drives compute the
         motions. `velocity`, `acceleration` and `deceleration` are written to 0x6081, 0x6083 and
-        0x6084 if they are given, in the unit of the velocity; without `deceleration`, the
-        acceleration is used for both. `relative`: the numbers are distances from the previous
+        0x6084 if they are given, in the unit of the velocity; `deceleration` is equal to
+        `acceleration` unless it is given. `relative`: the numbers are distances from the previous
         set-points. The drives get positions in this case, too, because taktd can check only
         positions against the range. Without `at_once`, a set-point waits in the buffer of the drive
         until the previous one is reached. Returns when the drives have reached their set-points,
