@@ -44,8 +44,8 @@ class MasterRun {
   template <Port P>
   void attach(P& port, Journal* journal = nullptr);
 
-  /// Runs the cycles on the bus thread until the ordered stop is over. Returns the errno if there
-  /// is no bus thread.
+  /// Runs the cycles on the bus thread until the ordered stop is over. Returns the errno if the bus
+  /// thread could not be started.
   std::expected<void, int> start(const StartThread& start_thread = start_plain_thread);
   /// Replaces start() when the calling thread runs the cycles itself, for example in virtual time.
   void begin() noexcept { runner_->start(); }
@@ -97,7 +97,8 @@ class MasterRun {
   bool submit(const Request& request) noexcept { return exchange_->requests.push(request); }
 
   /// Hands a message about motions to the bus thread. Returns false if too many messages wait;
-  /// submit it again later. Points of streams leave room for the other kinds.
+  /// submit it again later. Points of streams are refused earlier, so that room is left for the
+  /// other kinds of messages.
   bool submit(const motion::MotionMessage& message) noexcept {
     const bool waits = message.kind == motion::MessageKind::points &&
                        !exchange_->motions.has_room(motions_a_cycle + 1);

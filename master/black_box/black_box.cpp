@@ -104,8 +104,8 @@ void BlackBox::on_fault(const std::string& kind, std::uint8_t node, const std::s
 
 void BlackBox::on_request(const std::string& reason, Time now) { ask(reason, now); }
 
-/// Schedules a recording. A new request never delays a recording that is already due; only the
-/// minimum time since the previous recording does.
+/// Schedules a recording at `at`, but not before the minimum time since the previous recording is
+/// over. A recording that is already scheduled is never delayed by a new request.
 void BlackBox::ask(const std::string& reason, Time at) {
   if (last_ != Time{}) at = std::max(at, last_ + distance);
   if (reason_.empty()) reason_ = reason;

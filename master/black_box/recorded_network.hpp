@@ -3,8 +3,8 @@
 
 namespace takt {
 
-/// Returns the path of the frames of a recording of the black box, of which `file` is any file, and
-/// any other path unchanged.
+/// Returns the path of the frames of a recording of the black box if `file` is one of its files.
+/// Returns any other path unchanged.
 std::string log_of_recording(const std::string& file);
 
 /// Returns the path of the events that belong to a log of frames. There need not be such a file.

@@ -75,9 +75,10 @@ struct BootFailure {
 enum class EventKind : std::uint8_t {
   // nodes
   boot_started,
-  boot_done,  ///< value: 1 if the node was already OPERATIONAL and was not reset; detail: ms;
-              ///< bytes: number of objects that differ and were left alone (2 bytes), the first of
-              ///< them (index 2 bytes, sub-index 1 byte)
+  boot_done,  ///< value: 1 if the node was already OPERATIONAL and was not reset; detail: duration
+              ///< of the boot in ms; bytes: number of objects that differ from the plan and were
+              ///< not changed (2 bytes), and the first of these objects (index 2 bytes, sub-index 1
+              ///< byte)
   boot_failed,       ///< `failure` is valid; detail: number of failures in a row by the same cause
                      ///< (reported at 1, 2, 4, 8 ...)
   node_state,        ///< value: the new NmtState
@@ -92,17 +93,18 @@ enum class EventKind : std::uint8_t {
   firmware_differs,  ///< The firmware differs from the one for which the device data were made;
                      ///< value: Firmware::packed.
   no_sdo_block,  ///< The SDO server supports no block transfer; all transfers are segmented until
-                 ///< the node is reset. value: abort code, 0 if it gave no answer; detail: index <<
-                 ///< 8 | sub-index
-  limit_read,  ///< The boot of a drive has read a limit. value: as the device gives it, for a range
-               ///< the lower end is in the upper half; detail: index into LimitsPlan::lines << 8 |
-               ///< LimitVerdict
+                 ///< the node is reset. value: abort code, 0 if the server gave no answer; detail:
+                 ///< index << 8 | sub-index
+  limit_read,    ///< The boot of a drive has read a limit. value: the limit as the device gives it;
+               ///< for a range, the upper half of the value is the lower end of the range; detail:
+               ///< index into LimitsPlan::lines << 8 | LimitVerdict
   program_progress,  ///< value: bytes that the device has accepted, detail: size of the program in
                      ///< bytes
   lss_assigned,  ///< The node had no node-ID and has received it by LSS; value: its serial number.
-  lss_not_assigned,  ///< The node was found without node-ID but did not accept it, or (outcome
-                     ///< `nobody`) only other devices without node-ID have answered; bytes: op,
-                     ///< outcome, error, specific of the LssResult; reported when that changes.
+  lss_not_assigned,  ///< The node was found without node-ID but did not accept the assigned
+                     ///< node-ID, or (outcome `nobody`) only other devices without node-ID have
+                     ///< answered. bytes: op, outcome, error, specific of the LssResult; reported
+                     ///< when these bytes change.
   unlisted_node,   ///< value: node-ID of a node that is not in the network file (CiA 302-2, status
                    ///< A)
   network_ready,   ///< All mandatory nodes have booted, and the master is operational.
@@ -130,9 +132,10 @@ enum class EventKind : std::uint8_t {
   // outputs
   fallback_begun,  ///< value: signal whose command has expired; bytes: pack_limit(), or 0
   fallback_ended,  ///< value: signal
-  outputs_held,  ///< An RPDO is not sent because a signal lacks a commanded, safe or seeded value.
-                 ///< value: RPDO number; detail: index of the signal whose actual position a
-                 ///< limited set-point waits for, plus 1; 0 means that there is no such signal
+  outputs_held,    ///< An RPDO is not sent because one of its signals has neither a command nor a
+                   ///< safe value nor the value of its feedback. value: RPDO number; detail: 1 plus
+                 ///< the index of the actual position for which a limited set-point waits; 0 means
+                 ///< that no set-point waits
   limit_exceeded,  ///< A command is not sent, and the outputs of its node take their fallback.
                    ///< value: the raw command; detail: signal << 8 | LimitKind, and held_set_point;
                    ///< bytes: the measured value and its limit, each a float in SI units
@@ -148,11 +151,12 @@ enum class EventKind : std::uint8_t {
   foreign_nmt,       ///< bytes: the command
   duplicate_cob_id,  ///< value: COB-ID of the master's frames that another device also uses
   // the ordered stop
-  axis_not_stopped,  ///< An axis is not confirmed. detail: AxisVerdict | axis << 8 | 1 << 16 if the
-                     ///< velocity comes from differences of 0x6064; value: ns without an answer
-                     ///< (silent, lost), else the raw velocity
-  still_armed,  ///< The device did not accept its disarming. detail: index << 8 | sub-index; value:
-                ///< abort code, 0 if not confirmed, negative: ns without an answer
+  axis_not_stopped,  ///< The stop of an axis is not confirmed. detail: AxisVerdict | axis << 8 | 1
+                     ///< << 16 if the velocity comes from differences of 0x6064; value: ns without
+                     ///< an answer (silent, lost), abort code (refused), else the raw velocity
+  still_armed,       ///< The device did not accept a write that ends its supervision of the master.
+                     ///< detail: index << 8 | sub-index; value: abort code, 0 if not confirmed,
+                     ///< negative: ns without an answer
   drive_coasts,  ///< The boot of a drive has found that its quick stop disables it at once. value:
                  ///< axis, counted from 0
   // the master

@@ -9,7 +9,7 @@ enum class StopStage : std::uint8_t {
   fallback,    ///< Every output takes its declared fallback.
   quick_stop,  ///< The axes stop quickly; each is disabled after it was seen at standstill.
   disable,     ///< The time is over; axes that are still enabled are disabled.
-  disarm,      ///< The supervision of the master by the devices is disarmed.
+  disarm,      ///< The supervision of the master by the devices is switched off.
   nmt,         ///< The nodes receive their last NMT command.
   done,        ///< The stop is over; SYNC may end.
 };

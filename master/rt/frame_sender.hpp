@@ -19,7 +19,8 @@ class FrameSender {
   FrameSender(P& port, const Beat& beat, EventQueue& events, BusStatus& status) noexcept
       : port_{port}, beat_{beat}, status_{status}, watch_{events} {}
 
-  /// Returns how many of the frames the port has taken, the first ones.
+  /// Hands the frames to the port. Returns the number of frames that the port has taken, counted
+  /// from the first one.
   std::size_t send(std::span<const Frame> frames) noexcept {
     if (!beat_.wire_open()) return 0;
     const SendResult result = port_.send(frames);

@@ -18,8 +18,9 @@ class ImagePublisher {
                  Controller* controller) noexcept
       : beat_{beat}, bus_{bus}, exchange_{exchange}, controller_{controller} {}
 
-  /// Closes the image and publishes it. `condition` are those of the end of the receive window;
-  /// `predicted` is the time from SYNC to the arrival of the last expected TPDO in the next cycle.
+  /// Closes the image and publishes it. `condition` is the condition of the port at the end of the
+  /// receive window; `predicted` is the time from SYNC to the arrival of the last expected TPDO in
+  /// the next cycle.
   void publish(const PortCondition& condition, Time now, Time predicted) noexcept {
     const bool echoed = condition.last_sync_echo >= beat_.sync_at();
     const Time sync_time = echoed ? condition.last_sync_echo : beat_.sync_at();

@@ -95,7 +95,7 @@ void Intake<P, S>::await_rest(Time end) noexcept {
 
 template <Port P, Services S>
 void Intake<P, S>::drain() noexcept {
-  BusMachines<S>& bus = bus_;  // spares a load for each frame
+  BusMachines<S>& bus = bus_;  // avoids a load for each frame
   PdoInputs& inputs = bus.pdos.inputs();
   for (bool more = !beat_.next_sync_came(); more;) {
     const bool left = left_from_ != left_end_;

@@ -23,7 +23,8 @@ class NodeExchange {
   /// Call this at the begin of each cycle. `axes_stopped` means that an ordered stop has ended for
   /// all axes.
   void update(bool axes_stopped) noexcept {
-    // A master that only observes and does not know SYNC cannot wait for answers to it.
+    // A master that only observes and does not know SYNC cannot wait for the TPDOs that answer
+    // SYNC.
     const bool beats = !bus_.observe || beat_.follows();
     // At the end of an ordered stop, a heartbeat sent before the last NMT command may still report
     // OPERATIONAL.

@@ -48,7 +48,8 @@ concept Port = requires(P port, const P constant, Time until, std::span<const Fr
   { port.now() } noexcept -> std::same_as<Time>;
   /// Sleeps until an absolute time; may return late, never early.
   { port.sleep_until(until) } noexcept;
-  /// Sleeps until the time of SYNC with higher precision: wakes early and spins the rest.
+  /// Sleeps until the time of SYNC with higher precision: wakes early and waits actively for the
+  /// rest.
   { port.sleep_precisely_until(until) } noexcept;
   /// Sleeps until a frame can be received (returns true) or until the given time (returns false).
   { port.wait_frame(until) } noexcept -> std::same_as<bool>;

@@ -47,9 +47,9 @@ class Slack {
   /// Sleeps until the next round of a long cycle. Returns false if the outputs come next, or if a
   /// followed SYNC came early.
   bool rest_until_next_round() noexcept;
-  /// Sends one service frame directly behind SYNC after some cycles that were too full for a
-  /// dialogue before the outputs. Such cycles must not keep nodes from booting. PDOs have priority
-  /// over this frame on the wire.
+  /// Sends one service frame directly after SYNC if some cycles had no room for a service frame and
+  /// its answer before the outputs. Such cycles must not keep nodes from booting. PDOs have
+  /// priority over this frame on the wire.
   void relieve_services() noexcept;
 
   template <class Archive>
@@ -58,11 +58,11 @@ class Slack {
   }
 
  private:
-  /// Cycles without room for service frames before one is forced out.
+  /// Number of cycles without room for service frames after which relieve_services() sends one.
   static constexpr unsigned forced_after = 2;
-  /// Most frames handed over at once, because interface queues are short.
+  /// Largest number of frames that are handed over at once, because interface queues are short.
   static constexpr std::size_t burst_frames = 6;
-  /// Frames still in the queue when the next ones follow.
+  /// Number of frames that are still in the queue when the next ones are handed over.
   static constexpr std::size_t burst_ahead = 3;
   static constexpr Time long_cycle = std::chrono::milliseconds{50};
   /// Time between the service rounds of a long cycle.
@@ -72,7 +72,7 @@ class Slack {
     Time outputs{};          ///< when the outputs are due
     Time last_look{};        ///< end of the wait for answers
     std::size_t budget = 0;  ///< frames that may still be handed over
-    std::size_t open = 0;    ///< unanswered dialogues of this round
+    std::size_t open = 0;    ///< number of unanswered requests of this round
     bool idle = true;        ///< this round has handed over nothing so far
   };
   enum class Handed : std::uint8_t {
@@ -267,8 +267,8 @@ bool Slack<P, S>::before_stream_end(Time now) const noexcept {
 }
 
 /// Returns the wire time to reserve for outstanding answers. In operation, this covers all answers
-/// of servers, so that they fit before the outputs even if they come at once. `open` counts the
-/// unanswered dialogues of this round.
+/// of servers, so that they fit before the outputs even if they come at once. `open` is the number
+/// of unanswered requests of this round.
 template <Port P, Services S>
 Time Slack<P, S>::awaited_wire_time(std::size_t open) const noexcept {
   const Time dialogue = bus_.wire.worst_dialogue();

@@ -48,8 +48,8 @@ BlockFollower::Part BlockFollower::from_sink(const Frame& frame) {
 }
 
 BlockFollower::Part BlockFollower::segment(const Frame& frame) {
-  // After a gap, a frame that looks like an end with its zeros is the end; the last segment was not
-  // seen.
+  // After a gap, a frame counts as the end of the transfer if it looks like an end and its unused
+  // bytes are zero. The last segment was then not seen.
   if (gap_ && is_block_end(frame) && all_zero(std::span{frame.data}.subspan(3))) return end(frame);
   const SdoBlockSegment part = decode_block_segment(frame);
   // The confirmation of the sub-block was not seen.

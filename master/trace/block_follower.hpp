@@ -16,7 +16,7 @@ namespace takt {
 class BlockFollower {
  public:
   enum class Direction : std::uint8_t { download, upload };
-  /// What a frame is in the transfer.
+  /// The role of a frame in the transfer.
   enum class Part : std::uint8_t {
     initiate,
     accept,  ///< in an upload, the request of the client

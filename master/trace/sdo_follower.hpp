@@ -27,8 +27,8 @@ struct SeenTransfer {
   std::optional<std::uint32_t> abort_code{};
 };
 
-/// Follows the SDO frames between one server and its client, without taking part. CiA
-/// 301, 7.2.4.3. Its memory is bounded for any frames.
+/// Follows the SDO frames between one server and its client, and sends nothing itself. Its memory
+/// is bounded, whatever frames come. CiA 301, 7.2.4.3.
 class SdoFollower {
  public:
   /// Longest value of a segmented transfer that is kept, bytes. BlockFollower keeps less.
@@ -41,7 +41,8 @@ class SdoFollower {
 
   /// Returns the newest transfer. It may have ended.
   const SeenTransfer& transfer() const noexcept { return transfer_; }
-  /// Returns the part of a block transfer that the newest frame is, or std::nullopt.
+  /// Returns the role of the newest frame in a block transfer. Returns std::nullopt if the frame
+  /// belongs to no block transfer.
   std::optional<BlockFollower::Part> block_part() const noexcept { return newest_.part; }
   /// Returns the newest block transfer.
   const BlockFollower& block() const noexcept { return block_; }
@@ -62,7 +63,7 @@ class SdoFollower {
  private:
   enum class State : std::uint8_t { idle, asked, announced, segments, last_sent };
   enum class Side : std::uint8_t { client, server };
-  /// What the newest frame is.
+  /// Properties of the newest frame.
   struct Newest {
     std::optional<BlockFollower::Part> part{};
     bool stray = false;

@@ -74,7 +74,7 @@ struct Answer {
   /// The answer to `inquire_...`; `inquire_node_id` uses its lowest byte.
   std::uint32_t number = 0;
 
-  /// Returns whether the answer has the command specifier of this service.
+  /// Returns true if the answer has the command specifier of this service.
   constexpr bool is(Service service, std::uint8_t offset = 0) const noexcept {
     return code == static_cast<std::uint8_t>(service) + offset;
   }

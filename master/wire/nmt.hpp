@@ -36,8 +36,8 @@ constexpr Frame encode(const NmtMessage& message) noexcept {
   return make_frame(nmt_cob_id, {static_cast<std::uint8_t>(message.command), message.node});
 }
 
-/// Decodes an NMT command. Returns std::nullopt if the frame is no NMT command, or one that no node
-/// obeys (unknown command specifier, node-ID above 127).
+/// Decodes an NMT command. Returns std::nullopt if the frame is no NMT command, or is one that
+/// every node ignores (unknown command specifier, node-ID above 127).
 constexpr std::optional<NmtMessage> decode_nmt(const Frame& frame) noexcept {
   if (frame.id != nmt_cob_id || frame.rtr || frame.length != 2 || frame.data[1] > 127) return {};
   const auto command = static_cast<NmtCommand>(frame.data[0]);

@@ -13,9 +13,10 @@
 
 namespace takt {
 
-/// SDO block transfer, CiA 301, 7.2.4.3.9 to 7.2.4.3.16: the largest number of segments in a
-/// sub-block. The parameter `channel` of the functions below is the COB-ID on which the sender of
-/// the frame transmits.
+// Frames of SDO block transfers. CiA 301, 7.2.4.3.9 to 7.2.4.3.16. The parameter `channel` of the
+// functions below is the COB-ID on which the sender of the frame transmits.
+
+/// The largest number of segments in a sub-block.
 inline constexpr std::uint8_t most_block_segments = 127;
 /// Data bytes of one segment.
 inline constexpr std::size_t segment_bytes = 7;

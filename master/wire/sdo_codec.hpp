@@ -12,10 +12,11 @@
 
 namespace takt {
 
-/// Returns the COB-ID of the frames of a client on the default channel of a server. CiA 301,
-/// 7.2.4.3 has the expedited and segmented transfers that this file codes. All frames are sent with
-/// eight bytes, and unused bytes are sent as zero. Unused bytes of received frames are ignored and
-/// may be missing.
+// Frames of expedited and segmented SDO transfers. CiA 301, 7.2.4.3. All frames are sent with eight
+// bytes, and unused bytes are sent as zero. Unused bytes of received frames are ignored and may be
+// missing.
+
+/// Returns the COB-ID of the frames of a client on the default channel of a server.
 constexpr CobId sdo_request_cob_id(NodeId server) noexcept {
   return CobId::base(0x600U + server.value());
 }

@@ -24,8 +24,7 @@ void Standstill::rest(Time from, Time now, bool within) noexcept {
 }
 
 void Standstill::take(Time now, const AxisSample& sample) noexcept {
-  // The device has measured a value that was read by SDO at some time between the request and the
-  // answer.
+  // A value that was read by SDO was measured at some time between the request and the answer.
   const Time asked = sample.motion_asked.value_or(now);
   if (sample.velocity) {
     velocity_ = *sample.velocity;
@@ -178,9 +177,9 @@ void AxisStop::note_motion(Time now, const AxisSample& sample) noexcept {
 
 /// Returns true if this statusword shows that an axis in this state was disabled before it stood
 /// still. A drive without power may report the velocity 0 although its axis coasts, so only values
-/// from the time before count. If 0x605A is 0, the drive must have shown its standstill before. If
-/// the drive is in the state "fault", it must not have shown a motion before. All other drives may
-/// disable themselves at the end of the ramp.
+/// from the time before it was disabled count. If 0x605A is 0, these values must have shown the
+/// standstill. If the drive is in the state "fault", they must not have shown a motion. All other
+/// drives may disable themselves at the end of the ramp.
 bool AxisStop::drops(AxisState state, std::int64_t statusword) const noexcept {
   if (!disabled(statusword)) return false;
   const bool brakes = state == AxisState::braking;

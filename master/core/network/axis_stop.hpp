@@ -10,11 +10,11 @@ namespace takt {
 /// The state of one axis in the ordered stop.
 enum class AxisState : std::uint8_t {
   unseen,    ///< No statusword has come since the stop began.
-  asked,     ///< As `unseen`; but an answer is not required, because the node was neither ready nor
+  asked,     ///< As `unseen`, but an answer is not required, because the node was neither ready nor
              ///< OPERATIONAL.
-  rested,    ///< As `unseen`; but the axis was disabled before, and nothing could enable it since.
-  exempt,    ///< There is nothing to stop: the axis was disabled when the stop began, its node was
-             ///< never heard, or it is no drive.
+  rested,    ///< As `unseen`, but the axis was disabled before, and nothing could enable it since.
+  exempt,    ///< There is nothing to stop: the axis was disabled when the stop began, its node has
+             ///< never given a sign of life, or the device is no drive.
   braking,   ///< The axis is commanded to stop quickly, and was not seen at standstill.
   standing,  ///< The axis was seen at standstill, and is commanded to disable.
   settling,  ///< The axis disabled itself before its standstill was certain.
@@ -25,8 +25,8 @@ enum class AxisState : std::uint8_t {
 
 /// The knowledge about an axis when the stop begins.
 enum class AxisPrior : std::uint8_t {
-  untouched,  ///< The stop does not reach the axis, or its node was never heard.
-  heard,      ///< The node was heard, but was neither ready nor OPERATIONAL.
+  untouched,  ///< The stop does not include the axis, or its node has never given a sign of life.
+  heard,      ///< The node has given a sign of life, but was neither ready nor OPERATIONAL.
   disabled,  ///< The node was ready; the axis was seen disabled, and nothing could enable it since.
   exposed,   ///< The node was ready: the axis may be enabled.
   foreign,   ///< The node is OPERATIONAL although this master has not booted it: the axis may be

@@ -142,10 +142,10 @@ bool StopRequests::due_of_axis(std::size_t axis, Time now, const OrderedStop& st
                    !exchanging || stop.needs_motion(axis, now));
 }
 
-/// Returns true if the device is armed, so that it supervises the master. This is the case if its
-/// boot has reached the step that arms it, even if the boot has failed later, or in this step
-/// without an answer. If the device has refused the write in this step, it is not armed by this
-/// boot. A lost node does not count as armed.
+/// Returns true if the device is armed, so that it supervises the master. A ready node is armed. A
+/// node whose boot has failed is armed if the boot has reached the step that arms it, unless the
+/// device has refused the write in this very step. A lost node, or one that has given no sign of
+/// life, does not count as armed.
 bool StopRequests::armed(const Job& job, const NodeStatus& node) const noexcept {
   if (node.boot == BootState::ready) return true;
   const bool answered = node.boot_letter != 'B' || node.nmt != NmtState::unknown;

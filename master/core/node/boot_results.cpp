@@ -122,8 +122,8 @@ void BootRunner::write_cob_id() noexcept {
 
 void BootRunner::on_written() noexcept {
   device_ = Device::written;
-  // The device had refused this write before the second command, so it had started itself
-  // meanwhile.
+  // The device had refused this write before the second command PRE-OPERATIONAL, so it had started
+  // itself after the first one.
   if (progress_.preop_again) nmt_.note_taken_out();
   if (to_write_.size() == 4) cob_id_.note(current().object, load_le<std::uint32_t>(to_write_));
   next();

@@ -68,7 +68,7 @@ bool OutputLimits::checked(std::size_t place) const noexcept {
          (offset && is_real(plan_.layout.signals[*offset].type));
 }
 
-/// Finds out again which outputs concern a limit. The answer changes only when a node begins to
+/// Determines again on which outputs a limit depends. The result changes only when a node begins to
 /// exchange PDOs and when its limits are read.
 void OutputLimits::find_concerned() noexcept {
   std::ranges::fill(concerned_, std::uint8_t{0});

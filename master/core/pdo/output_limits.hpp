@@ -43,12 +43,12 @@ struct AxisCommand {
 /// A step is measured from the value that was sent last, and is divided by the number of cycles
 /// since that value was commanded. If an axis is not enabled and its actual position is known, the
 /// step is measured from the actual position, because the axis would start there. If an axis was
-/// not commanded, or its fallback is effective, its step may begin at either of both values. If the
-/// last value or the actual position is outside the range, commands may move back towards the range
-/// but not further away from it. In modes in which the drive does not follow each position, only
-/// the range of positions is checked. The set speed of an inverter counts with the direction and
-/// the stop in its control word; a stop is never refused, because the drive has its own ramp. Bus
-/// thread only.
+/// not commanded, or its fallback is effective, its step may begin at either of these two values.
+/// If the last value or the actual position is outside the range, commands may move back towards
+/// the range but not further away from it. In modes in which the drive does not follow each
+/// position, only the range of positions is checked. The set speed of an inverter is checked
+/// together with the direction and the stop in its control word. A stop is never refused, because
+/// the drive has its own ramp. Bus thread only.
 class OutputLimits {
  public:
   /// Result of place_of() for an output without limits.
@@ -67,8 +67,8 @@ class OutputLimits {
   std::span<const std::uint16_t> dependents(SignalIndex signal) const noexcept {
     return dependents_[signal];
   }
-  /// Returns true if a command to this output is judged: the output is limited, or it is the offset
-  /// or the mode of operation of a limited output.
+  /// Returns true if a command to this output is checked: the output is limited, or it is the
+  /// offset or the mode of operation of a limited output.
   bool judges(SignalIndex signal) const noexcept { return judged_[signal] != 0; }
   /// Returns true if the output at `place` is an offset, and the drive certainly adds it to its
   /// target in this commanded mode, so that the check of the target covers it.
@@ -98,14 +98,14 @@ class OutputLimits {
   /// Returns true if the controlword `order` asks an axis that is not enabled to enable operation,
   /// or if it makes a speed axis run, or run in the other direction.
   bool begins(std::size_t place, std::int64_t order) const noexcept;
-  /// The controlword of the axis that was sent last; 0 if none was sent.
+  /// Returns the controlword of the axis that was sent last; 0 if none was sent.
   std::int64_t order(std::size_t place) const noexcept { return slots_[place].order; }
-  /// Notes the actual positions of this cycle. To be called once in each cycle.
+  /// Notes the actual positions of this cycle. Call this once in each cycle.
   void remember() noexcept;
   /// Notes that the command is accepted and will be sent.
   void admit(std::size_t place, const AxisCommand& command, std::uint64_t cycle) noexcept;
-  /// Notes that the motion of the axis stood still for so many cycles before this one. The next
-  /// step is divided by the other cycles only.
+  /// Notes that the motion of the axis stood still during `cycles` cycles before this one. When the
+  /// next step is divided by its cycles, they do not count.
   void pass_over(std::size_t place, std::uint64_t cycles, std::uint64_t cycle) noexcept;
   /// Notes that the value of an output was sent.
   void sent(SignalIndex signal, std::uint64_t cycle) noexcept;
@@ -134,7 +134,7 @@ class OutputLimits {
     double speed = 0;  ///< speed of the last step, per cycle
     double gap = 1;    ///< duration of the last step in cycles
     double allowed =
-        0;  ///< of a set speed: what is left of the changes that its acceleration allows
+        0;  ///< set speed only: part of the permitted change of speed that is not used yet
     std::uint64_t cycle = 0;
     bool known = false;      ///< a value was sent since open()
     bool unsent = false;     ///< a command was accepted and is not sent yet

@@ -54,7 +54,7 @@ bool OutputLimits::begins(std::size_t place, std::int64_t order) const noexcept 
 OutputLimits::ModesFollowed OutputLimits::modes_followed(std::size_t place,
                                                          std::int64_t mode) const noexcept {
   const OutputLimit& limit = limits_[place];
-  // Of the two modes, one that no PDO carries counts as the other one.
+  // If PDOs carry only one of the two modes, this mode counts for both.
   const auto displayed =
       limit.mode_display ? std::optional{image_.values[*limit.mode_display]} : std::nullopt;
   const auto ordered = limit.mode ? std::optional{mode} : displayed ? displayed : limit.fixed_mode;
@@ -67,15 +67,16 @@ OutputLimits::ModesFollowed OutputLimits::modes_followed(std::size_t place,
 
 /// Returns true if steps between successive values of this output are checked. Steps of a position
 /// are checked in the modes in which the drive follows each value. Steps of target velocities and
-/// torques are checked in every mode, because the drive may follow them after a change of the mode,
-/// but not of a velocity that the drive reaches along its own ramps.
+/// torques are checked in every mode, because the drive may follow them after a change of the mode.
+/// The exception is a velocity that the drive reaches along its own ramps.
 bool OutputLimits::follows_each(std::size_t place, ModesFollowed modes) const noexcept {
   if (limits_[place].quantity == AxisQuantity::position) return modes.any();
   return !modes.ramps;
 }
 
 /// Returns true if the next step begins at the value that was sent last, and not at the actual
-/// value. That value counts for nothing if the drive did not have to follow it at once.
+/// value. The value that was sent last does not count if the drive did not have to follow it at
+/// once.
 bool OutputLimits::starts_from_last(std::size_t place, ModesFollowed modes) const noexcept {
   const Slot& slot = slots_[place];
   if (!slot.known) return false;

@@ -37,8 +37,9 @@ std::optional<LimitBreach> OutputLimits::judge_speed(std::size_t place, const Ax
   return breach(limit.rate_of, bound * change / std::max(most, smallest_change), bound);
 }
 
-/// Returns by how much the speed may change now. A program that sends late, or two commands in one
-/// cycle, keeps the acceleration on average: what it has not used in the last 50 ms is left.
+/// Returns by how much the speed may change now. Changes that were permitted in the last 50 ms and
+/// were not used are still permitted. Therefore a program may send late, or send two commands in
+/// one cycle, if it keeps the acceleration on average.
 double OutputLimits::allowance(std::size_t place, std::uint64_t cycle) const noexcept {
   const Slot& slot = slots_[place];
   if (slot.rate == OutputLimit::none) return OutputLimit::none;

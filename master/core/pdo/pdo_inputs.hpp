@@ -62,7 +62,7 @@ class PdoInputs {
   bool fresh(SignalIndex signal) const noexcept { return !image_.is_stale(signal); }
 
   std::size_t size() const noexcept { return rows_.size(); }
-  /// Status of a TPDO; `row` is the index into PdoTable::tpdos.
+  /// Returns the status of a TPDO; `row` is the index into PdoTable::tpdos.
   PdoStatus status(std::size_t row) const noexcept;
   static constexpr std::uint16_t no_row = PdoTable::no_row;
   /// Returns the row of a received frame; for an MPDO, the row of its object. no_row if there is

@@ -83,8 +83,9 @@ void PdoOutputs::seed(Output& output, SignalIndex signal) noexcept {
   }
 }
 
-/// Takes a new command of the front thread that has waited, leads out of a fallback or is refused.
-/// Returns true if it was taken. A release that waits stays new.
+/// Handles a new command of the front thread that has waited, that ends a fallback, or that is
+/// refused. Returns true if the command was taken. A release that has to wait remains a new
+/// command.
 bool PdoOutputs::hear(Row& row, Output& output, SignalIndex signal, const SetPoint& set_point,
                       OutputMoment moment) noexcept {
   const bool released = set_point.time_to_live == output_released;
@@ -99,7 +100,7 @@ bool PdoOutputs::hear(Row& row, Output& output, SignalIndex signal, const SetPoi
   return true;
 }
 
-/// build_all() calls it for each row, so it is a part of that function.
+/// build_all() calls this function for each row, so the function is compiled into build_all().
 [[gnu::always_inline]] inline PdoOutputs::Built PdoOutputs::build(
     std::size_t position, std::span<const SetPoint> set_points, OutputMoment moment,
     Time prompt) noexcept {
@@ -121,8 +122,8 @@ bool PdoOutputs::hear(Row& row, Output& output, SignalIndex signal, const SetPoi
     Output& output = outputs[field.signal - inputs];
     const SetPoint& set_point = set_points[field.signal - inputs];
     if (set_point.generation != output.generation) {
-      // Nearly every command comes in time, to an output that follows commands. Its fallback is not
-      // effective, and it does not expire in this cycle, so nothing else is left to be done.
+      // Nearly every command comes in time, and its output follows commands. Such a command ends no
+      // fallback and does not expire in this cycle, so nothing else is left to be done.
       const bool follows = !output.fallen && !stopping && !output.forced && !output.led;
       if (follows && set_point.when > prompt && set_point.time_to_live != output_released)
           [[likely]] {
@@ -286,8 +287,8 @@ void PdoOutputs::command(SignalIndex signal, std::int64_t value, std::uint32_t t
   image_.values[signal] = value;
 }
 
-/// command() for an output that has a limit. It is a function of its own so that the others need
-/// not save the registers of the check.
+/// Does the work of command() for an output that has a limit. This is a separate function, so that
+/// command() need not save the registers of the check for the other outputs.
 void PdoOutputs::command_limited(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live,
                                  OutputMoment moment) noexcept {
   if (!within_limits(signal, value, moment)) return;
@@ -307,8 +308,8 @@ bool PdoOutputs::lead(SignalIndex signal, std::int64_t value, OutputMoment momen
   return true;
 }
 
-/// Returns true if a release of this output waits until the motions of its axis have ended, or
-/// those of all axes of its node if it belongs to none.
+/// Returns true if a release of this output waits until the motions of its axis have ended. If the
+/// output belongs to no axis, the release waits for the motions of all axes of its node.
 bool PdoOutputs::release_waits(const Output& output, SignalIndex signal) const noexcept {
   if (stopping_ || output.forced) return false;
   const Signal& what = plan_.layout.signals[signal];

@@ -95,34 +95,34 @@ class PdoOutputs {
   void release(SignalIndex signal) noexcept;
 
   /// Commands an output from a motion of the bus thread. Until release_lead(), commands of others
-  /// to this output are refused, and none of them takes effect later. A release of any output of
-  /// its axis takes effect after release_lead(), and so does one of an output of its node that
-  /// belongs to no axis. Returns false if the value was not taken: it is
-  /// outside the limits, or the output is_overruled().
+  /// to this output are refused, and none of them takes effect later. Releases of the outputs of
+  /// the same axis, and of outputs of the node that belong to no axis, take effect after
+  /// release_lead(). Returns false if the value was not taken, because it is outside the limits or
+  /// the output is_overruled().
   bool lead(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
   /// Returns true if lead() takes no value, whatever it is, because an ordered stop, an NMT command
   /// or the loss of a node commands the output.
   bool is_overruled(SignalIndex signal) const noexcept {
     return stopping_ || outputs_[output_of(signal)].forced;
   }
-  /// Commands once more the value that the last lead() has commanded. The value is not judged: the
-  /// axis stands, although the limits would have it brake. Does nothing if the ordered stop,
-  /// force() or the fallback determines the value.
+  /// Commands once more the value that the last lead() has commanded. The value is not checked: the
+  /// axis stands still at once, even if the limits would require that it slows down first. Does
+  /// nothing if the ordered stop, force() or the fallback determines the value.
   void hold(SignalIndex signal, OutputMoment moment) noexcept;
-  /// Notes that the motion of this output stood still for so many cycles before this one. They do
-  /// not count for the limits of its next step.
+  /// Notes that the motion of this output stood still during `cycles` cycles before this one. They
+  /// do not count for the limits of its next step.
   void pass_over(SignalIndex signal, std::uint64_t cycles, OutputMoment moment) noexcept;
-  /// Does what trail() does for the target position of an axis that is enabled but has a Halt. The
-  /// next step is measured from this value.
+  /// Sets the target position of an axis that is enabled but stopped by a Halt, under the
+  /// conditions of trail(). The next step is measured from this value.
   bool settle(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
   /// Ends lead(). The output keeps its value and accepts its next command.
   void release_lead(SignalIndex signal) noexcept { set_led(signal, false); }
-  /// Sets the value of an output of a motion without judging it: a target position that has no
+  /// Sets the value of an output of a motion without checking it: a target position that has no
   /// effect because its axis is not enabled, or the velocity offset 0 of an axis whose target
   /// position stands still. This is no command. Returns false and changes nothing if the output
   /// has no value yet, or if the ordered stop, force() or a fallback determines it.
   bool trail(SignalIndex signal, std::int64_t value) noexcept;
-  /// The command of the output stays valid in this cycle, if it was valid before.
+  /// Keeps the command of the output valid in this cycle, if it was valid before.
   void keep_alive(SignalIndex signal, OutputMoment moment) noexcept {
     Output& output = outputs_[output_of(signal)];
     if (output.commanded && !output.fallen) {
@@ -130,11 +130,11 @@ class PdoOutputs {
     }
   }
 
-  /// Number of commands that the last pack() has seen for the first time.
+  /// Returns the number of commands that the last pack() has seen for the first time.
   std::uint32_t fresh_commands() const noexcept { return fresh_commands_; }
   /// Returns true if every signal of this RPDO has a value that can be sent.
   bool ready(std::size_t row) const noexcept { return rows_[row].ready; }
-  /// Status of an RPDO; `row` is the index into PdoTable::rpdos.
+  /// Returns the status of an RPDO; `row` is the index into PdoTable::rpdos.
   RpdoStatus status(std::size_t row) const noexcept {
     return {.sent = rows_[row].sent, .ready = rows_[row].ready};
   }
@@ -335,7 +335,8 @@ class PdoOutputs {
   RefusedOutputs refusals_;
   std::vector<Output> outputs_;
   std::vector<Row> rows_;
-  /// By node: an output was commanded, so seeds no longer follow the feedback.
+  /// By node: an output was commanded, so the other outputs no longer take the values of their
+  /// feedback.
   std::vector<std::uint8_t> begun_;
   /// By node and axis: number of outputs that motions command.
   std::vector<std::array<std::uint8_t, most_axes>> led_;

@@ -83,7 +83,8 @@ bool PdoOutputs::judge(std::size_t place, const AxisCommand& command, Cause caus
 
 /// Ends the refusal of commands to an output, but not before the fallback of its node was sent. A
 /// cycle without outputs, or an inhibit time, may delay the fallback. Until it is sent, the axis
-/// still follows its old set-points, although commands would already be judged as if it did not.
+/// still follows its old set-points, although commands would already be checked as if it did not
+/// follow them.
 void PdoOutputs::end_refusal(std::size_t place, OutputMoment moment) noexcept {
   const std::size_t node_index = plan_.layout.signals[limits_.limit(place).signal].node_index;
   if (!refusals_.holds(node_index)) return;
@@ -113,8 +114,8 @@ bool PdoOutputs::awaits_sending(SignalIndex signal) const noexcept {
   return output.known && output.commanded && !output.fallen && !refuses(output);
 }
 
-/// Judges a new command. A new mode of operation is judged as well, because it may make a set-point
-/// effective that is far away. The same is true of a controlword that enables the axis.
+/// Checks a new command. A new mode of operation is checked as well, because it may make a
+/// set-point effective that is far away. The same is true of a controlword that enables the axis.
 void PdoOutputs::judge_commands(std::size_t place, std::span<const SetPoint> set_points,
                                 OutputMoment moment) noexcept {
   const OutputLimit& limit = limits_.limit(place);
@@ -185,7 +186,7 @@ void PdoOutputs::check_limits(std::span<const SetPoint> set_points, OutputMoment
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     if (!limits_.bounds(i)) continue;
     const auto order = limits_.limit(i).controlword;
-    // Without a new command, only a controlword from within the bus thread can need a judgement.
+    // Without a new command, only a controlword from within the bus thread can need a check.
     if (!commanded && !(order && limits_.begins(i, image_.values[*order]))) continue;
     if (limited_row_open(i)) judge_commands(i, set_points, moment);
   }
@@ -280,7 +281,6 @@ bool PdoOutputs::settle(SignalIndex signal, std::int64_t value, OutputMoment mom
   return true;
 }
 
-/// The next step is measured from a standing axis.
 void PdoOutputs::pass_over(SignalIndex signal, std::uint64_t cycles, OutputMoment moment) noexcept {
   const std::uint16_t place = limits_.place_of(signal);
   if (place != OutputLimits::no_place) limits_.pass_over(place, cycles, moment.cycle);

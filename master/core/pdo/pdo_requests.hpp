@@ -29,7 +29,7 @@ class PdoRequests {
   /// Accepts a request. Returns false if there is no room; then the caller answers the request.
   bool submit(const Request& request, Time now) noexcept;
   /// Handles time-outs and then sends frames as far as `out` has room. Call this once a cycle.
-  /// `exchanging` tells by node index which nodes are OPERATIONAL; `beat` counts SYNCs.
+  /// `exchanging` states by node index which nodes are OPERATIONAL; `beat` counts SYNCs.
   void on_time(std::span<const bool> exchanging, std::uint64_t beat, Time now,
                Outbox& out) noexcept;
   /// Extends all time-outs by the time for which the master itself did not run.
@@ -47,7 +47,7 @@ class PdoRequests {
   bool reaches(std::uint8_t node) const noexcept;
   /// Cancels and answers all requests.
   void cancel_all() noexcept;
-  /// Number of frames of this RPDO that requests have sent; `row` is the index into
+  /// Returns the number of frames of this RPDO that requests have sent; `row` is the index into
   /// PdoTable::rpdos.
   std::uint32_t sent(std::size_t row) const noexcept { return sent_[row]; }
 

@@ -65,7 +65,7 @@ struct SdoTrace {
 class SdoClient {
  public:
   /// Downloads of at least this number of bytes are block transfers if the settings of the node
-  /// allow it. If the first frame of a block download finds no answer, the transfer falls back to
+  /// allow it. If the first frame of a block download is not answered, the transfer falls back to
   /// segments, because nothing was written yet.
   static constexpr std::size_t block_from = 128;
 
@@ -148,8 +148,8 @@ class SdoClient {
   enum class State : std::uint8_t {
     idle,
     running,
-    withdrawing,    ///< The first request of a block transfer found no answer, and its abort waits
-                    ///< to be sent.
+    withdrawing,  ///< The first request of a block transfer was not answered, and the abort of this
+                  ///< transfer waits to be sent.
     without_block,  ///< As `running`, after `withdrawing` and before the first answer, which shows
                     ///< that the server is silent only for block transfers.
     settling,  ///< The server has aborted the transfer before it has received all segments that

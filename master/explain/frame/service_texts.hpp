@@ -10,7 +10,7 @@
 
 namespace takt {
 
-// The texts of frames and values that need no frame before them.
+// The texts of frames and values whose meaning does not depend on earlier frames.
 
 /// Describes an EMCY of `node` in the words of its device data, of CiA 402 or of CiA 301. The text
 /// also states the length of a frame that does not have eight bytes. CiA 301, 7.2.7.

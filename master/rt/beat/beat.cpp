@@ -20,7 +20,7 @@ void Beat::start(Time now) noexcept {
   clock_.start(now + clock_.period());
 }
 
-/// Records the beat that was due as whole periods late, once the skipped periods are known.
+/// Records a beat that was late by whole periods, once the number of skipped periods is known.
 void Beat::record_skipped(std::uint64_t periods) noexcept {
   timing_.sync_lateness.record(static_cast<std::int64_t>(periods) * clock_.period());
 }

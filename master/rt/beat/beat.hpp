@@ -19,14 +19,14 @@
 
 namespace takt {
 
-/// The beat of the cycles: when the next SYNC is due, by the master's own clock or by the SYNC of
-/// another device, whether it may be sent, and what was missed. Bus thread only.
+/// Determines when the next SYNC is due, by the master's own clock or by the SYNC of another
+/// device, whether SYNC may be sent, and which cycles were missed. Bus thread only.
 class Beat {
  public:
   /// Keeps references to all arguments.
   Beat(const BusPlan& plan, EventQueue& events, BusStatus& status, TimingHistograms& timing);
 
-  /// The first SYNC is due one period after `now`.
+  /// Starts the beat: the first SYNC is due one period after `now`.
   void start(Time now) noexcept;
   /// Ends this cycle.
   void next() noexcept { clock_.next(); }
@@ -35,10 +35,11 @@ class Beat {
   std::uint64_t cycle() const noexcept { return clock_.cycle(); }
   Time period() const noexcept { return clock_.period(); }
   Time deadline() const noexcept { return clock_.deadline(); }  ///< when its SYNC was due
-  Time sync_at() const noexcept { return sync_at_; }            ///< when its SYNC was handed over
+  Time sync_at() const noexcept { return sync_at_; }  ///< time of its SYNC; without SYNC, its begin
   Time next_deadline() const noexcept { return clock_.deadline() + clock_.period(); }
   Time outputs_due() const noexcept { return clock_.deadline() + plan_.output_deadline; }
-  /// Returns the time at which the image is published, whatever is missing in it.
+  /// Returns the end of the receive window. The image is published at this time at the latest, even
+  /// if PDOs are missing.
   Time window_end() const noexcept {
     return std::min(sync_at_ + plan_.receive_window, outputs_due());
   }
@@ -90,7 +91,7 @@ class Beat {
   }
 
  private:
-  /// Successive stalls tolerated before a SYNC.
+  /// Number of stalls in a row after which the cycle begins, even if the thread is late again.
   static constexpr unsigned most_stalls = 16;
   /// Longest absence of this thread, in periods, that time-outs need not take into account.
   static constexpr int longest_lapse = 2;
@@ -102,7 +103,7 @@ class Beat {
   enum class Began : std::uint8_t {
     by_clock,
     by_sync,
-    after_sync,  ///< by the clock, because its SYNC was too old when this thread has found it
+    after_sync,  ///< by the clock, because the SYNC was already too old when this thread found it
   };
 
   template <Port P>

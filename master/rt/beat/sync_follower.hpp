@@ -44,10 +44,10 @@ class SyncFollower {
   /// Returns true before the first SYNC, while it is not yet overdue.
   bool waiting() const noexcept { return state_ == State::waiting; }
   Time period() const noexcept { return period_; }  ///< measured
-  /// Time after the expected SYNC at which a cycle begins without it.
+  /// Returns the time after the expected SYNC at which a cycle begins without it.
   Time sync_wait() const noexcept;
-  /// End of the wait for a SYNC that is expected at `expected`. The end never falls just before the
-  /// time-out of SYNC.
+  /// Returns the end of the wait for a SYNC that is expected at `expected`. The end never falls
+  /// just before the time-out of SYNC.
   Time end_of_wait(Time expected) const noexcept;
 
   template <class Archive>

@@ -50,7 +50,8 @@ class SyncGate {
   }
 
  private:
-  Time tolerance_;  // of kernel time stamps against our own clock
+  Time tolerance_;  // permitted difference between time stamps of the kernel and the clock of the
+                    // port
   Time last_sent_{};
   Time try_at_{};
   Time pause_ = waits::held_sync_first;

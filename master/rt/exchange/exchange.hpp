@@ -30,8 +30,8 @@ struct TimingHistograms {
 };
 
 /// Number of messages about motions that the bus thread takes in one cycle: an order for each axis,
-/// and a few more. The points of streams leave this number of places in their ring to the other
-/// messages.
+/// and a few more. Points of streams are accepted only while the ring has room for more than this
+/// number of messages, so that the other messages always find room.
 inline constexpr std::size_t motions_a_cycle = motion::max_axes + 8;
 
 /// Everything that the bus thread and the front thread share, without a lock between them. The

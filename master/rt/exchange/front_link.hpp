@@ -19,10 +19,9 @@ concept FrontLink = std::copy_constructible<L> &&
                     requires(L link, const L constant, std::uint64_t cycle, Request& request,
                              motion::MotionMessage& motion, const Reply& reply, const Event& event,
                              std::size_t words) {
-                      /// Images, states and times go straight to the exchange. They have no
-                      /// reply.
+                      /// Returns the exchange, to which images, states and times go directly.
                       { link.exchange() } noexcept -> std::same_as<Exchange&>;
-                      /// The newest set; valid until the next call.
+                      /// Returns the newest set of commands; it is valid until the next call.
                       { link.set_points() } noexcept -> std::same_as<const SetPointFrame&>;
                       { link.take_request(request) } noexcept -> std::same_as<bool>;
                       { link.take_motion(motion) } noexcept -> std::same_as<bool>;
@@ -31,10 +30,10 @@ concept FrontLink = std::copy_constructible<L> &&
                       { link.give_reply(reply) } noexcept -> std::same_as<bool>;
                       { link.announce(event) } noexcept;
 
-                      /// A cycle begins. A recording can begin here.
+                      /// Reports that a cycle begins. A recording can begin here.
                       { link.begin_cycle(cycle) } noexcept;
-                      /// The link wants the state of the loop, so that a replay can begin in the
-                      /// middle of a run.
+                      /// Returns true if the link needs the state of the loop, so that a replay can
+                      /// begin in the middle of a run.
                       { constant.checkpoint_due() } noexcept -> std::same_as<bool>;
                       /// Returns room for the state, or nullptr if it is too long.
                       { link.checkpoint(words) } noexcept -> std::same_as<std::uint64_t*>;

@@ -22,7 +22,7 @@ class MotionBoard {
   explicit MotionBoard(std::size_t axes)
       : axes_{axes}, lock_{(head_words + axes * axis_words) * sizeof(std::uint64_t)} {}
 
-  /// Bus thread.
+  /// The bus thread writes the reports of one beat.
   void write(std::uint64_t cycle, std::span<const motion::AxisReport> reports) noexcept {
     lock_.begin();
     lock_.put(0, cycle);
@@ -31,7 +31,7 @@ class MotionBoard {
     }
     lock_.end();
   }
-  /// Front thread.
+  /// The front thread reads the newest reports.
   void read(MotionSnapshot& snapshot) const {
     snapshot.axes.resize(axes_);
     lock_.read([&] {

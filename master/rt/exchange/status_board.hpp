@@ -61,7 +61,8 @@ class StatusBoard {
  public:
   StatusBoard(std::size_t nodes, std::size_t tpdos, std::size_t rpdos = 0);
 
-  /// Bus thread. `tpdo(row)` returns the status of one TPDO, `rpdo(row)` that of one RPDO.
+  /// The bus thread writes the states. `tpdo(row)` returns the status of one TPDO, `rpdo(row)` that
+  /// of one RPDO.
   template <class T, class R>
   void write(const BusStatus& bus, std::span<const NodeStatus> nodes, T&& tpdo, R&& rpdo) noexcept {
     lock_.begin();
@@ -73,9 +74,9 @@ class StatusBoard {
     lock_.end();
   }
 
-  /// Front thread.
+  /// The front thread reads the newest states.
   void read(StatusSnapshot& snapshot) const;
-  /// Front thread. The number changes with each write(); it is 0 before the first one.
+  /// Returns a number that changes with each write(); 0 before the first write(). Front thread.
   std::uint64_t version() const noexcept { return lock_.version(); }
 
  private:

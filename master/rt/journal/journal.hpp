@@ -53,8 +53,9 @@ constexpr std::uint64_t payload_of(std::uint64_t word) noexcept { return word & 
 
 }  // namespace journal
 
-/// A section of the journal. The records lie one behind the other, and new records overwrite the
-/// oldest ones. The end of the tape never cuts a record.
+/// One of the two buffers of a Journal. The records lie one behind the other, and new records
+/// overwrite the oldest ones. A record is never divided between the end and the beginning of the
+/// tape.
 class Tape {
  public:
   explicit Tape(std::size_t words) : words_(words) { assert(words >= blocks); }
@@ -115,7 +116,7 @@ class Tape {
   std::vector<std::uint64_t> words_;
   std::size_t at_ = 0;
   std::uint64_t lap_ = 0;
-  std::size_t end_of_lap_ = 0;  // of the previous lap
+  std::size_t end_of_lap_ = 0;  // words that the previous lap over the tape has used
   std::size_t block_ = blocks;
   bool checkpoint_due_ = true;
   // Position + 1 of the first cycle in each block; 0 means none.

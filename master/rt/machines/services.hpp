@@ -41,8 +41,8 @@ concept RequestServices =
       { services.on_absence(time) } noexcept;
     };
 
-/// The loss of a node or of SYNC, and the commands that stop axes. A renamed function is a compile
-/// error here: without it, no axis would stop.
+/// The loss of a node or of SYNC, and the commands that stop axes. This concept lets the compiler
+/// report a function that is missing or was renamed, because the axes would not stop without it.
 template <class S>
 concept StopServices =
     requires(S services, const S constant, std::size_t node_index, Time now, NmtCommand last) {
@@ -72,7 +72,8 @@ concept KeptServices = requires(S services, const S constant, StateSize& size, S
 };
 
 /// All that the bus loop needs of the services of a bus: boot, SDO, NMT, heartbeat, LSS. `Network`
-/// has them; the tests of the loop have others. See Network for what each function means.
+/// fulfils this concept and describes what each function does; the tests of the loop have simple
+/// classes for it.
 template <class S>
 concept Services = std::constructible_from<S, const BusPlan&, NetworkOptions> && NodeServices<S> &&
                    RequestServices<S> && StopServices<S> && KeptServices<S> &&

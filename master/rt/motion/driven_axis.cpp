@@ -94,9 +94,9 @@ std::optional<std::int64_t> DrivenAxis::Scale::raw(double number) const noexcept
   return static_cast<std::int64_t>(counts);
 }
 
-/// Returns the number of beats for which a set-point may wait for its frame. A frame that is sent
-/// in each n-th cycle, or after an inhibit time, waits until then. One frame may be missing, as one
-/// SYNC may be missing.
+/// Returns the number of beats for which a set-point may wait for its frame, for example until the
+/// n-th cycle or until an inhibit time is over. The number is at least 1, so one missing frame is
+/// tolerated, as one missing SYNC is.
 std::uint32_t DrivenAxis::longest_wait_of(const BusPlan& plan, SignalIndex signal) noexcept {
   const PdoRow& pdo = plan.pdos.rpdos[plan.layout.signals[signal].row];
   if (pdo.cyclic()) return pdo.transmission;
@@ -171,9 +171,9 @@ motion::HomingState DrivenAxis::homing(const PdoExchange& pdos, bool exchanging)
        .statusword = static_cast<std::uint16_t>(image.values[axis_.statusword])});
 }
 
-/// While the actual position is missing, the following error counts as unchanged. The positions of
-/// a rotary axis are inside its turn while nothing moves the axis; later, they are the positions
-/// next to the commanded one.
+/// While the actual position is missing, the following error counts as unchanged. Until the drive
+/// is enabled, the positions of a rotary axis lie inside its turn; after that, they are the
+/// positions nearest to the commanded one.
 motion::AxisInput DrivenAxis::read(PdoExchange& pdos, bool exchanging,
                                    const motion::AxisReport& last) noexcept {
   const WorkingImage& image = pdos.image();
@@ -261,7 +261,7 @@ bool DrivenAxis::lead(PdoOutputs& outputs, const motion::State& state,
 }
 
 /// Commands the last set-points of a motion. If the target position is that of the previous beat,
-/// the axis stands at once, whatever its speed was: no limit can demand anything else.
+/// the axis stands still at once, whatever its speed was, and no limit is checked.
 bool DrivenAxis::end_motion(PdoOutputs& outputs, const motion::State& state,
                             OutputMoment moment) noexcept {
   if (target_.raw(state.position) == written_) {
@@ -274,8 +274,8 @@ bool DrivenAxis::end_motion(PdoOutputs& outputs, const motion::State& state,
   return true;
 }
 
-/// Makes the target position follow the actual position. A drive that obeys a Halt has stopped
-/// elsewhere, and must not move back when the Halt ends.
+/// Makes the target position follow the actual position. A drive that was stopped by a Halt stands
+/// at another position, and must not move back when the Halt ends.
 void DrivenAxis::follow_actual(PdoOutputs& outputs, const motion::AxisReport& report,
                                OutputMoment moment) noexcept {
   const auto raw = target_.raw(report.commanded.position);

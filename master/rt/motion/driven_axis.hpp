@@ -24,18 +24,18 @@ class DrivenAxis {
                          const motion::AxisReport& last) noexcept;
   /// Commands the target position while the axis moves, and the velocity and the torque as its
   /// offsets. While the drive does not follow its target position, the target position follows the
-  /// actual position if a motion has commanded it last, or if nobody has, so that the drive does
-  /// not jump when it is enabled. In homing mode this holds whoever has commanded it, because the
-  /// coordinates of the drive change. After a motion, the target position also follows the actual
-  /// position while the drive obeys a Halt, which bit 12 of its statusword shows. Returns false if
-  /// a set-point was not taken, see PdoOutputs::lead().
+  /// actual position, so that the drive does not jump when it is enabled. This is done if a motion
+  /// has commanded the target position last or if nobody has commanded it. In homing mode it is
+  /// always done, because the coordinates of the drive change. After a motion, the target position
+  /// also follows the actual position while a Halt stops the drive, which bit 12 of its statusword
+  /// shows. Returns false if a set-point was not taken, see PdoOutputs::lead().
   bool write(PdoOutputs& outputs, const motion::AxisReport& report, OutputMoment moment) noexcept;
   /// Returns true if no set-point is taken at present, because the master itself stops the axis.
   bool is_overruled(const PdoOutputs& outputs) const noexcept {
     return outputs.is_overruled(axis_.target);
   }
-  /// Forgets that the axis is homed. The node exchanges no PDOs in this cycle, so nobody knows what
-  /// its device does: it may have been switched off.
+  /// Forgets that the axis is homed, because its node exchanges no PDOs in this cycle: the device
+  /// may have been switched off.
   void lose_home() noexcept { homing_.step({.heard = false}); }
   /// Keeps the commands of all outputs of the node valid in this cycle.
   void keep_alive(PdoOutputs& outputs, OutputMoment moment) const noexcept {
@@ -112,8 +112,8 @@ class DrivenAxis {
   bool ignores_target_ = false;  ///< the statusword or the mode of this beat shows that the drive
                                  ///< ignores its target position
   bool in_homing_mode_ = false;
-  bool tells_following_ = false;  ///< bit 12 of the statusword was set before: the drive uses it
-  bool obeys_halt_ = false;       ///< the drive obeys a Halt in this beat
+  bool tells_following_ = false;  ///< bit 12 of the statusword was set before, so it is in use
+  bool obeys_halt_ = false;       ///< a Halt stops the drive in this beat
   bool follows_actual_ = false;   ///< the target position follows the actual one in this beat
   std::int64_t written_ = 0;      ///< the last target position that a motion has commanded
   Writer writer_ = Writer::others;

@@ -58,7 +58,7 @@ class MotionStage {
 
  private:
   /// Largest number of periods without SYNC in which a motion goes on. After more periods, the
-  /// drives have stopped following, and a motion that went on would jump.
+  /// drives no longer follow, and the axis would jump if its motion went on.
   static constexpr motion::CycleNumber most_missed = 1;
 
   bool is_late(OutputMoment moment) const noexcept {

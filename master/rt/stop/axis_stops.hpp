@@ -35,7 +35,7 @@ class AxisStops {
   }
 
   void begin_requests() noexcept { requests_.begin(); }
-  /// Advances `stop`, one of the two, and forces its controlwords.
+  /// Advances `stop`, which is one of the two stops, and forces its controlwords.
   void step(OrderedStop& stop, Time now) noexcept {
     const bool decided = stop.axes_done();
     stop.step(now, view());

@@ -12,8 +12,8 @@ namespace takt {
 
 /// Stops the axes before NMT ends their PDO exchange. A node that NMT stops or sends to
 /// PRE-OPERATIONAL no longer exchanges PDOs, and a master in NMT Stopped makes no SYNC (CiA 301,
-/// 7.3.2.2). The command waits until the axes are at rest. The halt lasts until the command has
-/// left, and as long as the master is in NMT Stopped. Bus thread only.
+/// 7.3.2.2). The command waits until the axes are at rest. The halt lasts until the command was
+/// sent, and as long as the master is in NMT Stopped. Bus thread only.
 template <Services S>
 class NmtHalt {
  public:
@@ -30,8 +30,9 @@ class NmtHalt {
     if (!stops_.halting()) begin(now, *target);
     advance(now);
   }
-  /// Gives the controlwords back to the applications, if the command has left. This is done in the
-  /// cycle after the command, when the RPDOs of its nodes are shut: none may follow the command.
+  /// Gives the controlwords back to the applications after the command was sent. This is done in
+  /// the cycle after the command, when the master no longer sends RPDOs to the nodes of the
+  /// command: no RPDO may follow the command.
   void end_if_over() noexcept {
     if (!is_over()) return;
     OrderedStop& halt = stops_.halt();
@@ -51,7 +52,8 @@ class NmtHalt {
   }
 
  private:
-  /// The node whose axes must stop before its PDO exchange ends, or every_node.
+  /// Returns the index of the node whose axes must stop before its PDO exchange ends, or
+  /// every_node.
   std::optional<std::uint8_t> wanted() const noexcept {
     if (bus_.services.own_state() == NmtState::stopped) return OrderedStop::every_node;
     const auto node = bus_.services.awaits_axes();
@@ -59,7 +61,7 @@ class NmtHalt {
     return *node == 0 ? OrderedStop::every_node
                       : static_cast<std::uint8_t>(bus_.plan.index_of(*node));
   }
-  /// Returns true if the command for which the axes had to stop has left.
+  /// Returns true if the command for which the axes had to stop was sent.
   bool is_over() const noexcept { return stops_.halting() && wanted() != stops_.halt().target(); }
   void begin(Time now, std::uint8_t node_index) noexcept {
     stops_.halt().begin(now, bus_.services.nodes(), node_index, stops_.memories().all());
@@ -68,7 +70,7 @@ class NmtHalt {
     bus_.pdos.outputs().fall_back();
     sync_loss_.call_off_fallbacks();
   }
-  /// Lets the command go once the axes are at rest or their time is over.
+  /// Permits the command once the axes are at rest or their time is over.
   void advance(Time now) noexcept {
     OrderedStop& halt = stops_.halt();
     if (!halt.axes_done()) {

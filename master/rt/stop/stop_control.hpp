@@ -30,7 +30,8 @@ class StopControl {
   /// Returns true if the ordered stop is complete.
   bool done() const noexcept { return sequence_.done(); }
 
-  /// Begins or ends the reaction to the loss of another device's SYNC. `lost`: it is lost now.
+  /// Begins or ends the reaction to the loss of another device's SYNC. `lost` means that SYNC is
+  /// lost now.
   void follow_sync(bool lost) noexcept { sync_loss_.follow(lost); }
   /// Ends a halt after its NMT command was sent. Call this before the services run.
   void end_halt() noexcept {
