@@ -6,10 +6,11 @@
 
 namespace takt {
 
-/// Learns when the last expected PDO usually arrives, so that one drain at that time finds all of
-/// them. The loop waits for PDOs that come later, so a single late PDO must not delay the images of
-/// the next cycles: the prediction is a high quantile of the arrival times, not their maximum.
-/// Times count from SYNC and are limited to the receive window.
+/// Learns when the last expected PDO usually arrives, so that one call of Intake::drain() at that
+/// time takes all of them. The prediction is a high quantile of the arrival times, not their
+/// maximum: the loop also waits for PDOs that come later than predicted, and a single late PDO must
+/// not delay the images of the next cycles. Times count from SYNC and are limited to the receive
+/// window.
 class ArrivalPrediction {
  public:
   explicit ArrivalPrediction(Time window) noexcept : window_{window}, predicted_{window} {}

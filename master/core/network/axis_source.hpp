@@ -32,7 +32,7 @@ class AxisSource {
   /// Returns the newest value, even if it came before the stop. Returns std::nullopt if it may be
   /// out of date.
   std::optional<std::int64_t> newest(const ReceivedValues& received) const noexcept;
-  /// Returns true if a TPDO carries the value often enough to judge the axis.
+  /// Returns true if a TPDO carries the value often enough for the ordered stop.
   bool serves(Time now) const noexcept {
     return signal_ && !slow_ && !stale_ && now - newest_ < longest_silence;
   }

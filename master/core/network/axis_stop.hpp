@@ -59,7 +59,7 @@ struct AxisSample {
   bool empty() const noexcept { return !statusword && !velocity && !position; }
 };
 
-/// Judges whether an axis moves. It uses 0x606C, or differences of 0x6064 while 0x606C does not
+/// Determines whether an axis moves. It uses 0x606C, or differences of 0x6064 while 0x606C does not
 /// come. Standstill is certain when at least `enough_samples` values in a row were inside a window
 /// for at least `standstill_time`. The longest pause between two of these values does not count as
 /// part of this time, because frames that were sent before a pause of the bus may arrive after it.

@@ -10,8 +10,9 @@
 
 namespace takt {
 
-/// Detects that two devices use one node-ID. The sign is twice the number of heartbeats, or two
-/// answers to each SDO request. It is reported at most once in ten seconds. Bus thread only.
+/// Detects that two devices use one node-ID. The signs are twice the expected number of heartbeats,
+/// and two answers to each SDO request. They are reported at most once in ten seconds. Bus thread
+/// only.
 class DuplicateNodeWatch {
  public:
   /// `heartbeat_period` is that of the device; 0 means that it is not known and heartbeats are not

@@ -54,7 +54,7 @@ SdoStep SdoBlockUpload::on_accept(const Frame& frame) noexcept {
   if (!is_block_initiate(frame)) return {};
   const SdoBlockInitiate begin = decode_block_initiate(frame);
   if (begin.size.value_or(0) > buffer_.size()) return exceeds_buffer();
-  if (begin.size.value_or(0) != 0) announced_ = begin.size;  // some use 0 for "unknown"
+  if (begin.size.value_or(0) != 0) announced_ = begin.size;  // some servers use 0 for "unknown"
   crc_used_ = begin.crc;
   state_ = State::segments;
   to_send_ = Next::start;

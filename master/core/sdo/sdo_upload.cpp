@@ -14,7 +14,7 @@ SdoStep SdoUpload::on_initiate(const Frame& frame) noexcept {
   const SdoInitiate begin = decode_initiate(frame);
   if (begin.expedited) return take(begin.payload()) ? SdoStep{Kind::done} : exceeds_buffer();
   if (begin.size.value_or(0) > buffer_.size()) return exceeds_buffer();
-  if (begin.size.value_or(0) != 0) announced_ = begin.size;  // some use 0 for "unknown"
+  if (begin.size.value_or(0) != 0) announced_ = begin.size;  // some servers use 0 for "unknown"
   state_ = State::segments;
   request_segment();
   return {Kind::goes_on};

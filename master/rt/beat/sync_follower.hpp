@@ -33,8 +33,8 @@ class SyncFollower {
   /// one among punctual ones.
   Time beat() const noexcept { return beat_; }
 
-  /// Notes that a cycle begins without SYNC. While nodes boot, the follower does not miss the first
-  /// SYNC yet.
+  /// Notes that a cycle begins without SYNC. While nodes boot, a missing first SYNC does not count
+  /// as lost yet.
   void on_silence(Time now, std::span<const NodeStatus> nodes) noexcept;
 
   /// Returns true if SYNC stopped coming, or if the first one did not come in time.

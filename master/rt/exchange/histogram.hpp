@@ -51,7 +51,7 @@ class Histogram {
     if (octave >= HistogramSnapshot::octaves) return HistogramSnapshot::bins - 1;
     return (std::size_t{octave} + 1) * 8 + ((units >> octave) & 7);
   }
-  /// The first time that no longer belongs to the bin.
+  /// Returns the upper edge of the bin: the shortest time that belongs to the next bin.
   static constexpr Time upper_edge(std::size_t bin) noexcept {
     const std::uint64_t octave = bin / 8;
     const std::uint64_t step = bin % 8 + 1;

@@ -40,7 +40,7 @@ class ImageRing {
 
   explicit ImageRing(std::size_t signals, std::size_t tpdos = 0);
 
-  /// Bus thread. Returns false if the front thread is 64 images behind.
+  /// Bus thread: adds an image. Returns false if the front thread is 64 images behind.
   bool publish(const ImageStamp& stamp, std::span<const std::int64_t> values,
                std::span<const std::uint64_t> stale_bits,
                std::span<const PdoMark> pdos = {}) noexcept;

@@ -139,8 +139,8 @@ class Journal {
   }
   void put(Mark mark, std::uint64_t payload) noexcept { tape_->put(journal::word(mark, payload)); }
   void put(Mark mark, Time time) noexcept { put(mark, static_cast<std::uint64_t>(time.count())); }
-  /// Begins a record with `count` words behind the first and returns room for them. Returns nullptr
-  /// if the record is too long.
+  /// Begins a record with `count` words after its first word, and returns room for these words.
+  /// Returns nullptr if the record is too long.
   std::uint64_t* claim(Mark mark, std::uint64_t payload, std::size_t count) noexcept {
     std::uint64_t* const room = tape_->claim(count + 1);
     if (room == nullptr) [[unlikely]] {
@@ -166,8 +166,9 @@ class Journal {
     if (room != nullptr) ++beginnings_;
     return room;
   }
-  /// Returns the number of places so far at which a replay can begin: a new tape, and each
-  /// checkpoint. What is recorded only when it changes is recorded again behind each of them.
+  /// Returns the number of places at which a replay can begin so far: the beginning of each tape,
+  /// and each checkpoint. A value that is recorded only when it changes is recorded again after
+  /// each of these places.
   unsigned beginnings() const noexcept { return beginnings_; }
 
   /// Front side: requests the running tape. At the next cycle, recording continues on the other

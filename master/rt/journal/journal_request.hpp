@@ -15,8 +15,8 @@ using SdoTransfers = std::array<SdoTransfer, 4>;
 /// longer than 64 KiB or than the journal has room for; a replay cannot pass the gap. Bus thread.
 void put_request(Journal& journal, const Request& request, const SdoTransfers& transfers) noexcept;
 
-/// Reads a request from a record; `words` are the words behind the first. Returns false if they do
-/// not form a request.
+/// Reads a request from a record; `words` are the words of the record after its first word. Returns
+/// false if they do not form a request.
 bool get_request(std::span<const std::uint64_t> words, Request& request, SdoTransfers& transfers);
 
 }  // namespace takt

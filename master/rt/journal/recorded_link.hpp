@@ -59,7 +59,8 @@ class RecordedLink {
   std::uint64_t* checkpoint(std::size_t words) noexcept { return journal_->checkpoint(words); }
 
  private:
-  /// The triple buffer returns another of its frames whenever it has a new set.
+  /// Records the set of commands if it is new. The triple buffer returns another of its frames
+  /// whenever it has a new set.
   void note(const SetPointFrame& frame) noexcept {
     const bool unchanged = recorded_ == &frame && beginnings_ == journal_->beginnings();
     if (unchanged || frame.points.empty()) {

@@ -12,8 +12,8 @@ namespace takt {
 
 namespace journal {
 
-/// Bits that name the parts of the condition of the port that a record contains. Each part has
-/// words of its own.
+/// Bits that name the parts of the condition of the port that a record contains. Each part has its
+/// own words.
 enum ConditionPart : std::uint64_t { echo = 1, utc = 2, state = 4 };
 inline constexpr std::size_t state_words = 3;
 

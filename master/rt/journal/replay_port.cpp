@@ -159,7 +159,8 @@ PortCondition ReplayPort::condition() const noexcept {
   if ((*parts & journal::echo) != 0) take_time(condition_.last_sync_echo);
   std::span<const std::uint64_t> words;
   if ((*parts & journal::utc) != 0 && take(1, words)) {
-    // TIME checks the result; the clamp keeps sums within the range of Time.
+    // The producer of TIME rejects a time of day out of its range; the clamp only keeps sums within
+    // the range of Time.
     const auto utc = static_cast<std::int64_t>(words[0]);
     constexpr std::int64_t limit = std::int64_t{1} << 61;
     condition_.since_1970 = Time{std::clamp(utc, -limit, limit)};

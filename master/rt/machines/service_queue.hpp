@@ -60,7 +60,7 @@ class ServiceQueue {
   std::span<const Frame> first(std::size_t count) const noexcept {
     return outbox_.frames().first(std::min(count, size()));
   }
-  /// Removes the first `count` frames, which have gone out.
+  /// Removes the first `count` frames, because they were sent.
   void drop(std::size_t count) noexcept {
     const std::size_t kept = size() - count;
     std::copy_n(outbox_.frames().begin() + static_cast<std::ptrdiff_t>(count), kept, rest_.begin());

@@ -44,7 +44,7 @@ struct RawRange {
   std::int64_t high = std::numeric_limits<std::int16_t>::max();
 };
 
-/// Returns the values that `limits:` permits, of those that INTEGER16 holds.
+/// Returns the raw values that `limits:` permits for this signal, within the range of INTEGER16.
 RawRange torque_range_of(const BusPlan& plan, SignalIndex signal) noexcept {
   RawRange range;
   for (const OutputLimit& limit : plan.limits.outputs) {

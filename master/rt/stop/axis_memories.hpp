@@ -13,8 +13,8 @@
 
 namespace takt {
 
-/// Remembers of each axis whether it is disabled, whether a service may have enabled it since, and
-/// what the drive does at a quick stop. The stops rely on this. Bus thread only.
+/// Remembers for each axis whether it is disabled, whether a service may have enabled it since, and
+/// what the drive does at a quick stop. The stops use this knowledge. Bus thread only.
 template <Services S>
 class AxisMemories {
  public:

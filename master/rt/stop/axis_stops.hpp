@@ -47,8 +47,8 @@ class AxisStops {
     if (!decided && stop.axes_done()) report_unconfirmed(stop, now);
   }
 
-  /// Returns true if SDO requests may be due, see ask(). A master in NMT Stopped disarms nothing,
-  /// because it is still present.
+  /// Returns true if SDO requests may be due, see ask(). A master in NMT Stopped does not switch
+  /// off the supervision by the devices, because it is still present.
   bool asks() const noexcept {
     if (bus_.observe || (!stopping() && !halting())) return false;
     return stopping() || !halt_.axes_done();

@@ -9,8 +9,8 @@
 
 namespace takt {
 
-/// Carries out LossReaction::quick_stop. While a node is lost, each drive of its group gets quick
-/// stop, then disable voltage once it is disabled, until the node is back. Bus thread only.
+/// Carries out LossReaction::quick_stop. While a node is lost, each drive of its group receives the
+/// command quick stop and, as soon as it is disabled, the command disable voltage. Bus thread only.
 template <Services S>
 class LossStop {
  public:
