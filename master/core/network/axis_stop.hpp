@@ -146,8 +146,8 @@ class AxisStop {
 
   /// Begins the stop of this axis.
   void begin(Time now, AxisPrior prior) noexcept;
-  /// Notes that a controlword that may change the state of the axis may have reached it. If the
-  /// next statusword shows that the axis is disabled, it may have been enabled before.
+  /// Notes that the axis may have received a controlword that changes its state. It may have been
+  /// enabled since, even if the next statusword shows that it is disabled.
   void note_command() noexcept { commanded_ = true; }
   /// Notes the behaviour of the drive at a quick stop. `coasts` means that it disables itself at
   /// once (0x605A is 0); otherwise it brakes.
@@ -169,8 +169,8 @@ class AxisStop {
   void cut() noexcept;
   /// Notes that the device has refused the read of its statusword with this abort code.
   void refuse(std::uint32_t abort_code) noexcept { refusal_ = abort_code; }
-  /// Notes that the device has no such statusword and is not a drive. It may have been a drive if
-  /// this master has booted it before.
+  /// Notes that the device has no statusword for this axis and is no drive. There is nothing to
+  /// stop then, unless this master has booted the node before.
   void absent() noexcept {
     const bool foreign = state_ == AxisState::unseen && prior_ == AxisPrior::foreign;
     if (foreign || state_ == AxisState::asked) state_ = AxisState::exempt;

@@ -209,7 +209,8 @@ void OrderedStop::enter(StopStage stage) noexcept {
 ///   disarm      every device is disarmed, or its limit                    nmt
 ///   nmt         every command is sent, or its limit                       done
 ///
-/// `disarm, nmt` means disarm if every axis is confirmed, otherwise nmt.
+/// `disarm, nmt` means disarm if every axis is confirmed, otherwise nmt. `its limit` is the time
+/// limit of the stage.
 void OrderedStop::step(Time now, const StopView& view) noexcept {
   if (stage_ == StopStage::running || stage_ == StopStage::done) return;
   const bool out_of_time = now >= limit();

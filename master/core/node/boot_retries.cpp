@@ -8,7 +8,7 @@ namespace takt {
 namespace {
 
 constexpr Time default_reboot_delay = std::chrono::seconds{1};
-constexpr std::uint8_t most_failed_boots = 20;  // the pause has reached its maximum long before
+constexpr std::uint8_t most_failed_boots = 20;  // the pause reaches its maximum earlier
 constexpr std::uint16_t sync_length_emcy = 0x8240;
 
 bool same_cause(const BootFailure& a, const BootFailure& b) noexcept {

@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// The NMT state of a node that its boot knows from the reports of the node and from the NMT
+/// The NMT state of a node, as its boot knows it from the reports of the node and from the NMT
 /// commands of this boot.
 class KnownNmtState {
  public:

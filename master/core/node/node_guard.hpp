@@ -35,7 +35,7 @@ class NodeGuard {
     if (silent_from_ != never) silent_from_ += away;
   }
 
-  /// Returns once, when the life time is over, for how long the node has been silent. The next
+  /// When the life time is over, returns once for how long the node has been silent. The next
   /// answer starts the supervision again.
   std::optional<Time> on_time(Time now) noexcept;
   Time deadline() const noexcept;

@@ -67,8 +67,9 @@ void PdoInputs::change_reception(std::size_t node_index, Reception reception) no
     row.misses = 0;
     row.waited = false;
     row.was_late = false;
-    // The first frame of a TPDO of type n may come up to n beats later. With a SYNC start value, it
-    // also waits until the counter reaches this value. A margin of 2 n beats covers both.
+    // The first frame of a TPDO of type n may come up to n beats later, so the margin is 2 n beats.
+    // With a SYNC start value, the frame also waits until the counter reaches this value, so the
+    // overflow value of the counter is added.
     const bool watched = reception >= Reception::listening && row.every != 0;
     const std::uint64_t counted =
         plan_.pdos.tpdos[i].sync_start == 0 ? 0 : plan_.cycle.sync_overflow;

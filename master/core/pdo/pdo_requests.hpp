@@ -12,10 +12,10 @@
 
 namespace takt {
 
-/// Serves PDOs on request. These are remote frames for TPDOs, which are sent periodically or for a
-/// request, and exchanges, in which the master sends an RPDO and the device answers with the TPDO
-/// of the same number. Each accepted request is answered once, and each wait has a deadline. Bus
-/// thread only. No function allocates memory after the construction.
+/// Serves PDOs on request. There are two kinds of them: remote frames for TPDOs, sent periodically
+/// or for a request, and exchanges, in which the master sends an RPDO and the device answers with
+/// the TPDO of the same number. Each accepted request is answered once, and each wait has a
+/// deadline. Bus thread only. No function allocates memory after the construction.
 class PdoRequests {
  public:
   static constexpr std::size_t capacity = waits::pdo_requests;

@@ -22,8 +22,8 @@ std::uint64_t bits_of(const Frame& frame, const PdoField& field) {
   return all >> field.bit_offset & mask;
 }
 
-/// Returns true if the row describes the object that this MPDO carries. Also returns true for all
-/// other PDOs. A DAM frame to all nodes also addresses the node of the row.
+/// Returns true if the row describes the object that this MPDO carries. Also returns true for every
+/// PDO that is no MPDO. A DAM frame to all nodes also addresses the node of the row.
 bool is_of(const PdoRow& row, const Frame& frame) {
   if (!row.multiplexed() || frame.rtr) return true;
   const auto header = load_le<std::uint32_t>(std::span{frame.data});

@@ -43,8 +43,8 @@ class Beat {
   Time window_end() const noexcept {
     return std::min(sync_at_ + plan_.receive_window, outputs_due());
   }
-  /// Returns true if this thread has not run for so long since SYNC that the time-outs must take
-  /// this absence into account before the state machines run again.
+  /// Returns true if the time since SYNC is so long that this thread cannot have run all the time.
+  /// The time-outs must take this absence into account before the state machines run again.
   bool stalled(Time now) const noexcept { return now - sync_at_ > longest_lapse * period(); }
   /// Returns the time for which this thread did not run before this SYNC; 0 if the time was so
   /// short that time-outs need not take it into account. Call this once a cycle.

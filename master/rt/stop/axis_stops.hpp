@@ -10,9 +10,9 @@
 namespace takt {
 
 /// The two stops of axes: the ordered stop of the whole bus, and the halt of the axes whose PDO
-/// exchange NMT is about to end. This class has what both need: the memory of the axes, their
-/// view of the bus, the controlwords that they force, their SDO requests, and the report on
-/// axes that did not stop. Bus thread only.
+/// exchange NMT is about to end. This class contains what both stops need: the memory of the axes,
+/// the view of the bus, the forced controlwords, the SDO requests, and the report on axes that did
+/// not stop. Bus thread only.
 template <Services S>
 class AxisStops {
  public:

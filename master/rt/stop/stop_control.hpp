@@ -58,8 +58,8 @@ class StopControl {
 
   /// Returns true if the master sends no SYNC, see NmtHalt.
   bool withholds_sync() const noexcept { return stops_.halting() && halt_.withholds_sync(); }
-  /// Returns true if the master sends no RPDOs in this cycle. In NMT Stopped it sends only
-  /// fallbacks that an inhibit time holds back.
+  /// Returns true if the master sends no RPDOs in this cycle. In NMT Stopped, it only sends
+  /// fallbacks that an inhibit time has held back.
   bool withholds_outputs() noexcept {
     return sync_loss_.withholds_outputs() || (withholds_sync() && !bus_.pdos.outputs().pending());
   }
