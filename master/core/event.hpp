@@ -95,9 +95,9 @@ enum class EventKind : std::uint8_t {
   no_sdo_block,  ///< The SDO server supports no block transfer; all transfers are segmented until
                  ///< the node is reset. value: abort code, 0 if the server gave no answer; detail:
                  ///< index << 8 | sub-index
-  limit_read,    ///< The boot of a drive has read a limit. value: the limit as the device gives it;
-               ///< for a range, the upper half of the value is the lower end of the range; detail:
-               ///< index into LimitsPlan::lines << 8 | LimitVerdict
+  limit_read,    ///< The boot of a drive has read a limit. value: the limit as the device gives
+                 ///< it; for a range, the upper half of the value is the lower end of the range;
+                 ///< detail: index into LimitsPlan::lines << 8 | LimitVerdict
   program_progress,  ///< value: bytes that the device has accepted, detail: size of the program in
                      ///< bytes
   lss_assigned,  ///< The node had no node-ID and has received it by LSS; value: its serial number.
@@ -133,9 +133,9 @@ enum class EventKind : std::uint8_t {
   fallback_begun,  ///< value: signal whose command has expired; bytes: pack_limit(), or 0
   fallback_ended,  ///< value: signal
   outputs_held,    ///< An RPDO is not sent because one of its signals has neither a command nor a
-                   ///< safe value nor the value of its feedback. value: RPDO number; detail: 1 plus
-                 ///< the index of the actual position for which a limited set-point waits; 0 means
-                 ///< that no set-point waits
+                   ///< safe value nor the value of its feedback. value: RPDO number; detail: 1
+                   ///< plus the index of the actual position for which a limited set-point waits;
+                   ///< 0 means that no set-point waits
   limit_exceeded,  ///< A command is not sent, and the outputs of its node take their fallback.
                    ///< value: the raw command; detail: signal << 8 | LimitKind, and held_set_point;
                    ///< bytes: the measured value and its limit, each a float in SI units
