@@ -56,9 +56,10 @@ std::string Axes::State::why_not_ready_text() const {
     const std::string& name = group.axes().name(axis);
     std::vector<std::string> lines = why_not_ready(group, axis, group.axes().mode(axis));
     if (group.axes().drive(axis).enabled() && !group.motion(axis)) {
-      lines = {name +
-               ": taktd reports no motion of it: was taktd started with --no-motions, and are "
-               "6041 and 6064 in TPDOs and 607A in an RPDO of the drive?"};
+      lines = {
+          name +
+          ": taktd reports no motions of this axis: was taktd started with --no-motions, and are "
+          "6041 and 6064 in TPDOs and 607A in an RPDO of the drive?"};
     } else if (lines.empty() && !is_ready(axis)) {
       lines = {name +
                ": its target position is not sent: does each object of its RPDO have a value?"};

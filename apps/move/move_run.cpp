@@ -356,7 +356,8 @@ void MoveRun::disable() {
   };
   if (all_over() || hold_until(all_over, last_seconds, any_stops)) return;
   good_ = false;
-  if (stop_ >= second_stop) progress_.say("a second signal: not waiting for the axes any longer");
+  if (stop_ >= second_stop)
+    progress_.say("stopped by a second signal, without waiting for the axes");
   for (AxisControl::Index i = axes_.size() - 1; i >= 0; --i) {
     if (is_over(i)) continue;
     progress_.say(axes_.name(i) + " does not confirm that it is disabled");

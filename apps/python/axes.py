@@ -125,7 +125,7 @@ class StopSignals:
         if self.name and number == signal.SIGHUP:
             return
         if self.name:
-            raise Failure("a second signal: not waiting for the axes any longer")
+            raise Failure("stopped by a second signal, without waiting for the axes")
         self.name = signal.Signals(number).name
 
     def received(self):

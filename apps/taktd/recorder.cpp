@@ -66,7 +66,8 @@ bool Recorder::finish(const std::string& reason, Time limit) {
 void Recorder::finish_running(const std::string& reason, Time limit) {
   if (box_ && !box_->finish_running(reason, limit)) {
     say_(Weight::warning,
-         "black box: the recording of the end could not be written completely in time");
+         "black box: the last recording, at the end of the run, could not be written completely in "
+         "time");
   }
   answer_all(false, "taktd has ended");
 }

@@ -20,7 +20,7 @@ std::string against_missing_id(const BusPlan& plan, const NodePlan& node) {
       "the device has another node id already. If the log says that the device has got this id, a "
       "reset of all nodes (`takt nmt reset-comm all`) or a power cycle may be needed before the "
       "device uses the id. Otherwise: is the device powered and wired, is its bit rate {} kbit/s, "
-      "does it know LSS fastscan?",
+      "does the device support LSS fastscan?",
       node.id.value(), identity_text(*node.lss), plan.bitrate / 1000);
 }
 

@@ -199,12 +199,13 @@ std::string against_refusal(const NodePlan& node, const BootStep& step,
   if (std::string text = against_refused_setting(node, failure); !text.empty()) return text;
   switch (failure.abort_code) {
     case write_only:
-      return failure.downloading ? "the device says that " + object +
-                                       " is write-only, although the master did write it: look up "
-                                       "the object in the manual"
-                                 : object +
-                                       " can't be read: if the EDS gives it the access `wo`, the "
-                                       "master writes it without a comparison";
+      return failure.downloading
+                 ? "the device says that " + object +
+                       " is write-only, although the master has only written it: look up "
+                       "the object in the manual"
+                 : object +
+                       " can't be read: if the EDS gives it the access `wo`, the "
+                       "master writes it without a comparison";
     case length_mismatch:
     case length_too_high:
     case length_too_low:

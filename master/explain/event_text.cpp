@@ -121,7 +121,7 @@ std::string firmware_line(const BusPlan& plan, const Event& event) {
   for (const FirmwareRule& rule : node->firmware->rules) {
     if (rule.holds(is) == rule.holds(assumed)) continue;
     consequences += fmt::format("{}{}{}", consequences.empty() ? "" : "; ",
-                                rule.holds(is) ? "" : "this does not hold: ", rule.text);
+                                rule.holds(is) ? "" : "not valid for this firmware: ", rule.text);
   }
   if (consequences.empty()) consequences = "nothing in the device data depends on this difference";
   return fmt::format(
@@ -150,7 +150,7 @@ std::string node_line(const BusPlan& plan, const Event& event) {
     case EventKind::heartbeat_back:
       return "heartbeat is back";
     case EventKind::guarding_lost:
-      return fmt::format("guarding lost: no good answer for {}", time_text(Time{event.value}));
+      return fmt::format("guarding lost: no valid answer for {}", time_text(Time{event.value}));
     case EventKind::guarding_toggle:
       return "a guarding answer has the same toggle bit as the previous answer: the master treats "
              "it as not received (an answer was lost, or another master guards the node too)";

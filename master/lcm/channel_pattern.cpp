@@ -120,7 +120,7 @@ class PatternParser {
         return refuse("repetition by '{}' is not supported");
       case '^':
       case '$':
-        return refuse(fmt::format("'{}' is inside the pattern", c));
+        return refuse(fmt::format("'{}' is possible only at the start or the end of a pattern", c));
       default:
         return literal(c);
     }

@@ -31,7 +31,8 @@ TEST(FirmwareOfADevice, ThatIsOlderThanPlannedIsReportedWithWhatFollows) {
   EXPECT_EQ(
       plant.text_of(EventKind::firmware_differs),
       "node 5 'conveyor': the firmware is 14.03.00 (1018:03), but the plan assumes 16.00.00: "
-      "this does not hold: a SYNC that the device sends triggers its own TPDOs; these objects "
+      "not valid for this firmware: a SYNC that the device sends triggers its own TPDOs; these "
+      "objects "
       "are missing: 1403, 1603, 1803, 1A03. Write `firmware: \"14.03.00\"` for this node, and "
       "check the plan with `takt plan`");
 }

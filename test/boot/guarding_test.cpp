@@ -26,7 +26,7 @@ TEST(Guarding, MissesANodeThatStopsAnsweringAndBootsItAgain) {
   plant.run(4s);
 
   ASSERT_EQ(plant.count(EventKind::guarding_lost), 1);
-  EXPECT_NE(plant.text_of(EventKind::guarding_lost).find("guarding lost: no good answer for 2"),
+  EXPECT_NE(plant.text_of(EventKind::guarding_lost).find("guarding lost: no valid answer for 2"),
             std::string::npos)
       << plant.text_of(EventKind::guarding_lost);
   EXPECT_EQ(plant.node().boot_count, 2u);

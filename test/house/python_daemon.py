@@ -233,7 +233,7 @@ class Daemon:
             for drive in drives:
                 drive.renewed = self.cycle
             if self.refuses_signs:
-                self.refuse(command, "it is older than its timeout")
+                self.refuse(command, "the message is older than its timeout")
             return
         self.commands.append(command)
         if self.loses(command):

@@ -146,7 +146,7 @@ TEST_F(AxesHome, EndsAtItsTimeLimitAndStopsTheAxis) {
   const Obstacle late = obstacle_of(axes.home({.longest = 1ms}));
   EXPECT_EQ(late.kind, Kind::time_over);
   EXPECT_THAT(late.text, HasSubstr("elbow: the homing has not ended after 0.0 s"));
-  EXPECT_TRUE(bus_.said("homing_failed", "was ended before it had a result"));
+  EXPECT_TRUE(bus_.said("homing_failed", "was broken off before it had a result"));
   EXPECT_EQ(value(elbow, 0x6061), csp);
   EXPECT_TRUE(bus_.enabled(elbow));
   expect_rest(elbow);

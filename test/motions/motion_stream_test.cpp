@@ -313,7 +313,7 @@ TEST(MotionStream, PointsArriveBehindARefusedMoveOfTheSameImage) {
   bus.send(move);
   bus.send_stream(1, {"shoulder"}, 2, {wave(0.04, {1.0}), wave(0.06, {1.0})});  // utime 0
   bus.run(2);
-  EXPECT_FALSE(bus.said("motion_refused", "has overtaken it"));
+  EXPECT_FALSE(bus.said("motion_refused", "has already come"));
   ASSERT_TRUE(bus.run_until([&] { return bus.axis(0).id == 1; }, 5));
   EXPECT_GT(bus.axis(0).time_left, 0.05);
 }

@@ -218,7 +218,7 @@ class Drives:
                 text += "; " + self._newest_error(node)
             return text
         if axis.motion is None:
-            return (f"{axis.name}: taktd reports no motion of it: was taktd started with "
+            return (f"{axis.name}: taktd reports no motions of this axis: was taktd started with "
                     "--no-motions, and are 6041 and 6064 in TPDOs and 607A in an RPDO of the "
                     "drive?")
         return "" if axis.motion.state != NOT_ENABLED else (

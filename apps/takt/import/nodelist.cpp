@@ -262,7 +262,7 @@ class Importer {
     }
     if (declared.manager) {
       row.use = KeyUse::ignored;
-      row.why = "CANopenManager=1: this is the master, whose place takt takes";
+      row.why = "CANopenManager=1: takt replaces this master";
       master_ = id;
       node.is_present = false;
       return;

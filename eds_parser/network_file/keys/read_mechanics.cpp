@@ -43,7 +43,8 @@ constexpr Key<MotorParameters> motor_keys[] = {
                                                       "N m, 0 to 1e5: dry friction."),
     bounded_key<&MotorParameters::breakaway, 1.0, 3.0>(
         "breakaway", "1",
-        "1 to 3: dry friction at rest, times that in motion. Above 1, the axis hunts for its "
+        "1 to 3: ratio of the dry friction at rest to that in motion. Above 1, the axis hunts for "
+        "its "
         "target."),
     bounded_key<&MotorParameters::viscosity, 0.0, 1e4>("viscosity", "2e-5",
                                                        "N m s/rad, 0 to 1e4: viscous friction."),
@@ -58,7 +59,8 @@ constexpr Key<LoadParameters> load_keys[] = {
                                                      "N m, 0 to 1e5: dry friction."),
     bounded_key<&LoadParameters::breakaway, 1.0, 3.0>(
         "breakaway", "1",
-        "1 to 3: dry friction at rest, times that in motion. Above 1, the axis hunts for its "
+        "1 to 3: ratio of the dry friction at rest to that in motion. Above 1, the axis hunts for "
+        "its "
         "target."),
     bounded_key<&LoadParameters::viscosity, 0.0, 1e4>("viscosity", "2e-5",
                                                       "N m s/rad, 0 to 1e4: viscous friction."),

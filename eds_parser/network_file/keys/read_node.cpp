@@ -230,7 +230,7 @@ constexpr Key<NodeSpec> node_keys[] = {
         "Program that is loaded (0x1F50:01) if the version differs.", bus_yml),
     key<with<read_file_name, &NodeSpec::configuration_file>>(
         "configuration_file", file_name, "none",
-        "Concise DCF (0x1F22), written in its order before `sdo`. dcfgen takes it for a folder.",
+        "Concise DCF (0x1F22), written in its order before `sdo`. dcfgen expects a folder here.",
         bus_yml),
     key<&NodeSpec::configuration_date>(
         "configuration_date", whole_or(date_words, {1, 0xFFFF'FFFF, "days since 1984-01-01"}),

@@ -31,7 +31,8 @@ inline constexpr Key<T> ros_keys[] = {
     foreign<T>("period",
                "rate of a ROS 2 timer; the cycle is `sync_period`, or `cycle` of `master`"),
     foreign<T>("non_transmit_timeout",
-               "it is for the ROS 2 driver; in takt `realtime: receive_window_us` judges PDOs"),
+               "it is for the ROS 2 driver; in takt `realtime: receive_window_us` decides when a "
+               "PDO is late"),
     foreign<T>("diagnostics", "ROS 2 diagnostics; in takt `takt status` and BUS_STATUS show them"),
     foreign<T>("boot_timeout", "it is for the ROS 2 driver; the key of takt is `boot_timeout_ms`"),
 };

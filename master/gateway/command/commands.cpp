@@ -22,12 +22,12 @@ std::uint32_t whole_cycles(Time span, Time period) noexcept {
 
 std::string too_old(const command_t& command, const CommandContext& context) {
   return fmt::format(
-      "the command is too old: it is computed from cycle {}, the present cycle is {}",
+      "the command is too old: it was computed from cycle {}, the present cycle is {}",
       command.cycle, context.cycle);
 }
 
 std::string overtaken(const command_t& command) {
-  return "the command is older than the newest one of the node: it is computed from cycle " +
+  return "the command is older than the newest command to the node: it was computed from cycle " +
          std::to_string(command.cycle);
 }
 
@@ -122,13 +122,13 @@ bool Commands::check_message(const Received& from) {
 bool Commands::check_cycle(const Received& from) {
   if (from.command.cycle < 1) {
     return refuse(from, {CommandRefusal::no_cycle},
-                  fmt::format("the command is computed from cycle {}, which does not exist: a "
+                  fmt::format("the command was computed from cycle {}, which does not exist: a "
                               "command repeats the cycle of the image from which it was computed",
                               from.command.cycle));
   }
   if (static_cast<std::uint64_t>(from.command.cycle) <= from.context.cycle + 1) return true;
   return refuse(from, {CommandRefusal::future},
-                fmt::format("the command is ahead of taktd: it is computed from cycle {}, the "
+                fmt::format("the command is ahead of taktd: it was computed from cycle {}, the "
                             "present cycle is {}",
                             from.command.cycle, from.context.cycle));
 }

@@ -84,7 +84,8 @@ std::string fault_text(SdoFault fault, std::uint32_t abort_code, const SdoSilenc
       "the daemon accepts 1 to 28 LSS services in a request, and does not activate another bit "
       "rate while it runs: stop the daemon and use takt lss with --bus",
       "the RPDO has another number of bytes: `takt plan` shows its mapping",
-      "the command was executed, but not every axis was seen at standstill and disabled before"};
+      "the command was executed, but not every axis was seen at standstill and disabled before the "
+      "command"};
   static_assert(request_bytes == 1024);
   const std::string_view text = name_of(fault, texts);
   if (fault == SdoFault::timeout) return silence_text(silence);

@@ -84,7 +84,8 @@ void MotionAnswers::homing_changed(std::size_t axis, motion::HomingState before,
                     context);
   }
   if (before == runs && now == none) {
-    return announce("homing_failed", "the homing was ended before it had a result", axis, context);
+    return announce("homing_failed", "the homing run was broken off before it had a result", axis,
+                    context);
   }
   if (before == homed && now == none) {
     const std::string_view then =

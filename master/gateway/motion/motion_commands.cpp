@@ -247,7 +247,7 @@ std::optional<MotionCommands::Claim> MotionCommands::claim_of(const motion_comma
   if (!commands_.admits_lease(header_of(command), claim.nodes, context)) return std::nullopt;
   const auto lease = lease_of(command, context);
   if (!lease) {
-    refuse(command, {.why = "it is older than its timeout"}, context);
+    refuse(command, {.why = "the message is older than its timeout"}, context);
     return std::nullopt;
   }
   const auto sender = senders_.number_of(command.instance, context.now);

@@ -50,7 +50,7 @@ class MotionSequence {
     if (const std::string_view why = stop_objection(move, now); !why.empty()) return why;
     if (move_.instance != move.instance || move_.cycle != move.cycle) return {};
     if (move.utime < move_.utime) {
-      return "a newer motion of its sender from the same image has overtaken it";
+      return "a newer motion of its sender from the same image has already come";
     }
     const bool moves_again = move.kind == "move_by" || move.kind == "stream" || move.kind == "gear";
     if (moves_again && move.utime == move_.utime) {

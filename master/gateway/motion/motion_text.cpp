@@ -105,7 +105,7 @@ std::string_view text(motion::Outcome outcome) noexcept {
     case group_incomplete:
       return "another axis of the group can't begin";
     case other_start:
-      return "the axis is not where the motion begins";
+      return "the axis is not in the state in which the motion begins";
     default:
       return "the motion is not valid";
   }

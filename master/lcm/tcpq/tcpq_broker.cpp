@@ -83,10 +83,12 @@ bool TcpqBroker::make_room(Time now) {
       clients_, [](const auto& client) { return !client->connection.opened(); });
   if (unasked == clients_.end()) unasked = std::ranges::find(clients_, false, &Client::has_asked);
   if (unasked != clients_.end()) {
-    close(**unasked, full + ", and the closed one had neither subscribed nor published anything");
+    close(**unasked,
+          full +
+              ", and the connection that was closed had neither subscribed nor published anything");
   } else if (Client* const idle = idle_client(now)) {
     displaced_ = now;
-    close(*idle, full + ", and the closed one had sent nothing for 10 s");
+    close(*idle, full + ", and the connection that was closed had sent nothing for 10 s");
   } else {
     if (reported_.allow(full, options_.clock())) {
       options_.say("LCM hub: a new connection was refused: " + full);

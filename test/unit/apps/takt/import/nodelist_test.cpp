@@ -78,7 +78,7 @@ TEST_F(Nodelist, NamesEveryKeyAsUsedOrIgnored) {
   EXPECT_EQ(key(list, "Topology.NetRefd").use, KeyUse::ignored);
   EXPECT_EQ(key(list, "Topology.Node5Name").why, "name of the node, as `door_i_o`");
   EXPECT_EQ(key(list, "Topology.Node5Name").pos, (SourcePos{8, 11}));
-  EXPECT_THAT(key(list, "Topology.Node1DCFName").why, HasSubstr("this is the master"));
+  EXPECT_THAT(key(list, "Topology.Node1DCFName").why, HasSubstr("takt replaces this master"));
   EXPECT_EQ(key(list, "Topology.Node20Present").use, KeyUse::ignored);
   EXPECT_EQ(key(list, "Topology.EDSBaseName").use, KeyUse::used);
   EXPECT_EQ(key(list, "Topology.Colour").why, "not a key of CiA 306-3");

@@ -227,11 +227,12 @@ TEST_F(CommandsTest, AnOldReleaseReleasesNothing) {
   EXPECT_TRUE(take(fresh, 103));
 
   EXPECT_FALSE(take(release(102), 103)) << "a later command has overtaken it";
-  EXPECT_TRUE(reported(
-      "node 5 (shoulder): the command is older than the newest one of the node: it is computed "
-      "from cycle 102"));
+  EXPECT_TRUE(
+      reported("node 5 (shoulder): the command is older than the newest command to the node: it "
+               "was computed "
+               "from cycle 102"));
   EXPECT_FALSE(take(release(0), 103));
-  EXPECT_TRUE(reported("is computed from cycle 0"));
+  EXPECT_TRUE(reported("was computed from cycle 0"));
   EXPECT_FALSE(take(release(105), 103));
   EXPECT_TRUE(reported("the command is ahead of taktd"));
 
@@ -260,7 +261,7 @@ TEST_F(CommandsTest, AReleaseHasATimeToLiveToo) {
   EXPECT_FALSE(take(end, 103));
 
   EXPECT_TRUE(
-      reported("the command is too old: it is computed from cycle 100, the present cycle is 103"));
+      reported("the command is too old: it was computed from cycle 100, the present cycle is 103"));
   EXPECT_EQ(commands.holder(0, 103), "move");
 }
 
@@ -286,7 +287,7 @@ TEST_F(CommandsTest, AnOlderCommandDoesNotOvertakeANewerOne) {
 
   EXPECT_EQ(outputs[1], 2);
   EXPECT_TRUE(reported(
-      "the command is older than the newest one of the node: it is computed from cycle 100"));
+      "the command is older than the newest command to the node: it was computed from cycle 100"));
   for (int i = 0; i < 100; ++i) take(command({1}, {1}), 102);
   EXPECT_EQ(notices.size(), 1U) << "at most one a second";
   newer.values = {3};

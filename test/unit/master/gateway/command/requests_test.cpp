@@ -283,7 +283,7 @@ TEST_F(RequestsTest, NmtStopNamesTheAxesThatWereNotConfirmed) {
   EXPECT_EQ(answer->good, 0);
   EXPECT_EQ(answer->text,
             "the command was executed, but not every axis was seen at standstill and disabled "
-            "before:\nz was disabled at 75 mm/s");
+            "before the command:\nz was disabled at 75 mm/s");
 }
 
 TEST_F(RequestsTest, FullRingIsAnAnswerToo) {
