@@ -22,4 +22,14 @@ inline bool print_findings(const Findings& findings, Severity least = Severity::
   return has_error(findings);
 }
 
+/// Prints the errors and warnings of a network file that a tool has written, if taktd does not
+/// accept it. Returns the exit code.
+inline int judge_written(const std::string& file, const Findings& findings) {
+  if (!has_error(findings)) return 0;
+  print_findings(findings, Severity::warning);
+  std::cerr << file
+            << ": this file was written, but taktd does not accept it; correct the errors above\n";
+  return 1;
+}
+
 }  // namespace takt

@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
-#include <iostream>
 #include <set>
 
 #include "apps/command_line/bus_option.hpp"
@@ -100,16 +99,6 @@ void choose_bitrate(const InitArguments& options, InitFacts& facts) {
   }
 }
 
-/// Loads the written file as taktd would and prints its errors.
-int judge(const std::string& file) {
-  const LoadedNetwork network = load_network(file);
-  if (!has_error(network.findings)) return 0;
-  print_findings(network.findings, Severity::warning);
-  std::cerr << file
-            << ": this file was written, but taktd does not accept it; correct the errors above\n";
-  return 1;
-}
-
 void report(const ProposedNetwork& network, std::size_t devices, const std::string& file) {
   complain(fmt::format("{}: {} of {} devices, SYNC every {} us; next: takt plan {}", file,
                        devices - network.missing, devices, network.period_us, file),
@@ -189,7 +178,7 @@ int run(const InitArguments& options) {
   const ProposedNetwork network = proposed_network(devices, facts);
   value_or_fail(write_whole_file(out, network.text), 1);
   report(network, devices.size(), options.out);
-  return judge(options.out);
+  return judge_written(options.out, load_network(options.out).findings);
 }
 
 }  // namespace

@@ -38,16 +38,6 @@ std::optional<LearnedBus> listen(const LearnArguments& options) {
   return read_recording(file, options.log, options.interface);
 }
 
-/// Loads the written file as taktd would and prints its errors.
-int judge(const std::string& file) {
-  const LoadedNetwork network = load_network(file);
-  if (!has_error(network.findings)) return 0;
-  print_findings(network.findings, Severity::warning);
-  std::cerr << file
-            << ": this file was written, but taktd does not accept it; correct the errors above\n";
-  return 1;
-}
-
 int run(const LearnArguments& options) {
   DeviceFiles files;
   Findings findings;
@@ -85,7 +75,7 @@ int run(const LearnArguments& options) {
     }
   }
   value_or_fail(write_whole_file(options.out, network.text), 1);
-  const int judged = to_stdout ? 0 : judge(options.out);
+  const int judged = to_stdout ? 0 : judge_written(options.out, load_network(options.out).findings);
   return has_error(network.findings) ? 1 : judged;
 }
 
