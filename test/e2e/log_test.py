@@ -7,66 +7,13 @@ import json
 import pathlib
 import re
 import signal
-import socket
-import subprocess
 import sys
 import tempfile
 import time
 
 from mcap.reader import make_reader
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-NETWORK = ROOT / "share/demo/two_axes.yaml"
-PATIENCE = 180  # s
-failures = []
-
-
-def check(what, good, told=""):
-    print(("ok    " if good else "FAIL  ") + what, flush=True)
-    if not good:
-        failures.append(what)
-        print("      " + str(told)[:800])
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-class Bus:
-    def __init__(self, binaries, folder):
-        self.binaries, self.folder = pathlib.Path(binaries), pathlib.Path(folder)
-        self.url = f"tcpq://127.0.0.1:{free_port()}"
-
-    def start_daemon(self):
-        self.said = open(self.folder / "taktd.log", "w")
-        self.daemon = subprocess.Popen([self.binaries / "taktd", NETWORK, "--bus", "sim", "--lcm-url", self.url],
-                                       stdout=self.said, stderr=self.said)
-        self.await_text(self.folder / "taktd.log", "the network is ready")
-
-    def end_daemon(self):
-        self.daemon.send_signal(signal.SIGTERM)
-        return self.daemon.wait(PATIENCE)
-
-    def await_text(self, path, text):
-        until = time.monotonic() + PATIENCE
-        while text not in path.read_text():
-            if time.monotonic() > until:
-                sys.exit(f"not in {PATIENCE} s: {text}\n{path.read_text()}")
-            time.sleep(0.05)
-
-    def log(self, *words):
-        command = [self.binaries / "takt", "log", *words, "--lcm-url", self.url]
-        return subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
-
-    def begin_log(self, *words):
-        """Returns when it records."""
-        path = self.folder / "log.log"
-        said = open(path, "w")
-        process = subprocess.Popen([self.binaries / "takt", "log", *words, "--lcm-url", self.url], stdout=said, stderr=said)
-        self.await_text(path, "recording")
-        return process, path
+from running_daemon import NETWORK, PATIENCE, Bus, await_text, check, failures
 
 
 def table(text):
@@ -79,8 +26,15 @@ def told_lost(told):
     return int(found[1]) if found else 0
 
 
+def begin_log(bus, *words):
+    """Returns when it records."""
+    process = bus.start("takt", "log", *words)
+    await_text(bus.log_of("takt"), "recording", process)
+    return process, bus.log_of("takt")
+
+
 def as_csv(bus):
-    done = bus.log("shoulder.*", "-o", "-", "--for", "2s")
+    done = bus.takt("log", "shoulder.*", "-o", "-", "--for", "2s")
     check("takt log -o - ends with 0", done.returncode == 0, done.stderr)
     head, rows = table(done.stdout)
     check("only this node is in the table", len(head) > 5 and all(name.startswith("shoulder.") for name in head[3:-1]), head)
@@ -94,7 +48,7 @@ def as_csv(bus):
 
 def until_a_signal(bus):
     path = bus.folder / "run.csv"
-    process, said = bus.begin_log("*.statusword", "-o", path)
+    process, said = begin_log(bus, "*.statusword", "-o", path)
     time.sleep(1)
     check("an unfinished log has another name", not path.exists() and (bus.folder / ".part-run.csv").exists())
     process.send_signal(signal.SIGINT)
@@ -106,7 +60,7 @@ def until_a_signal(bus):
 
 def wrong_use(bus):
     def says(words, code, *parts):
-        done = bus.log(*words)
+        done = bus.takt("log", *words)
         missing = [part for part in parts if part not in done.stderr]
         check(f"takt log {' '.join(map(str, words))}", done.returncode == code and not missing, f"{done.returncode}, no {missing}: {done.stderr}")
     csv_file = bus.folder / "wrong.csv"
@@ -123,7 +77,7 @@ def wrong_use(bus):
 
 def until_the_daemon_ends(bus):
     path = bus.folder / "run.mcap"
-    process, said = bus.begin_log("-o", path)
+    process, said = begin_log(bus, "-o", path)
     time.sleep(1)
     bus.end_daemon()
     check("the end of taktd ends the log with 0", process.wait(PATIENCE) == 0, said.read_text())
@@ -141,7 +95,7 @@ def until_the_daemon_ends(bus):
 def main(binaries):
     with tempfile.TemporaryDirectory() as folder:
         bus = Bus(binaries, folder)
-        done = bus.log("-o", pathlib.Path(folder) / "none.csv")
+        done = bus.takt("log", "-o", pathlib.Path(folder) / "none.csv")
         check("without a daemon the log says so", done.returncode == 3 and "Is taktd running?" in done.stderr, done.stderr)
         bus.start_daemon()
         try:
@@ -150,8 +104,7 @@ def main(binaries):
             wrong_use(bus)
             until_the_daemon_ends(bus)
         finally:
-            if bus.daemon.poll() is None:
-                bus.end_daemon()
+            bus.end_daemon()
     return 1 if failures else 0
 
 

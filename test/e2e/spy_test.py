@@ -2,81 +2,39 @@
 """spy_test.py BIN: what `takt spy` shows of a running taktd, in a pipe and in a terminal of 80 columns."""
 import fcntl
 import os
-import pathlib
 import pty
 import re
-import signal
-import socket
 import struct
-import subprocess
 import sys
 import tempfile
 import termios
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-NETWORK = ROOT / "share/demo/two_axes.yaml"
-PATIENCE = 180  # s
-failures = []
+from running_daemon import NETWORK, PATIENCE, Bus, check, failures
 
 
-def check(what, good, told=""):
-    print(("ok    " if good else "FAIL  ") + what, flush=True)
-    if not good:
-        failures.append(what)
-        print("      " + str(told)[:1500])
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-class Bus:
-    def __init__(self, binaries, folder):
-        self.binaries = pathlib.Path(binaries)
-        self.url = f"tcpq://127.0.0.1:{free_port()}"
-        log = pathlib.Path(folder) / "taktd.log"
-        self.said = open(log, "w")
-        self.daemon = subprocess.Popen([self.binaries / "taktd", NETWORK, "--bus", "sim", "--lcm-url", self.url],
-                                       stdout=self.said, stderr=self.said)
-        until = time.monotonic() + PATIENCE
-        while "the network is ready" not in log.read_text():
-            if time.monotonic() > until:
-                sys.exit(f"taktd is not ready:\n{log.read_text()}")
-            time.sleep(0.05)
-
-    def end(self):
-        self.daemon.send_signal(signal.SIGTERM)
-        self.daemon.wait(PATIENCE)
-
-    def spy(self, *words):
-        command = [self.binaries / "takt", "spy", *words, "--lcm-url", self.url]
-        return subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, stdin=subprocess.DEVNULL)
-
-    def spy_in_terminal(self, *words):
-        """What the terminal shows until q."""
-        pid, terminal = pty.fork()
-        if pid == 0:
-            os.environ["TERM"] = "xterm"
-            os.execv(self.binaries / "takt", ["takt", "spy", *words, "--lcm-url", self.url])
-        fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
-        text = b""
-        until = time.monotonic() + PATIENCE
-        while time.monotonic() < until and b"_STATUS" not in text:
-            text += os.read(terminal, 65536)
-        os.write(terminal, b"q")
-        try:
-            while more := os.read(terminal, 65536):
-                text += more
-        except OSError:  # the other side is closed
-            pass
-        return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), text.decode(errors="replace")
+def spy_in_terminal(bus, *words):
+    """What the terminal shows until q."""
+    pid, terminal = pty.fork()
+    if pid == 0:
+        os.environ["TERM"] = "xterm"
+        os.execv(bus.binaries / "takt", ["takt", "spy", *words, "--lcm-url", bus.url])
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+    text = b""
+    until = time.monotonic() + PATIENCE
+    while time.monotonic() < until and b"_STATUS" not in text:
+        text += os.read(terminal, 65536)
+    os.write(terminal, b"q")
+    try:
+        while more := os.read(terminal, 65536):
+            text += more
+    except OSError:  # the other side is closed
+        pass
+    return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), text.decode(errors="replace")
 
 
 def the_table(bus):
-    done = bus.spy()
+    done = bus.takt("spy")
     lines = done.stdout.splitlines()
     check("takt spy ends with 0", done.returncode == 0, done.stderr)
     for channel, type_name in (("DEMO_IMAGE", "image_t"), ("DEMO_STATUS", "status_t"), ("DEMO_LAYOUT", "layout_t"),
@@ -88,40 +46,41 @@ def the_table(bus):
 
 
 def one_channel(bus):
-    done = bus.spy("DEMO_IMAGE", "-n", "300")
+    done = bus.takt("spy", "DEMO_IMAGE", "-n", "300")
     lines = done.stdout.splitlines()
     check("takt spy CHANNEL -n 300 prints 300 lines", done.returncode == 0 and len(lines) == 300, f"{len(lines)}: {done.stderr}")
     check("the values have the names and units of their signals",
           re.search(r" cycle=\d+ .* shoulder\.position_actual_value=\S+ rad ", lines[-1]), lines[-1])
-    done = bus.spy("DEMO_STATUS", "-n", "1")
+    done = bus.takt("spy", "DEMO_STATUS", "-n", "1")
     check("lists have numbers", "nodes[0].name=\"shoulder\"" in done.stdout and 'bus="demo"' in done.stdout, done.stdout)
-    done = bus.spy("DEMO_SHOULDER_STATE", "-n", "1")
+    done = bus.takt("spy", "DEMO_SHOULDER_STATE", "-n", "1")
     check("a channel of a node needs the network file", "--network NET.yaml" in done.stdout, done.stdout + done.stderr)
-    done = bus.spy("DEMO_SHOULDER_STATE", "-n", "1", "--network", NETWORK)
+    done = bus.takt("spy", "DEMO_SHOULDER_STATE", "-n", "1", "--network", NETWORK)
     check("with it, it has names", re.search(r" position_actual_value=\S+", done.stdout), done.stdout + done.stderr)
-    done = bus.spy("DEMO_STATS", "--for", "1s")
+    done = bus.takt("spy", "DEMO_STATS", "--for", "1s")
     check("a wrong channel has a guess", done.returncode == 1 and "did you mean 'DEMO_STATUS'?" in done.stderr, done.stderr)
 
 
 def in_a_terminal(bus):
-    code, text = bus.spy_in_terminal()
+    code, text = spy_in_terminal(bus)
     check("q ends the view with 0", code == 0, code)
     check("the terminal is put back", text.endswith("\033[?25h\033[?1049l"), repr(text[-80:]))
     check("the view has the channels", "image_t" in text and "CHANNEL" in text, text[-2000:])
-    code, text = bus.spy_in_terminal("DEMO_STATUS")
+    code, text = spy_in_terminal(bus, "DEMO_STATUS")
     check("one channel has comments", code == 0 and "session" in text and "bit/s" in text, text[-2000:])
 
 
 def main(binaries):
     with tempfile.TemporaryDirectory() as folder:
         bus = Bus(binaries, folder)
+        bus.start_daemon()
         try:
             the_table(bus)
             one_channel(bus)
             in_a_terminal(bus)
         finally:
-            bus.end()
-        done = bus.spy("--for", "0.5s")
+            bus.end_daemon()
+        done = bus.takt("spy", "--for", "0.5s")
         check("without a daemon it says so", done.returncode == 3 and "Is taktd running?" in done.stderr, done.stderr)
     return 1 if failures else 0
 

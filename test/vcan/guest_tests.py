@@ -42,7 +42,7 @@ def become(command, recordings):
     signal.alarm(LIMIT)
     if not command[0].endswith(".py"):
         os.execvp(command[0], command)
-    sys.argv = command
+    sys.argv, sys.path[0] = command, os.path.dirname(command[0])
     runpy.run_path(command[0], run_name="__main__")
 
 
