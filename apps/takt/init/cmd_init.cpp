@@ -16,6 +16,7 @@
 #include "apps/takt/learn/yaml_text.hpp"
 #include "apps/takt/service/scanned_devices.hpp"
 #include "apps/takt/service/sdo_direct.hpp"
+#include "apps/takt/service/shared_options.hpp"
 #include "eds_parser/network_file/keys/read_devices.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/report/network_report.hpp"
@@ -28,12 +29,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct InitArguments {
-  std::string bus;
-  std::vector<std::string> folders;
+struct InitArguments : BusScanOptions {
   std::string out;
-  int timeout_ms = 200;
-  int listen_ms = 1200;
   int bitrate_kbit = 0;
   bool force = false;
 };
@@ -134,7 +131,7 @@ void drop_second_channels(std::vector<DeviceToWrite>& devices) {
 std::vector<DeviceToWrite> devices_on(const InitArguments& options, const learn::DeviceFiles& files,
                                       const std::vector<DeviceData>& families) {
   const std::chrono::milliseconds timeout{options.timeout_ms};
-  const BusScan scan = scan_bus(options.bus, timeout, std::chrono::milliseconds{options.listen_ms});
+  const BusScan scan = scan_bus(options);
   if (Interrupt::asked()) throw Failure{"interrupted; no file was written", 1};
   if (scan.met_another_client()) {
     throw Failure{"another program sends SDO requests on " + options.bus +
@@ -161,18 +158,11 @@ int run(const InitArguments& options) {
   if (out.has_parent_path() && !fs::is_directory(out.parent_path(), ignored)) {
     throw Failure{out.parent_path().string() + ": there is no such folder", exit_wrong_use};
   }
-  learn::DeviceFiles files;
+  const learn::DeviceFiles files = device_files_in(options.folders);
   Findings findings;
-  for (const std::string& folder : options.folders) files.add_folder(folder, findings);
-  if (!findings.empty()) throw Failure{to_string(findings.front()), exit_wrong_use};
   const std::vector<DeviceData> families = load_device_data(device_folders(), findings);
   const std::vector<DeviceToWrite> devices = devices_on(options, files, families);
-  if (devices.empty()) {
-    return complain("no device answers on " + options.bus +
-                        ": is the bit rate right, are the devices powered, is the bus terminated? "
-                        "`takt lss find` finds devices without node id",
-                    1);
-  }
+  if (devices.empty()) return complain_of_silence(options.bus);
   InitFacts facts{.file = out, .interface = options.bus};
   choose_bitrate(options, facts);
   const ProposedNetwork network = proposed_network(devices, facts);
@@ -199,12 +189,7 @@ void add_init(CLI::App& app, int& exit_code) {
              "bit rate, kbit/s; default: that of the interface")
       ->check(CLI::Range(10, 1000))
       ->type_name("KBIT");
-  add_number(verb, "--timeout", options.timeout_ms, "longest silence of a node, ms")
-      ->check(CLI::Range(1, 60000))
-      ->type_name("MS");
-  add_number(verb, "--listen", options.listen_ms, "shortest time to listen to heartbeats, ms")
-      ->check(CLI::Range(0, 600000))
-      ->type_name("MS");
+  add_scan_times(verb, options);
   verb.add_flag("--force", options.force, "overwrite the network file if it exists");
   verb.footer(
       "takt init scans the bus as `takt scan` does and changes nothing on it. Stop taktd before.\n"

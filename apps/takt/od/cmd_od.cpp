@@ -4,16 +4,14 @@
 #include <optional>
 #include <string>
 
-#include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/help_text.hpp"
 #include "apps/command_line/interrupt.hpp"
-#include "apps/command_line/whole_number.hpp"
-#include "apps/takt/objects/device_file_options.hpp"
 #include "apps/takt/od/od_entry.hpp"
 #include "apps/takt/od/od_reader.hpp"
 #include "apps/takt/od/od_text.hpp"
 #include "apps/takt/service/sdo_route.hpp"
+#include "apps/takt/service/shared_options.hpp"
 #include "master/lcm/printable_text.hpp"
 
 namespace takt {
@@ -130,14 +128,7 @@ void add_od(CLI::App& app, int& exit_code) {
       ->type_name("WORD");
   verb.add_flag("--defaults", options.defaults,
                 "print the values of the device file, and ask no device");
-  add_bus(verb, options.bus, "read the device directly on can0 or unix:PATH, without a daemon")
-      ->type_name("IFACE");
-  add_number(verb, "--timeout", options.timeout_ms,
-             "longest silence of the device, ms (`sdo_timeout_ms` of the node; 1000 with --bus)")
-      ->check(CLI::Range(1, 60000))
-      ->type_name("MS");
-  add_device_files(verb, options.device_files);
-  add_live_options(verb, options.live);
+  add_sdo_route(verb, options, "read the device directly on can0 or unix:PATH, without a daemon");
   verb.footer(
       "takt od writes nothing to the device. It does not read objects that are write-only, files,\n"
       "and objects whose reading has an effect; their value column gives this reason. The column\n"

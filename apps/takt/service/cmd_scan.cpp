@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdio>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -8,20 +7,16 @@
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/json_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
-#include "apps/command_line/whole_number.hpp"
 #include "apps/takt/live/screen.hpp"
 #include "apps/takt/live/text/node_words.hpp"
 #include "apps/takt/live/text/table.hpp"
 #include "apps/takt/service/scanned_devices.hpp"
+#include "apps/takt/service/shared_options.hpp"
 
 namespace takt {
 namespace {
 
-struct ScanOptions {
-  std::string bus;
-  std::vector<std::string> folders;
-  int timeout_ms = 200;
-  int listen_ms = 1200;
+struct ScanOptions : BusScanOptions {
   bool json = false;
 };
 
@@ -91,12 +86,8 @@ nlohmann::json to_json(const ScannedDevice& found) {
 }
 
 int run(const ScanOptions& options) {
-  learn::DeviceFiles files;
-  Findings findings;
-  for (const std::string& folder : options.folders) files.add_folder(folder, findings);
-  if (!findings.empty()) return complain(to_string(findings.front()), 2);
-  const BusScan scan = scan_bus(options.bus, std::chrono::milliseconds{options.timeout_ms},
-                                std::chrono::milliseconds{options.listen_ms});
+  const learn::DeviceFiles files = device_files_in(options.folders);
+  const BusScan scan = scan_bus(options);
   if (scan.met_another_client()) {
     complain("another program sends SDO requests on " + options.bus +
                  " (a running taktd?), so answers may be mixed up; `takt status` asks the daemon",
@@ -112,10 +103,7 @@ int run(const ScanOptions& options) {
     print(nodes, !options.folders.empty());
   }
   if (!nodes.empty()) return 0;
-  return complain("no device answers on " + options.bus +
-                      ": is the bit rate right, are the devices powered, is the bus terminated? "
-                      "`takt lss find` finds devices without node id",
-                  1);
+  return complain_of_silence(options.bus);
 }
 
 }  // namespace
@@ -132,12 +120,7 @@ void add_scan(CLI::App& app, int& exit_code) {
   verb.add_option("--eds-dir", options.folders,
                   "folder with EDS and DCF files to match with the devices")
       ->type_name("DIR");
-  add_number(verb, "--timeout", options.timeout_ms, "longest silence of a node, ms")
-      ->check(CLI::Range(1, 60000))
-      ->type_name("MS");
-  add_number(verb, "--listen", options.listen_ms, "shortest time to listen to heartbeats, ms")
-      ->check(CLI::Range(0, 600000))
-      ->type_name("MS");
+  add_scan_times(verb, options);
   verb.add_flag("--json", options.json, "print one JSON document");
 }
 

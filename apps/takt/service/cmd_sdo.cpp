@@ -7,15 +7,14 @@
 #include <optional>
 #include <string>
 
-#include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/interrupt.hpp"
 #include "apps/command_line/json_text.hpp"
 #include "apps/command_line/text_file.hpp"
 #include "apps/command_line/whole_number.hpp"
 #include "apps/takt/objects/chosen_object.hpp"
-#include "apps/takt/objects/device_file_options.hpp"
 #include "apps/takt/service/sdo_route.hpp"
+#include "apps/takt/service/shared_options.hpp"
 #include "apps/takt/service/transfer_progress.hpp"
 #include "master/gateway/message/value_text.hpp"
 #include "master/lcm/printable_text.hpp"
@@ -153,14 +152,7 @@ AddedCommand<SdoOptions> add_verb(CLI::App& sdo, int& exit_code, const char* nam
   verb.add_option("OBJ", options.object,
                   "object: its name, or index and sub-index in hex, 6041 or 1018:1")
       ->required();
-  add_bus(verb, options.bus, "work directly on can0 or unix:PATH, without a daemon")
-      ->type_name("IFACE");
-  add_number(verb, "--timeout", options.timeout_ms,
-             "longest silence of the device, ms (`sdo_timeout_ms` of the node; 1000 with --bus)")
-      ->check(CLI::Range(1, 60000))
-      ->type_name("MS");
-  add_device_files(verb, options.device_files);
-  add_live_options(verb, options.live);
+  add_sdo_route(verb, options, "work directly on can0 or unix:PATH, without a daemon");
   return added;
 }
 
