@@ -3,13 +3,12 @@
 import json
 import pathlib
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
-import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+from running_daemon import PATIENCE, ROOT, await_true, free_port
+
 NETWORK = f"""
 bus: {{name: box}}
 lcm: {{url: "tcpq://127.0.0.1:PORT", broker: true}}
@@ -22,14 +21,6 @@ nodes:
     dcf: {ROOT}/share/eds/takt_io401.eds
     heartbeat_producer: 100
 """
-
-
-def await_true(what, condition):
-    until = time.monotonic() + 180
-    while not condition():
-        if time.monotonic() > until:
-            sys.exit(f"not in 180 s: {what}")
-        time.sleep(0.05)
 
 
 def recordings_with(box, words):
@@ -60,7 +51,7 @@ def record(binaries, folder, network, url):
         await_true("recording of the fault", lambda: recordings_with(box, "heartbeat lost"))
         daemon.send_signal(signal.SIGUSR1)
         await_true("recording on request", lambda: recordings_with(box, "requested by SIGUSR1"))
-        asked = subprocess.run([f"{binaries}/takt", "record", "--lcm-url", url], capture_output=True, text=True, timeout=180)
+        asked = subprocess.run([f"{binaries}/takt", "record", "--lcm-url", url], capture_output=True, text=True, timeout=PATIENCE)
         named = pathlib.Path(asked.stdout.strip())
         check(asked.returncode == 0 and named.exists() and named.parent == box, "takt record names the file", asked)
         if '"recorded"' not in events.read_text():
@@ -70,7 +61,7 @@ def record(binaries, folder, network, url):
         daemon.send_signal(signal.SIGTERM)
         daemon.send_signal(signal.SIGINT)
         daemon.send_signal(signal.SIGCONT)
-        if daemon.wait(180) == 0 or not recordings_with(box, "the ordered stop did not end"):
+        if daemon.wait(PATIENCE) == 0 or not recordings_with(box, "the ordered stop did not end"):
             sys.exit(f"two signals: exit {daemon.returncode}, {sorted(box.iterdir())}")
     finally:
         node.kill()
@@ -107,8 +98,7 @@ def main(binaries):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         network = folder / "net.yaml"
-        with socket.create_server(("127.0.0.1", 0)) as free:
-            port = str(free.getsockname()[1])
+        port = str(free_port())
         network.write_text(NETWORK.replace("PORT", port))
         first, last_one = record(binaries, folder, network, f"tcpq://127.0.0.1:{port}")
         last = replay(binaries, last_one, "--quiet")

@@ -18,8 +18,9 @@ import sys
 import tempfile
 import time
 
+from running_daemon import PATIENCE, await_true
+
 HERE = pathlib.Path(__file__).resolve().parent / "dialogues"
-GENEROUS = 180
 QUIET = 4  # recording: so long nothing comes any more
 
 
@@ -56,16 +57,12 @@ class Daemon:
         self.process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def __enter__(self):
-        until = time.monotonic() + GENEROUS
-        while not (self.log.exists() and self.log.read_text().count('"boot_done"') == 2):
-            if time.monotonic() > until or self.process.poll() is not None:
-                sys.exit(f"taktd did not boot its nodes, exit code {self.process.poll()}")
-            time.sleep(0.05)
+        await_true("boot of both nodes", lambda: self.log.exists() and self.log.read_text().count('"boot_done"') == 2, self.process)
         return self
 
     def __exit__(self, *_):
         self.process.terminate()
-        self.process.wait(GENEROUS)
+        self.process.wait(PATIENCE)
 
 
 def turns(file):
@@ -86,9 +83,9 @@ def record(client, kind, line):
     if kind == "?":
         time.sleep(QUIET)
     client.say(line)
-    came = [client.line(GENEROUS)]
+    came = [client.line(PATIENCE)]
     while not any(one.startswith("[") for one in came):
-        came.append(client.line(GENEROUS))
+        came.append(client.line(PATIENCE))
     while (more := client.line(QUIET)) is not None:
         came.append(more)
     return came
@@ -97,7 +94,7 @@ def record(client, kind, line):
 def come(client, count):
     came = []
     while len(came) < count:
-        line = client.line(GENEROUS)
+        line = client.line(PATIENCE)
         if line is None:
             return came + ["(nothing more)"]
         came.append(line)
@@ -114,7 +111,7 @@ def apart(lines):
 
 
 def replay(client, kind, line, expected, where):
-    until = time.monotonic() + GENEROUS
+    until = time.monotonic() + PATIENCE
     while True:
         client.say(line)
         came = come(client, len(expected))

@@ -6,9 +6,9 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+from running_daemon import PATIENCE, ROOT, await_true
+
 NETWORK = f"""
 bus: {{name: back}}
 lcm: {{url: "memq://"}}
@@ -32,13 +32,7 @@ def heard(events, kind):
 
 
 def await_event(daemon, events, kind, count):
-    until = time.monotonic() + 180
-    while heard(events, kind) < count:
-        if daemon.poll() is not None:
-            sys.exit(f"taktd ended with {daemon.returncode} before {kind} number {count}")
-        if time.monotonic() > until:
-            sys.exit(f"no {kind} number {count} in 180 s")
-        time.sleep(0.05)
+    await_true(f"{kind} number {count}", lambda: heard(events, kind) >= count, daemon)
 
 
 def main(binaries):
@@ -58,7 +52,7 @@ def main(binaries):
             node = subprocess.Popen(devices, **quiet)
             await_event(daemon, events, "boot_done", 2)
             daemon.send_signal(signal.SIGTERM)
-            code = daemon.wait(180)
+            code = daemon.wait(PATIENCE)
         finally:
             node.kill()
             daemon.kill()

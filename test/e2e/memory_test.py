@@ -5,11 +5,10 @@ import re
 import subprocess
 import sys
 import tempfile
-import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+from running_daemon import ROOT, await_text
+
 LIMIT_KB = 10_000
-PATIENCE = 180  # s
 
 
 def main(binaries):
@@ -19,11 +18,7 @@ def main(binaries):
         with log.open("w") as out:
             daemon = subprocess.Popen(command, stdout=out, stderr=out)
         try:
-            until = time.monotonic() + PATIENCE
-            while "the network is ready" not in log.read_text():
-                if time.monotonic() > until or daemon.poll() is not None:
-                    sys.exit(f"taktd is not ready:\n{log.read_text()}")
-                time.sleep(0.05)
+            await_text(log, "the network is ready", daemon)
             locked = "memory locked" in log.read_text()
             status = pathlib.Path(f"/proc/{daemon.pid}/status").read_text()
         finally:

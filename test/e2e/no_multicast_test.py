@@ -14,18 +14,10 @@ import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-NETWORK = ROOT / "share/demo/two_axes.yaml"
-PATIENCE = 180  # s
+from running_daemon import NETWORK, PATIENCE, ROOT, check, failures
+
 NAMESPACES = (["unshare", "--net"], ["unshare", "--net", "--map-root-user"])
 GUEST = [ROOT / "test/support/with-vcan", "-m", "uml", "-t", "180", *NAMESPACES[0]]
-failures = []
-
-
-def check(good, what):
-    print(("ok    " if good else "FAIL  ") + what, flush=True)
-    if not good:
-        failures.append(what)
 
 
 def enter_namespace(arguments):
@@ -52,18 +44,18 @@ def await_status(binaries, daemon):
 
 
 def judge_status(status):
-    check(status.returncode == 0, f"takt status without a URL: exit {status.returncode} {status.stderr.strip()}")
+    check(f"takt status without a URL: exit {status.returncode} {status.stderr.strip()}", status.returncode == 0)
     buses = json.loads(status.stdout)["buses"] if status.returncode == 0 else []
     names = [node["name"] for bus in buses for node in bus["nodes"]]
-    check(names == ["shoulder", "elbow", "io"], f"and it tells of the nodes: {names}")
+    check(f"and it tells of the nodes: {names}", names == ["shoulder", "elbow", "io"])
 
 
 def judge_daemon(said):
     told = [line for line in said.splitlines() if "LCM: " in line]
-    check(len(told) == 1, f"taktd speaks of LCM once: {told}")
+    check(f"taktd speaks of LCM once: {told}", len(told) == 1)
     wanted = ("no multicast route", "tcpq protocol on loopback", "LCM_DEFAULT_URL=tcpq://127.0.0.1:7700")
     missing = [words for words in wanted if words not in "".join(told)]
-    check(not missing, f"and says why, what and where: {missing} is missing")
+    check(f"and says why, what and where: {missing} is missing", not missing)
 
 
 def judge_taken_port(binaries):
@@ -76,18 +68,20 @@ def judge_taken_port(binaries):
             while "the network is ready" not in text and time.monotonic() < until:
                 time.sleep(0.05)
                 text = os.pread(said.fileno(), 1 << 20, 0).decode()
-            check("port 7700 of loopback is used by another program" in text, "a port that is taken is told")
-            check("the network is ready" in text, "and the bus runs all the same")
+            check("a port that is taken is told", "port 7700 of loopback is used by another program" in text, text)
+            check("and the bus runs all the same", "the network is ready" in text, text)
             daemon.send_signal(signal.SIGTERM)
-            check(daemon.wait(PATIENCE) == 0, f"taktd ended with exit code {daemon.returncode}")
+            code = daemon.wait(PATIENCE)
+            check(f"taktd ended with exit code {code}", code == 0)
         finally:
             daemon.kill()
         other.setblocking(False)
         try:
             other.accept()
-            check(False, "nobody connects to the one who has the port")
+            came = True
         except BlockingIOError:
-            check(True, "nobody connects to the one who has the port")
+            came = False
+        check("nobody connects to the one who has the port", not came)
 
 
 def main(binaries):
@@ -96,13 +90,14 @@ def main(binaries):
     subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
     nobody = takt_status(binaries)
     alone = nobody.returncode == 3 and "is taktd running?" in nobody.stderr
-    check(alone, f"before taktd nobody answers: exit {nobody.returncode} {nobody.stderr.strip()}")
+    check(f"before taktd nobody answers: exit {nobody.returncode} {nobody.stderr.strip()}", alone)
     with tempfile.TemporaryFile("w+") as said:
         daemon = subprocess.Popen([binaries / "taktd", NETWORK, "--bus", "sim", "--rt", "off"], stderr=said)
         try:
             judge_status(await_status(binaries, daemon))
             daemon.send_signal(signal.SIGTERM)
-            check(daemon.wait(PATIENCE) == 0, f"taktd ended with exit code {daemon.returncode}")
+            code = daemon.wait(PATIENCE)
+            check(f"taktd ended with exit code {code}", code == 0)
         finally:
             daemon.kill()
         said.seek(0)

@@ -11,16 +11,7 @@ import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-PATIENCE = 180  # s
-failures = []
-
-
-def check(name, good, told=""):
-    print(("ok    " if good else "FAIL  ") + name, flush=True)
-    if not good:
-        failures.append(name)
-        print("      " + told.replace("\n", "\n      "))
+from running_daemon import PATIENCE, ROOT, await_text, check, failures
 
 
 def install(binaries, prefix):
@@ -46,11 +37,7 @@ class Demo:
         return self.log.read_text()
 
     def wait_for(self, words):
-        until = time.monotonic() + PATIENCE
-        while words not in self.text():
-            if time.monotonic() > until or self.process.poll() is not None:
-                sys.exit(f"takt demo does not print '{words}':\n{self.text()}")
-            time.sleep(0.05)
+        await_text(self.log, words, self.process)
 
     def children(self):
         return {int(entry.name) for entry in pathlib.Path("/proc").iterdir()
