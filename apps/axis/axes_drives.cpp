@@ -7,9 +7,6 @@
 namespace takt {
 namespace {
 
-/// Number of status_t (10 in a second) in sequence in which another program holds an axis before
-/// enable() gives up. That program may have died, while its last command is still valid.
-constexpr int held_statuses = 20;
 /// axis_motion_t::state of a drive that is not enabled.
 constexpr std::int8_t motion_not_enabled = 0;
 

@@ -12,9 +12,6 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-/// Number of status_t (10 in a second) in sequence in which another program holds an axis before
-/// enable() gives up.
-constexpr int held_statuses_of_speed = 20;
 /// Number of cycles for which the last control words are sent before release().
 constexpr std::int64_t cycles_before_release = 3;
 
@@ -87,7 +84,7 @@ std::string Axes::State::why_speed_ended() const {
     if (event.kind == "fallback_begun" && speed->has_node(event.node_id)) return event.text;
   }
   const bool held = speed->any([&](const SpeedAxis& axis) {
-    return group.holder_of_node(axis.words().node_id).is_other(held_statuses_of_speed);
+    return group.holder_of_node(axis.words().node_id).is_other(held_statuses);
   });
   return speed->all_ready() && !held ? "" : speed->why_not_ready(group);
 }
@@ -105,9 +102,7 @@ Done Axes::State::enable_speed() {
     }
     return false;
   };
-  const auto by_other = [](const NodeHolder& holder) {
-    return holder.is_other(held_statuses_of_speed);
-  };
+  const auto by_other = [](const NodeHolder& holder) { return holder.is_other(held_statuses); };
   const auto not_by_this = [](const NodeHolder& holder) { return !holder.own; };
   const auto ready = [&] { return speed->all_ready() && !held(not_by_this); };
   const auto waited = wait_until([&] { return ready() || speed->any_in_fault() || held(by_other); },

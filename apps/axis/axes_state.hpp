@@ -32,6 +32,9 @@ inline std::unexpected<Obstacle> obstacle(Obstacle::Kind kind, std::string text)
 inline constexpr std::uint16_t target_reached = 0x0400;
 /// Number of cycles after a command in which a drive may still show its old statusword.
 inline constexpr std::int64_t settled_cycles = 10;
+/// Number of status_t (10 in a second) in sequence in which another program holds an axis before
+/// enable() gives up. That program may have died, while its last command is still valid.
+inline constexpr int held_statuses = 20;
 
 /// The state and the functions of an Axes. Waiting is in axes_state.cpp; each of the other files
 /// has the code of the calls after which it is named: drives, halt, homing, motions, stream, gear,
