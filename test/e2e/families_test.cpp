@@ -22,7 +22,8 @@ TEST_P(FamilyDemos, RunInTaktdWithTheirSimulatedDevice) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Demos, FamilyDemos,
-                         testing::Values("lenze8400", "beckhoff", "plain301", "astraada_drv28"));
+                         testing::Values("lenze8400", "beckhoff", "plain301", "astraada_drv28"),
+                         [](const auto& demo) { return std::string{demo.param}; });
 
 }  // namespace
 }  // namespace takt::test

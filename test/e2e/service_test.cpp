@@ -93,7 +93,10 @@ TEST_P(StopSignals, ASecondOneStopsAtOnceAndSaysWhatWasNotDone) {
   EXPECT_EQ(daemon.events("stopped"), 0U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, StopSignals, testing::Values(SIGTERM, SIGINT));
+INSTANTIATE_TEST_SUITE_P(Each, StopSignals, testing::Values(SIGTERM, SIGINT),
+                         [](const auto& number) {
+                           return number.param == SIGINT ? "SIGINT" : "SIGTERM";
+                         });
 
 /// True if this machine allows SCHED_FIFO for the test, and therefore for taktd.
 bool grants_real_time() {
