@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <takt/motion.hpp>
-#include <thread>
 
 #include "test/motions/link_in_virtual_time.hpp"
 
@@ -28,7 +27,9 @@ class AxesObjects : public ::testing::Test {
     bus_.run(1000);  // until all nodes have booted
     bus_.clocks.offset = std::chrono::system_clock::now().time_since_epoch() - bus_.world.now();
   }
-  Axes open(std::chrono::milliseconds timeout = 10s) {
+  static constexpr std::chrono::milliseconds timeout = 10s;
+
+  Axes open() {
     auto axes = Axes::open(std::make_unique<LinkInVirtualTime>(bus_),
                            {.bus = "demo", .longest = 100s, .timeout = timeout});
     EXPECT_TRUE(axes) << axes.error().text;
@@ -38,6 +39,7 @@ class AxesObjects : public ::testing::Test {
     return bus_.world.device(*NodeId::from(10))->objects().number({index, 1});
   }
 
+  test::ClockAhead clock_;
   MotionBus bus_;
 };
 
@@ -89,10 +91,9 @@ TEST_F(AxesObjects, OutputsAreHeldWhileTheProgramIsAlive) {
 }
 
 TEST_F(AxesObjects, OutputsAreGivenUpAfterASilence) {
-  Axes axes = open(2s);
-  // A busy machine may make this program silent for 2 s.
-  ASSERT_TRUE(test::succeeds_at_last([&] { return axes.set("io.0x6200:1", 0x5A); }));
-  std::this_thread::sleep_for(2100ms);
+  Axes axes = open();
+  ASSERT_TRUE(axes.set("io.0x6200:1", 0x5A));
+  clock_.ahead = timeout + 100ms;
   const Obstacle lost = obstacle_of(axes.run(10ms));
   EXPECT_EQ(lost.kind, Kind::stopped);
   EXPECT_THAT(lost.text, HasSubstr("its set-points were discarded"));

@@ -1,10 +1,14 @@
 #pragma once
+#include <chrono>
+#include <cstdint>
 #include <deque>
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "apps/axis/group/surroundings.hpp"
 #include "test/motions/motion_bus.hpp"
 
 namespace takt::test {
@@ -43,14 +47,21 @@ class LinkInVirtualTime final : public Transport {
   std::deque<std::pair<std::string, std::vector<std::byte>>> arriving_;
 };
 
-/// Repeats a call of Axes that depends on the clock of the machine, at most ten times. Returns true
-/// if it has succeeded.
-template <class Call>
-bool succeeds_at_last(Call call) {
-  for (int i = 0; i < 10; ++i) {
-    if (call()) return true;
+/// The machine of an application, with a monotonic clock that a test sets forward.
+class ClockAhead final : public Surroundings {
+ public:
+  std::chrono::nanoseconds now() override { return machine_.now() + ahead; }
+  std::chrono::nanoseconds wall() override { return machine_.wall(); }
+  void wait(std::span<pollfd> descriptors, std::chrono::nanoseconds longest) override {
+    machine_.wait(descriptors, longest);
   }
-  return false;
-}
+  std::int64_t random_number() override { return machine_.random_number(); }
+
+  std::chrono::nanoseconds ahead{};
+
+ private:
+  Surroundings& machine_ = surroundings();
+  UseSurroundings here_{*this};
+};
 
 }  // namespace takt::test
