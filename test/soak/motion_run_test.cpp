@@ -57,6 +57,7 @@ class MotionDefects : public testing::Test {
 };
 
 TEST_F(MotionDefects, NotAtAllBreaksNothing) {
+  seeds /= TAKT_PART_OF_SEEDS;
   EXPECT_FALSE(breaks({}, "")) << what;
   EXPECT_GT(motions, 100U);
   EXPECT_GT(arrivals, 20U);
