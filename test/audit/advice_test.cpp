@@ -136,7 +136,7 @@ TEST(AuditAdvice, RemovesTheEntryThatSwitchesTheHeartbeatConsumerOff) {
   EXPECT_TRUE(mentions(unwanted, "`sdo` in the network file sets 1016:01"));
 }
 
-// Either line alone leaves the device without a watch over the master.
+// With either line alone, the device still does not monitor the master.
 TEST(AuditAdvice, NamesBothLinesWhereTheMasterIsSilentAndTheConsumerIsSwitchedOff) {
   const Audit audit =
       audit_of(two_nodes({"heartbeat_consumer: false"}, {}, "heartbeat_producer: 0"));

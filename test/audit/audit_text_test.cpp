@@ -153,7 +153,8 @@ TEST(Audit, NamesEachOutputThatStays) {
       "1}]   # in addition to the present entries");
 }
 
-/// What the remedy says, in place of the node's own lines of the same key.
+/// Returns the keys of a node after its remedy: each line of the remedy replaces the lines of the
+/// same key.
 std::vector<std::string> with_remedy(std::vector<std::string> keys, const NodeAudit& node) {
   for (const std::string& line : node.remedy) {
     const std::string key = line.substr(0, line.find(':'));

@@ -11,7 +11,7 @@ namespace {
 using namespace test;
 using sim::DeviceState;
 
-constexpr Time heartbeat = 100ms;  // of the master: the last one is so old at most
+constexpr Time heartbeat = 100ms;  // period of the master: its last heartbeat is at most this old
 
 class Machine {
  public:
@@ -34,7 +34,7 @@ class Machine {
   void master_is_dead_for(Time span) { plant_.run_without_master(span); }
 
   const NodeAudit& reported(std::size_t index) const { return reported_.nodes[index]; }
-  /// A STOPPED device's objects stand still until somebody wakes it.
+  /// Commands PRE-OPERATIONAL, because the objects of a STOPPED device do not change.
   void wake(std::uint8_t node) {
     const std::array frames{make_frame(CobId::base(0), {0x80, node})};
     plant_.world.attach().send(frames, plant_.world.now());
@@ -103,7 +103,7 @@ TEST_P(MasterDies, AndTheDriveDoesWhatTheAuditDeclared) {
 
 TEST_P(MasterDies, AndTheOutputsDoWhatTheAuditDeclared) {
   const Case what = GetParam();
-  const bool keeps_all = what.abort_connection == 0;  // here: the error mode
+  const bool keeps_all = what.abort_connection == 0;  // this test uses the value as the error mode
   const std::string mode = keeps_all ? "0" : what.abort_connection == 1 ? "0x0F" : "0xFF";
   Machine machine{two_nodes(
       {}, {"heartbeat_consumer: " + std::string{what.watches ? "true" : "false"},
@@ -152,7 +152,7 @@ std::vector<Case> cases() {
 
 INSTANTIATE_TEST_SUITE_P(EveryWay, MasterDies, testing::ValuesIn(cases()));
 
-/// Bus terminals: they know guarding, and act when SYNC stays away.
+/// Bus terminals. They support guarding, and react when SYNC is missing.
 struct TerminalCase {
   std::string keys;
   bool sync;
@@ -195,7 +195,8 @@ INSTANTIATE_TEST_SUITE_P(EveryWay, TerminalsWithoutMaster,
                                          TerminalCase{guarded + ", life_time_factor: 3", false},
                                          TerminalCase{guarded + ", life_time_factor: 3", true}));
 
-/// The verdicts of the demo networks; families whose outputs are their maker's own promise nothing.
+/// Compares the results of the audit for the demo networks with the devices. Where the outputs of a
+/// family are manufacturer-specific, the audit makes no statement about them.
 TEST(FamiliesWithoutMaster, ChangeTheirStateWhenTheAuditDeclaredSo) {
   for (const char* demo :
        {"lenze8400", "plain301", "astraada_drv28", "beckhoff", "sixteen_nodes"}) {

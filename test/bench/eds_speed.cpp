@@ -29,7 +29,7 @@ std::string sub_object(const std::string& section, const std::string& name, unsi
          "\r\nLowLimit=0\r\nHighLimit=120\r\nParameterValue=" + hex(number % 250, 2) + "\r\n\r\n";
 }
 
-/// Of four objects three are VARs, one is a record of 30 sub-objects.
+/// Three of four objects are VARs, the fourth is a record of 30 sub-objects.
 std::string dense_dcf(std::size_t size) {
   std::string list;
   std::string objects;

@@ -10,8 +10,8 @@ struct EightOptions {
   std::uint32_t bitrate = 1'000'000;
 };
 
-/// `nodes` devices with one TPDO and one RPDO of eight UNSIGNED8 each: the load of the peers'
-/// figures.
+/// Makes a plan of `nodes` devices with one TPDO and one RPDO of eight UNSIGNED8 each. The figures
+/// of the master that takt is compared with were measured with this load.
 inline BusPlan eight_u8(EightOptions options) {
   BusPlan plan;
   plan.name = "bench";

@@ -1,6 +1,6 @@
-// How many images of a running taktd reach a subscriber later than half a period after SYNC, beside
-// a bare loop of clock_nanosleep with the same period in the same time: what the loop is late by,
-// the machine has done to everybody.
+// Counts the images of a running taktd that reach a subscriber later than half a period after SYNC.
+// At the same time, a bare loop of clock_nanosleep runs with the same period. The lateness of this
+// loop is caused by the machine, not by takt.
 //
 //   image_delay [SECONDS [LCM_URL]]     60 s, LCM's own URL
 #include <algorithm>
@@ -48,7 +48,7 @@ void bare_loop(const std::atomic<bool>& ends, Delays& delays) {
   for (Time next = monotonic_now(); !ends; next += default_period) {
     sleep_until(next);
     delays.all.push_back(monotonic_now() - next);
-    next = std::max(next, monotonic_now() - default_period);  // what was missed is not made up for
+    next = std::max(next, monotonic_now() - default_period);  // missed periods are not repeated
   }
 }
 
@@ -83,7 +83,8 @@ int main(int argc, char** argv) {
   }
   images.print("images", default_period / 2);
   bare.print("bare loop", default_period / 2);
-  // An image is there some time after SYNC anyhow; what is left of half a period is less.
+  // An image has some delay even on an idle machine. The loop is compared with what this delay
+  // leaves of half a period.
   bare.print("bare loop", default_period / 2 - images.median());
   return 0;
 }

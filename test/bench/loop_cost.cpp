@@ -1,9 +1,10 @@
-// What one cycle of the bus loop costs, the port itself not counted.
+// Measures what one cycle of the bus loop costs, without the port.
 //
-//   loop_cost NODES [--receive-path] [--recorded]    one line: system calls and allocations per
-//   cycle valgrind --tool=callgrind --collect-atstart=no loop_cost ...    collects 100 steady
-//   cycles, or
-//       of them only the path from the return of receive() to the published image
+//   loop_cost NODES [--receive-path] [--recorded]
+//       prints one line: system calls and allocations per cycle
+//   valgrind --tool=callgrind --collect-atstart=no loop_cost ...
+//       collects 100 steady cycles; with --receive-path only the path from the return of receive()
+//       to the published image
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -25,8 +26,8 @@ using namespace takt;
 
 bool collecting = false;
 
-bool path_only = false;  // collect from the return of receive() to the published image
-int clock_reads = 0;     // until the image is published, counted from there
+bool path_only = false;  // collect only from the return of receive() until the image is published
+int clock_reads = 0;     // readings of the clock that remain until the image is published
 
 struct PauseCallgrind {
   [[gnu::always_inline]] void enter() noexcept {
@@ -37,7 +38,7 @@ struct PauseCallgrind {
   }
   [[gnu::always_inline]] void on_received() noexcept {
     if (!collecting || !path_only) return;
-    clock_reads = 2;  // the time of the image, and the next phase
+    clock_reads = 2;  // one for the time of the image, one for the next phase
     CALLGRIND_TOGGLE_COLLECT;
   }
   [[gnu::always_inline]] void on_now() noexcept {
@@ -47,12 +48,12 @@ struct PauseCallgrind {
 
 using Memory = bench::MemoryPort<PauseCallgrind>;
 
-/// `P` and `L` are the port of memory and the direct link, or those that record.
+/// `P` and `L` are the port in memory and the direct link, or the port and the link that record.
 template <class P, class L>
 class Bench {
  public:
   Bench(unsigned nodes, bool rpdos)
-      // A wire on which 120 nodes fit a cycle of one round of services.
+      // At this bit rate, 120 nodes fit into one cycle with one round of services.
       : plan_{bench::eight_u8({.nodes = nodes,
                                .rpdos = rpdos,
                                .period = std::chrono::milliseconds{40},
@@ -63,7 +64,7 @@ class Bench {
     loop_->start();
     run(20);  // heartbeats: every node is OPERATIONAL
     port.alive = true;
-    run(50);  // the arrival of the PDOs is learned
+    run(50);  // the loop learns when the PDOs arrive
   }
   void run(int cycles) {
     for (int i = 0; i < cycles; ++i) {

@@ -7,9 +7,9 @@
 
 namespace takt::bench {
 
-/// A port in memory: every device answers each SYNC at once. Counts the calls that are system calls
-/// with a real port. `Hook` is told when the loop enters and leaves the port, when it has received
-/// and when it reads the clock.
+/// A port in memory: every device answers each SYNC at once. The port counts the calls that are
+/// system calls with a real port. It calls `Hook` when the loop enters and leaves the port, when
+/// the loop has received, and when the loop reads the clock.
 template <class Hook>
 class MemoryPort {
  public:
@@ -54,7 +54,7 @@ class MemoryPort {
 
   std::uint64_t calls = 0;
   bool alive = false;      ///< false: heartbeats instead of PDOs
-  std::size_t silent = 0;  ///< so many devices do not answer
+  std::size_t silent = 0;  ///< number of devices that do not answer
 
  private:
   template <class F>

@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 
 const Frame frame = make_frame(CobId::base(0x181), {1, 2, 3, 4, 5, 6, 7, 8});
 
-/// Only the eight values out of the frame.
+/// Measures only the copy of the eight values from the frame.
 void unpack_pdo(benchmark::State& state) {
   const BusPlan plan = bench::eight_u8({});
   std::vector<FieldProgram> fields;
@@ -29,7 +29,7 @@ void unpack_pdo(benchmark::State& state) {
 }
 BENCHMARK(unpack_pdo);
 
-/// Look-up by COB-ID, length, expected set, time stamp, values.
+/// Measures the whole reception: look-up by COB-ID, length, expected set, time stamp, values.
 void receive_pdo(benchmark::State& state) {
   const BusPlan plan = bench::eight_u8({});
   const auto events = std::make_unique<EventQueue>();
@@ -45,7 +45,8 @@ void receive_pdo(benchmark::State& state) {
 }
 BENCHMARK(receive_pdo);
 
-/// Freshness, time to live, values, frame: a new command for each of 32 RPDOs every time.
+/// Measures the sending: freshness, time to live, values, frame. Each of the 32 RPDOs has a new
+/// command every time.
 void send_pdo(benchmark::State& state) {
   constexpr std::int64_t nodes = 32;
   const BusPlan plan = bench::eight_u8({.nodes = nodes});

@@ -1,6 +1,6 @@
-// How late SYNC is handed over, against a bare clock_nanosleep loop that sends one frame and throws
-// away what comes: the same thread, the same kind of socket, the same devices, in turns.
-// Microseconds.
+// Measures in microseconds how late the bus loop hands SYNC to the socket. A bare clock_nanosleep
+// loop, which sends one frame and discards what it receives, is measured in turns with it: on the
+// same thread, with the same kind of socket and the same devices.
 //
 //   sync_lateness [BLOCKS [CYCLES]]     5 blocks of 1000 cycles of 1 ms for each of the four
 #include <algorithm>

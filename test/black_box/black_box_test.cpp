@@ -14,11 +14,11 @@
 
 namespace {
 
-std::atomic<int> remover{0};  // thread that removed a file last
+std::atomic<int> remover{0};  // the thread that last removed a file
 
 }  // namespace
 
-/// In the place of the C library's, for this program.
+/// Replaces remove() of the C library in this program.
 extern "C" int remove(const char* path) noexcept {
   remover = ::gettid();
   return ::unlink(path) == 0 ? 0 : ::rmdir(path);
@@ -44,7 +44,7 @@ class BlackBoxTest : public testing::Test {
     ASSERT_TRUE(opened) << opened.error();
     box = std::move(*opened);
   }
-  /// A second of the front thread.
+  /// Runs the front thread for this time.
   void pass(Time time) {
     const Time end = now + time;
     for (; now < end; now += 100ms) {
@@ -195,7 +195,7 @@ TEST_F(BlackBoxTest, DoesNotWaitForABusThreadThatBeginsNoCycleAnyMore) {
   EXPECT_TRUE(files().empty());
 }
 
-/// A limit to the size of files in the place of a full disk.
+/// A limit of the size of files, which imitates a full disk.
 class FullDisk {
  public:
   FullDisk() {

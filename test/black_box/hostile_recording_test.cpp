@@ -21,7 +21,7 @@ void overwrite(const std::filesystem::path& path, const std::string& text) {
   std::ofstream{path, std::ios::binary | std::ios::trunc} << text;
 }
 
-/// A good recording, to be spoilt.
+/// A good recording, which the tests damage.
 class HostileRecording : public testing::Test {
  protected:
   HostileRecording() {

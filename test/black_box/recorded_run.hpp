@@ -47,7 +47,7 @@ class RecordedRun {
   std::vector<Event> events;
   std::function<void()> each_cycle = [] {};
 
-  /// Writes what the tape holds now; recording goes on.
+  /// Writes the present content of the journal; the recording continues.
   std::filesystem::path write(const std::filesystem::path& stem, const std::string& follows = {}) {
     journal.want();
     cycle();

@@ -22,8 +22,7 @@ constexpr motion::Limits limits{.max_velocity = 3.0,
                                 .min_acceleration = -20.0,
                                 .jerk = 400.0};
 
-/// Enables both axes, then moves and stops them at random; its signs of life are missing now and
-/// then.
+/// Enables both axes, then moves and stops them at random. Some of its signs of life are missing.
 class RestlessFront {
  public:
   explicit RestlessFront(RecordedRun& run) : run_{run} {
@@ -52,7 +51,7 @@ class RestlessFront {
       exchange.motions.push({.kind = motion::MessageKind::stop, .sender = 0, .axis = 1});
     }
   }
-  /// Steps that each take longer than the drive.
+  /// Commands each state for longer than the drive needs to reach it.
   void enable() {
     const std::int64_t word = run_.world.now() < 1200ms ? 0x06 : run_.world.now() < 1350ms ? 7 : 15;
     const ImageLayout& layout = run_.network.plan.layout;
@@ -85,7 +84,8 @@ class RestlessFront {
     run_.exchange->motions.push(message);
     if (id_ % 3 == 0) stream(axis, from);
   }
-  /// Points to the order that was sent last. The axis ends at rest, or moves at the last point.
+  /// Sends points to the order that was sent last. The axis ends at rest, or moves at the last
+  /// point.
   void stream(std::uint8_t axis, const motion::State& from) {
     motion::MotionMessage message{.kind = motion::MessageKind::points, .axis = axis};
     message.points.order = id_;

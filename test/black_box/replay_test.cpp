@@ -26,7 +26,8 @@ void overwrite(const std::filesystem::path& path, const std::string& text) {
   std::ofstream{path, std::ios::binary | std::ios::trunc} << text;
 }
 
-/// Two nodes, one of them lost and back, the other one resets; commands and requests meanwhile.
+/// Faults of two nodes: one is lost and comes back, the other resets. Commands and requests
+/// continue meanwhile.
 sim::Faults bad_day() {
   return {{.kind = sim::FaultKind::power_off, .node = 1_node, .at = 1500ms, .until = 2200ms},
           {.kind = sim::FaultKind::loss, .at = 2500ms, .until = 2600ms, .probability = 0.3},
@@ -237,7 +238,7 @@ TEST(Replay, OfARunMuchLongerThanTheTapeTakesTheSameDecisions) {
 
 TEST(Replay, WithoutStartAndCheckpointIsRefusedWithTheReason) {
   const Folder folder;
-  RecordedRun run{"two_axes.yaml", {}, 64 << 10};  // a checkpoint would take too much of it
+  RecordedRun run{"two_axes.yaml", {}, 64 << 10};  // too small for a checkpoint
   run.run_until(6s);
   run.write(folder / "ring");
 
@@ -263,7 +264,7 @@ TEST(Replay, FromTheMiddleOfARunOfAnotherNetworkIsRefused) {
   EXPECT_NE(outcome.difference->find("other nodes or PDOs"), std::string::npos);
 }
 
-/// Anything goes wrong, at any time of eight seconds.
+/// Random faults of all these kinds, at any time of eight seconds.
 sim::Faults any_day(const BusPlan& plan, std::uint64_t seed) {
   using enum sim::FaultKind;
   constexpr std::array kinds{power_off,    loss,           delay,  mute_sdo, no_heartbeat,
@@ -290,7 +291,7 @@ sim::Faults any_day(const BusPlan& plan, std::uint64_t seed) {
   return faults;
 }
 
-/// Every checkpoint of a run is as good a beginning as the start itself.
+/// A replay from each checkpoint must give the same result as a replay from the start.
 void expect_each_checkpoint_leads_to_the_same(RecordedRun& run) {
   const Folder folder;
   keep_busy(run);
@@ -329,7 +330,7 @@ INSTANTIATE_TEST_SUITE_P(Demos, EachCheckpoint,
                                          std::pair{"beckhoff", 1024}, std::pair{"plain301", 1024},
                                          std::pair{"astraada_drv28", 1024}));
 
-/// TAKT_REPLAY_SEEDS=500 for more.
+/// TAKT_REPLAY_SEEDS=500 runs 500 seeds instead of 8.
 TEST(Replay, FromEachCheckpointOfAnyDayTakesTheSameDecisions) {
   const char* const wanted = std::getenv("TAKT_REPLAY_SEEDS");
   const int seeds = wanted != nullptr ? std::atoi(wanted) : 8;

@@ -137,7 +137,7 @@ TEST_F(FoundEnabled, IsConfirmedWhereItIsDisabledAlready) {
   })) << "it is only asked";
 }
 
-/// The drive has this device type and aborts the read of its statusword.
+/// A drive with the given device type that aborts the read of its statusword.
 class FoundWithoutStatusword : public FoundEnabled {
  protected:
   explicit FoundWithoutStatusword(std::uint8_t profile_low = 0x92, std::uint8_t profile_high = 0x01)

@@ -33,7 +33,7 @@ template <class Condition>
 bool soon(SocketCanPort& port, Condition condition) {
   const Time until = port.now() + limit;
   std::array<StampedFrame, 8> some;
-  bool met = condition();  // asked no more often than needed: it may send
+  bool met = condition();  // called only as often as needed, because it may send
   while (!met && port.now() < until) {
     port.wait_frame(port.now() + std::chrono::milliseconds{20});
     port.receive(some);

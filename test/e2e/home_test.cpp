@@ -12,8 +12,8 @@
 namespace takt::test {
 namespace {
 
-/// The shoulder homes at its present position, the elbow by a switch, or by a method that its drive
-/// does not have. It leaves the switch at `speed_zero`, rad/s.
+/// The shoulder homes at its present position. The elbow homes by a switch, or by a method that its
+/// drive does not have; it leaves the switch at `speed_zero`, rad/s.
 std::filesystem::path homing_network(const std::filesystem::path& folder,
                                      const std::string& method_of_elbow,
                                      const std::string& speed_zero) {
@@ -30,7 +30,7 @@ std::filesystem::path homing_network(const std::filesystem::path& folder,
   });
 }
 
-/// The homing run has not ended before a busy machine has ended it.
+/// At this speed, the homing run lasts longer than a busy machine needs for the rest of the test.
 const std::string slow = "0.001";
 
 class Home : public ::testing::Test {

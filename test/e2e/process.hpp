@@ -41,7 +41,7 @@ struct Ended {
 };
 Ended run(std::vector<std::string> arguments, const std::filesystem::path& folder);
 
-/// Returns true if a program tells that a motion was stopped because the bus thread has missed
+/// Returns true if a program reports that a motion was stopped because the bus thread has missed
 /// cycles, as it does on a busy machine.
 bool missed_cycles(const std::string& output);
 

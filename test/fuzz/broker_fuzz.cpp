@@ -92,7 +92,8 @@ void act(const Client& client, std::uint8_t what, Input& input) {
 
 }  // namespace
 
-/// Any bytes of several connections into the broker of tcpq://. It ends with nobody connected.
+/// Sends any bytes over several connections to the broker of tcpq://. At the end, nobody is
+/// connected.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Input input{data, size};
   {

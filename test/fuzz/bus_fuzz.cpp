@@ -25,8 +25,8 @@ const takt::LoadedNetwork& network() {
   return loaded;
 }
 
-/// The whole master on a simulated bus in virtual time, and somebody who sends what the input says:
-/// beside the simulated devices, or in the place of those that are off.
+/// The whole master on a simulated bus in virtual time, and a sender whose frames come from the
+/// input. It sends in addition to the simulated devices, or in place of devices that are off.
 class Bus {
  public:
   explicit Bus(std::uint8_t devices_off)
@@ -59,7 +59,7 @@ class Bus {
   void run(unsigned cycles) {
     for (unsigned i = 0; i < cycles; ++i) cycle();
   }
-  /// The ordered stop ends in its time, whatever the bus does.
+  /// The ordered stop must end within its time limit, whatever happens on the bus.
   void stop() {
     master_.request_stop();
     const Time until = world_.now() + network().plan.stop_timeout + std::chrono::seconds{2};
@@ -99,7 +99,7 @@ class Bus {
     const auto bytes = input.bytes(length);
     std::copy(bytes.begin(), bytes.end(), frame.data.begin());
   }
-  /// One that may fit: the master's question is repeated, with another command specifier.
+  /// Makes an SDO answer of a node from any eight bytes.
   Frame sdo_answer(Input& input) const {
     Frame answer{.id = CobId::base(0x580U + node(input))};
     fill(answer, input, 8);
@@ -128,7 +128,7 @@ class Bus {
     stranger_.send({&frame, 1}, world_.now());
   }
 
-  /// A request of an application.
+  /// Submits a request of an application.
   void ask(Input& input) {
     takt::Request request;
     request.id = asked_ + 1;
@@ -145,7 +145,7 @@ class Bus {
     request.size = static_cast<std::uint16_t>(data.size());
     asked_ += master_.submit(request);
   }
-  /// Set-points of an application.
+  /// Sets set-points of an application.
   void command(Input& input) {
     const auto& layout = network().plan.layout;
     const std::size_t signal = layout.inputs + input.byte() % layout.outputs();
@@ -165,7 +165,7 @@ class Bus {
 
 }  // namespace
 
-/// Any frames and requests into the whole master: SDO, PDO, NMT, EMCY, heartbeats, LSS.
+/// Sends any frames and requests to the whole master: SDO, PDO, NMT, EMCY, heartbeats, LSS.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Input input{data, size};
   const std::uint8_t options = input.byte();

@@ -19,7 +19,7 @@ void demand(bool holds) {
   if (!holds) __builtin_trap();
 }
 
-/// A NaN equals nothing.
+/// Real values are not compared, because a NaN equals nothing.
 bool same(const std::optional<takt::Value>& a, const std::optional<takt::Value>& b) {
   return a == b || (a && b && std::holds_alternative<double>(*a));
 }
@@ -28,7 +28,8 @@ bool is_set(const takt::DcfOptions& options, takt::ObjectKey key) {
   return std::ranges::find(options.values, key, &takt::DcfValue::object) != options.values.end();
 }
 
-/// Each object that `before` has, with its values but for those that were set.
+/// Demands that `after` has each object of `before` with its values, except for the values that
+/// were set.
 void demand_objects(const takt::ObjectDictionary& before, const takt::ObjectDictionary& after,
                     const takt::DcfOptions& options = {}) {
   for (const auto& object : before.objects) {
@@ -46,7 +47,8 @@ void demand_objects(const takt::ObjectDictionary& before, const takt::ObjectDict
   }
 }
 
-/// Gives the last objects a value: the DCF has them, and the objects that the file had.
+/// Gives the last objects a value. The DCF must have these values and the other objects of the
+/// file.
 void write_as_dcf(std::string_view text, const takt::EdsFile& file) {
   takt::DcfOptions options{.node = file.dictionary.node_id,
                            .baudrate_kbit = 500,
@@ -70,14 +72,14 @@ void write_as_dcf(std::string_view text, const takt::EdsFile& file) {
   }
 }
 
-/// Nothing set: the text stays to the byte, but for UTF-16.
+/// If no value is set, the written text must equal the text that was read. UTF-16 is an exception.
 void write_unchanged(std::string_view text, const takt::EdsFile& file) {
   const auto& findings = file.findings;
   if (std::ranges::find(findings, "utf-16", &takt::Finding::rule) != findings.end()) return;
   demand(takt::write_dcf(text, "fuzz.dcf", {}).text == text);
 }
 
-/// The configuration, as bytes and back.
+/// The configured values must stay the same when they are encoded to bytes and decoded.
 void write_concise(const takt::EdsFile& file) {
   takt::Report report{"fuzz.eds"};
   const auto entries = takt::configured_values(file.dictionary, report);
@@ -86,7 +88,8 @@ void write_concise(const takt::EdsFile& file) {
   demand(again.has_value() && *again == entries);
 }
 
-/// Any bytes as a concise DCF: what is read is what they begin with.
+/// Reads any bytes as a concise DCF. The entries, encoded again, must be the first bytes of the
+/// input.
 void read_concise(std::span<const std::byte> bytes) {
   const auto entries = takt::decode_concise_dcf(bytes);
   if (!entries || bytes.empty()) return;
@@ -94,7 +97,8 @@ void read_concise(std::span<const std::byte> bytes) {
   demand(again.size() <= bytes.size() && std::ranges::equal(again, bytes.first(again.size())));
 }
 
-/// Mended once, a file has all that it had, and nothing is left to mend.
+/// A corrected file must have all objects that it had before, and a second correction must find
+/// nothing.
 void mend(std::string_view text, const takt::EdsFile& file) {
   const auto fixed = takt::fix_eds(text, "fuzz.eds");
   demand(fixed.readable == file.readable);
@@ -106,7 +110,7 @@ void mend(std::string_view text, const takt::EdsFile& file) {
 
 }  // namespace
 
-/// Any bytes as an EDS, through everything that looks at one or writes one.
+/// Gives any bytes as an EDS to everything that reads or writes an EDS.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text{reinterpret_cast<const char*>(data), size};
   read_concise(std::as_bytes(std::span{data, size}));

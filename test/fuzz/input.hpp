@@ -6,12 +6,12 @@
 
 namespace takt::fuzz {
 
-/// Ends the program where `holds` is false, so that libFuzzer keeps the input.
+/// Ends the program if `holds` is false, so that libFuzzer keeps the input.
 inline void demand(bool holds) {
   if (!holds) __builtin_trap();
 }
 
-/// The bytes of one input, taken from the front. Behind the end all numbers are 0.
+/// The bytes of one input, taken from the front. After the last byte, all numbers are 0.
 class Input {
  public:
   Input(const std::uint8_t* data, std::size_t size) : left_{data, size} {}
@@ -24,13 +24,13 @@ class Input {
     left_ = left_.subspan(1);
     return first;
   }
-  /// Little endian, of `width` bytes.
+  /// Takes a little-endian number of `width` bytes.
   std::uint64_t number(unsigned width) noexcept {
     std::uint64_t value = 0;
     for (unsigned i = 0; i < width; ++i) value |= std::uint64_t{byte()} << (8 * i);
     return value;
   }
-  /// The next `size` bytes, or as many as are left.
+  /// Takes the next `size` bytes, or as many as are left.
   std::span<const std::uint8_t> bytes(std::size_t size) noexcept {
     const auto some = left_.first(size < left_.size() ? size : left_.size());
     left_ = left_.subspan(some.size());

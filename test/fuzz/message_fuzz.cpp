@@ -21,7 +21,7 @@ using takt::fuzz::Input;
 
 constexpr std::int64_t session = 7;
 
-/// Hands over what the input has put into it, and keeps nothing of what is published.
+/// Delivers the messages that the test has put into it, and discards what is published.
 class Inbox final : public takt::Transport {
  public:
   bool publish(const std::string& channel, Bytes) override {
@@ -55,7 +55,7 @@ void fill_numbers(std::vector<T>& numbers, std::size_t count, unsigned width, In
 
 std::string word(Input& input) { return std::string{input.text(input.byte() % 32)}; }
 
-/// The gateway of a booted master, and somebody who sends it messages.
+/// The gateway of a booted master, and a sender whose messages come from the input.
 class Gateway {
  public:
   Gateway() : bridge_{master_.master, lcm_, clocks_, options(), [](const takt::Notice&) {}} {}
@@ -90,7 +90,7 @@ class Gateway {
     options.motions = true;
     return options;
   }
-  /// The newest cycle, one near it, or any.
+  /// Returns the newest cycle, one near it, or any number.
   std::int64_t cycle_number(Input& input) const {
     const auto newest = static_cast<std::int64_t>(bridge_.status().bus.cycle);
     const std::uint8_t how = input.byte();
@@ -113,7 +113,7 @@ class Gateway {
     message.num_values = static_cast<std::int32_t>(count);
     return message;
   }
-  /// Any number as a position or a limit, with some that a command would have.
+  /// Returns any number for a position or a limit, often one that a real command would have.
   static double number(Input& input) {
     constexpr std::array usual{0.0, 0.5, -1.0, 2.0, 20.0, 400.0};
     const std::uint8_t which = input.byte();
@@ -187,7 +187,7 @@ class Gateway {
     for (const std::uint8_t byte : input.bytes(input.byte())) message.data.push_back(byte);
     message.size = static_cast<std::int32_t>(message.data.size());
   }
-  /// As it is encoded, with a byte changed, or cut.
+  /// Sends the encoded message: as it is, with one byte changed, or cut.
   template <class Message>
   void send(const std::string& channel, const Message& message, Input& input) {
     std::vector<std::byte> buffer;
@@ -203,7 +203,7 @@ class Gateway {
     const std::string& channel = heard[input.byte() % heard.size()];
     lcm_.put(channel, std::as_bytes(input.bytes(input.byte())));
   }
-  /// Any bytes as the set-points of one node.
+  /// Sends any bytes as the set-points of one node.
   void send_typed(Input& input) {
     static const auto heard = takt::TypedChannels::heard(takt::fuzz::demo_network().plan);
     const std::string& channel = heard[input.byte() % heard.size()];
@@ -218,7 +218,7 @@ class Gateway {
 
 }  // namespace
 
-/// Any messages on the channels that the daemon hears, into the gateway of a whole master.
+/// Sends any messages to the gateway of a whole master, on the channels that the daemon receives.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Input input{data, size};
   const auto gateway = std::make_unique<Gateway>();

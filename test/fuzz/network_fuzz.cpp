@@ -14,7 +14,8 @@
 
 namespace {
 
-/// The device that a name stands for, at one node id. Any name is one of three files, read once.
+/// Returns the device for the name of a device file, at one node-ID. Each name selects one of three
+/// files, which are read once.
 const takt::ObjectDictionary* dictionary_of(const takt::NodeSpec& node) {
   if (!node.dcf.given || !node.id.given) return nullptr;
   constexpr std::string_view files[] = {"takt_drive402.eds", "takt_io401.eds", "lenze8400.eds"};
@@ -38,7 +39,7 @@ const std::vector<takt::DeviceData>& device_data() {
 
 }  // namespace
 
-/// Any bytes as a network file and as a file of the device data, up to the printed plan.
+/// Reads any bytes as a network file and as device data, up to the printed plan.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text{reinterpret_cast<const char*>(data), size};
   takt::Findings findings;

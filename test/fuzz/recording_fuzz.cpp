@@ -58,7 +58,7 @@ void change(std::vector<std::uint64_t>& words, Input& input) {
   word = how < 64 ? word ^ std::uint64_t{1} << how : input.number(how % 9);
 }
 
-/// A good recording with some words, frames or ends changed.
+/// Changes some words, frames or ends of a good recording, and replays it.
 void change_and_play(Input& input, std::uint8_t which) {
   takt::LoadedRecording recording = good().of(which);
   auto& part = recording.parts.front();
@@ -83,7 +83,8 @@ void change_and_play(Input& input, std::uint8_t which) {
   play(recording);
 }
 
-/// Any three files: each but the last with its length before it.
+/// Makes the three files of a recording from any bytes. In the input, each file but the last
+/// follows its length.
 void read_and_play(Input& input) {
   const auto stem = good().folder() / "any";
   for (const char* ending : {".events.json", ".journal", ".log"}) {
@@ -100,7 +101,7 @@ void read_and_play(Input& input) {
 
 }  // namespace
 
-/// Any files as a recording of the black box, and any changes of a good one, up to the replay.
+/// Reads any files as a recording of the black box, or changes a good recording, and replays it.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Input input{data, size};
   const std::uint8_t which = input.byte();

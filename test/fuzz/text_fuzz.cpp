@@ -59,8 +59,9 @@ class Gateway {
 
 }  // namespace
 
-/// Any lines of two clients of the text gateway (CiA 309-3). A line that begins with 0x01 comes
-/// from the second one, 0x02 lets time pass, with 0x03 the first one leaves and comes back.
+/// Sends any lines of two clients to the text gateway (CiA 309-3). A line that begins with 0x01
+/// comes from the second client. 0x02 lets time pass. With 0x03, the first client disconnects and
+/// connects again.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string_view text{reinterpret_cast<const char*>(data), size};
   const auto gateway = std::make_unique<Gateway>();

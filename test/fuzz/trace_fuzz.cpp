@@ -25,7 +25,8 @@ const takt::LoadedNetwork& network() {
   return loaded;
 }
 
-/// What `takt dump` does with each line. What it prints is a line of candump with the same frame.
+/// Does with each line what `takt dump` does. The result, printed as a line of candump, must give
+/// the same frame.
 void dump(std::string_view text) {
   takt::FrameText alone;
   takt::FrameText named{network().plan, network().devices};
@@ -50,7 +51,8 @@ void dump(std::string_view text) {
   }
 }
 
-/// What `takt learn` does with the whole: the network file and the EDS files are read again.
+/// Does with the whole text what `takt learn` does. The resulting network file and EDS files are
+/// read again.
 void learn(std::string_view text) {
   std::istringstream in{std::string{text}};
   const takt::learn::LearnedBus bus = takt::learn::read_recording(in, "fuzz.log", {});
@@ -65,7 +67,7 @@ void learn(std::string_view text) {
 
 }  // namespace
 
-/// Any bytes as a recording of candump, a PCAN trace or a Vector log.
+/// Reads any bytes as a recording of candump, a PCAN trace or a Vector log.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text{reinterpret_cast<const char*>(data), size};
   dump(text);

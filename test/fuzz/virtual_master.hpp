@@ -34,7 +34,7 @@ class VirtualMaster {
   MasterRun master;
 };
 
-/// Its clock.
+/// The clocks of a VirtualMaster.
 class VirtualClocks final : public Clocks {
  public:
   explicit VirtualClocks(const VirtualMaster& of) : of_{of} {}

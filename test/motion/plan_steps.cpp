@@ -43,7 +43,7 @@ int run(int tasks) {
     for (int i = 0; i < tasks; ++i) {
       const AxisTask task = random.next(static_cast<TaskClass>(which));
       const std::uint64_t shortest = calls_of(task, 0.0);
-      const std::uint64_t longer = calls_of(task, 10.0);  // for most tasks more than they need
+      const std::uint64_t longer = calls_of(task, 10.0);  // longer than most tasks need
       sum += shortest;
       most_here = std::max({most_here, shortest, longer});
     }

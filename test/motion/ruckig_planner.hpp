@@ -8,7 +8,7 @@
 
 namespace takt::motion {
 
-/// ruckig, another planner of the same motions, for one axis.
+/// Plans the motion of one axis with ruckig, another motion planner.
 class RuckigPlanner {
  public:
   using Trajectory = ruckig::Trajectory<1>;

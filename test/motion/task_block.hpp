@@ -14,23 +14,23 @@
 
 namespace takt::motion {
 
-/// What was seen of the tasks of one class. It lies in memory that survives a crash of the process
-/// that writes it.
+/// Results of the tasks of one class. They lie in memory that survives a crash of the process that
+/// writes them.
 struct Seen {
   std::uint64_t tasks = 0;
-  std::uint64_t refused = 0;   ///< for want of precision, which only wide limits may be
+  std::uint64_t refused = 0;   ///< too few digits; permitted only for wide limits
   std::uint64_t wrong = 0;     ///< failures of takt
   std::uint64_t compared = 0;  ///< ruckig has a result that keeps the limits and ends at the target
   std::uint64_t crashes = 0;   ///< of ruckig
   double takt_seconds = 0.0;   ///< of processor time, for all tasks
   double other_seconds = 0.0;  ///< of ruckig, for the same tasks
   double end_error = 0.0;      ///< the largest of the motions that are not wrong
-  double excess = 0.0;         ///< the same
+  double excess = 0.0;         ///< the largest of these motions, beyond a limit
   double late = 0.0;  ///< how much longer a motion is than that of ruckig: s / (1 s + its duration)
 
-  // Of the block that runs:
+  // State of the block that runs:
   std::uint64_t next = 0;   ///< first task that is not judged yet
-  std::uint64_t asked = 0;  ///< the task that ruckig plans
+  std::uint64_t asked = 0;  ///< the task that ruckig plans at present
   std::uint64_t crashed_at_size = 0;
   std::array<std::uint64_t, 200> crashed_at{};  ///< tasks at which ruckig has crashed
 

@@ -16,7 +16,7 @@ namespace takt::test {
 class AxesInVirtualTime {
  public:
   static constexpr const char* demo = TAKT_SOURCE_DIR "/share/demo/two_axes.yaml";
-  /// Maps 60B1, and has limits of velocity (4 rad/s) and acceleration (100 rad/s^2).
+  /// This network maps 60B1, and limits velocity (4 rad/s) and acceleration (100 rad/s^2).
   static constexpr const char* velocity_offset =
       TAKT_SOURCE_DIR "/test/motions/data/velocity_offset.yaml";
 

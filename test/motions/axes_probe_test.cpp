@@ -19,7 +19,7 @@ using Edge = ProbeOptions::Edge;
 class AxesProbe : public ::testing::Test {
  protected:
   static constexpr const char* network = TAKT_SOURCE_DIR "/test/motions/data/servos.yaml";
-  static constexpr double near = 5e-3;  // m: the axis turns on while the drive looks at the input
+  static constexpr double near = 5e-3;  // m; the axis still moves until the drive samples the input
 
   AxesProbe() {
     bus_.run(1000);  // until all nodes have booted

@@ -1,5 +1,5 @@
-// Modes in which the program leads the drives: the library of applications with a whole master, its
-// gateway and simulated drives in virtual time.
+// Modes in which the program itself sends the set-points of the drives: the library of applications
+// with a whole master, its gateway and simulated drives in virtual time.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <takt/motion.hpp>
@@ -56,7 +56,8 @@ class AxesSetPoints : public ::testing::Test {
     bus_.run(50);
     EXPECT_NEAR(bus_.position(shoulder), before, 2 * MotionBus::scale);
   }
-  /// The largest velocity that an axis has had in a cycle of this work, by its positions.
+  /// Returns the largest velocity that an axis has in a cycle of this work, computed from its
+  /// positions.
   template <class Work>
   double fastest(Work work) {
     double before = bus_.position(shoulder);
@@ -203,7 +204,7 @@ TEST_F(AxesSetPoints, AStopLowersAVelocityThatTheDrivesFollowAtOnce) {
   EXPECT_EQ(value(shoulder, 0x60FF), 0);
   EXPECT_EQ(value(elbow, 0x60FF), 0);
   EXPECT_GT(falling, 50);
-  // A step of a command that has come late stands for some cycles.
+  // If a command has come late, one step contains the change of several cycles.
   EXPECT_LT(static_cast<double>(steepest) * MotionBus::scale, 1.0);
   expect_rest();
 }

@@ -28,7 +28,7 @@ class GearTasks : public testing::Test {
   }
 
   LoadedNetwork network;
-  // Those of the plan before a test has changed it.
+  // The axes of the plan, before a test changes the plan.
   std::vector<MotionAxis> axes;
   AxisMotionLimits limits{network.plan};
   motion_gear_t gear{};

@@ -1,4 +1,5 @@
-// The dead man of inverters, with the complete master and the simulated devices in virtual time.
+// Inverters that lose their program, with the complete master and the simulated devices in virtual
+// time.
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <memory>

@@ -199,7 +199,7 @@ class MotionBus final : public AxesInVirtualTime {
   void send_controlword(std::size_t axis, std::int64_t word, std::int32_t time_to_live = 0) {
     send_outputs(axis, {{0x6040, word}}, time_to_live);
   }
-  /// The application gives up its nodes.
+  /// The application releases its nodes.
   void release() {
     command_t message{};
     message.schema = message_schema;
@@ -210,7 +210,7 @@ class MotionBus final : public AxesInVirtualTime {
     message.release = 1;
     lcm.send(bridge.channels().command, message);
   }
-  /// What the newest motion_t says of an axis.
+  /// Returns what the newest motion_t reports about an axis.
   axis_motion_t axis(std::size_t i) const {
     return i < lcm.motion.axes.size() ? lcm.motion.axes[i] : axis_motion_t{};
   }

@@ -123,7 +123,8 @@ TEST(MotionHolder, AReleaseStopsTheAxisBeforeItsDriveIsDisabled) {
   }
 }
 
-/// A sign of life from a later image takes the node again, but not the motion.
+/// With a sign of life from a later image, the sender takes the node again, but the motion does not
+/// continue.
 TEST(MotionHolder, AReleaseStopsTheAxisAlsoIfASignOfLifeFollowsInTheSameRound) {
   for (const bool overtakes : {false, true}) {
     MotionBus bus;
@@ -143,7 +144,7 @@ TEST(MotionHolder, AReleaseStopsTheAxisAlsoIfASignOfLifeFollowsInTheSameRound) {
   }
 }
 
-/// It is on its way, or waits to be planned.
+/// The second motion is on its way to the bus thread, or waits to be planned.
 TEST(MotionHolder, AReleaseEndsAMotionThatHasNotBegunAlthoughASignOfLifeFollows) {
   MotionBus bus;
   bus.enable();

@@ -28,7 +28,7 @@ struct MotionLimits : testing::Test {
   BusPlan plan = load_network(MotionBus::demo).plan;
 };
 
-/// 0.05 rad less a count in 2 ms.
+/// The limit allows 0.05 rad less a count in 2 ms.
 TEST_F(MotionLimits, ALimitOfTheStepLimitsTheVelocity) {
   line(LimitKind::step).high = 0.05;
   const AxisMotionLimits limits{plan};

@@ -1,4 +1,4 @@
-// Which sender the gateway takes for the owner of an axis, with a bus thread that the test plays.
+// Which sender the gateway regards as the owner of an axis. The test plays the bus thread.
 #include <gtest/gtest.h>
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace {
 
 using test::MotionBus;
 
-/// The gateway of two axes that stand.
+/// The gateway of two axes at standstill.
 class Desk {
  public:
   Desk()

@@ -18,9 +18,10 @@ using test::standing;
 using test::stopped;
 using test::stopping;
 
-/// The promise of the feature: an application at 50 Hz whose messages come up to 10 ms late, and
-/// which stalls for 300 ms now and then. The drive gets the set-point of each beat: differences of
-/// differences stay as small as the limit of acceleration and the rounding to counts.
+/// The main requirement for motions: the application runs at 50 Hz, its messages come up to 10 ms
+/// late, and it stalls for 300 ms now and then. Nevertheless the drive gets the set-point of each
+/// cycle: the second differences of the set-points stay as small as the limit of acceleration and
+/// the rounding to counts allow.
 TEST(MotionSilence, JitterAndStallsOfTheApplicationDoNotReachTheDrive) {
   MotionBus bus;
   bus.enable();
@@ -58,7 +59,7 @@ TEST(MotionSilence, JitterAndStallsOfTheApplicationDoNotReachTheDrive) {
   EXPECT_FALSE(bus.said("motion_refused", "")) << bus.notices.back().text;
 }
 
-/// The set-points of one motion, while `speaks` decides in which cycles the application sends a
+/// Returns the set-points of one motion. `speaks` decides in which cycles the application sends a
 /// sign of life.
 std::vector<std::int64_t> targets_of_motion(const std::function<bool(int cycle)>& speaks) {
   MotionBus bus;
@@ -124,8 +125,7 @@ TEST(MotionSilence, AFrozenFrontThreadStopsTheAxesAndItsOldMessagesMoveNothing) 
   EXPECT_NEAR(bus.position(0), rest, 1e-3);
 }
 
-/// SIGSTOP of the whole daemon: beats stand still, but the silence of the sender counts by the
-/// clock.
+/// SIGSTOP of the whole daemon: no cycles run, but the clock measures the silence of the sender.
 TEST(MotionSilence, ADaemonThatWasStoppedForLongerThanTheTimeoutStopsTheAxisAtOnce) {
   MotionBus bus{{{.kind = sim::FaultKind::stall_master, .at = 3s, .until = 3600ms}}};
   bus.enable();

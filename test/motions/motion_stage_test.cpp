@@ -138,7 +138,8 @@ TEST(MotionStage, TheGroupStopsIfTheNodeOfOneAxisIsLost) {
   EXPECT_LT(bus.world.now(), std::chrono::milliseconds{4500}) << "its heartbeat is missing";
 }
 
-/// Sharpest bend of the target position that the drive of an axis has received, in counts.
+/// The largest second difference of the target positions that the drive of an axis has received, in
+/// counts.
 class Bend {
  public:
   void observe(std::int64_t target) {
@@ -255,7 +256,7 @@ TEST(MotionStage, AfterAGapOfSyncTheAxesStandEnabledAtTheirLastSetPoints) {
   EXPECT_NEAR(bus.position(0), -1.0, 2e-3);
 }
 
-/// The master goes on with its cycles, and can't send in them.
+/// The master continues with its cycles, but can't send in them.
 TEST(MotionStage, ADriveIsKeptEnabledWhileSyncIsMissingAndItsSenderIsAlive) {
   MovedAxes bus{{{.kind = sim::FaultKind::interface_down,
                   .at = std::chrono::milliseconds{4500},

@@ -1,4 +1,4 @@
-// What the front thread makes of a rotary axis.
+// How the front thread treats a rotary axis.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>

@@ -39,7 +39,7 @@ class MovedAxes final : public AxesInVirtualTime {
   bool enabled(std::size_t axis) const {
     return !values.empty() && (values[axes[axis].statusword] & 0x6F) == 0x27;
   }
-  /// A message of the sender of all orders.
+  /// Sends a sign of life of the sender of all orders.
   void keep_alive() {
     EXPECT_TRUE(master.submit({.kind = motion::MessageKind::heard, .cycle = last_cycle}));
   }
@@ -115,7 +115,7 @@ class MovedAxes final : public AxesInVirtualTime {
     }
     return std::nullopt;
   }
-  /// Leads each drive to Operation enabled in cyclic synchronous position mode.
+  /// Commands each drive to Operation enabled in cyclic synchronous position mode.
   void command_drives() {
     for (std::size_t axis = 0; axis < axes.size() && !values.empty(); ++axis) {
       const std::int64_t word = values[axes[axis].statusword];

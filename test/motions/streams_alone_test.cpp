@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-/// Two axes that stand, in a cycle of 0.2 ms.
+/// Two axes at standstill, with a cycle of 0.2 ms.
 struct StreamsAlone {
   static constexpr double period = 0.0002;
   static constexpr std::uint64_t begin = 100;

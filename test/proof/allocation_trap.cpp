@@ -1,4 +1,4 @@
-// Takes the place of malloc, free and their kin for the whole program.
+// Replaces malloc, free and the related functions in the whole program.
 #include "test/proof/allocation_trap.hpp"
 
 #include <cerrno>

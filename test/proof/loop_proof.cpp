@@ -1,6 +1,6 @@
-// The real bus loop on a real thread: 500 cycles with four nodes that answer, one of which falls
-// silent half-way, recorded for the black box. Its thread may not allocate, free or make any system
-// call but sleep, receive, send and poll.
+// Runs the real bus loop on a real thread, recorded for the black box: 500 cycles with four nodes,
+// one of which stops answering half-way. The thread may not allocate or free memory, and the only
+// system calls that it may make are sleep, receive, send and poll.
 //
 //   loop_proof                 over a socket pair; exits 0
 //   loop_proof --can IFACE     on SocketCAN; the interface goes down and up in between, and the
@@ -42,7 +42,7 @@ using namespace std::chrono_literals;
 constexpr unsigned nodes = 4;
 constexpr std::uint64_t cycles = 500;
 
-/// What a programmer should not do in a cycle.
+/// Breaks the rule once, in a cycle.
 class Breaker final : public Controller {
  public:
   explicit Breaker(std::string_view what) : what_{what} {}
@@ -65,19 +65,20 @@ class Breaker final : public Controller {
   int* before_ = new int{3};
 };
 
-/// What happens to the bus before the cycles that count; on the devices' thread.
+/// An event on the bus before the cycles that count. It runs on the thread of the devices.
 using Mishap = std::function<void()>;
 
 constexpr std::uint64_t beats_before_mishap = 50;
-constexpr std::uint64_t most_cycles = 20 * cycles;  // where it does not end
+constexpr std::uint64_t most_cycles = 20 * cycles;  // limit for a run that does not end
 
-/// Between the threads.
+/// State that both threads use.
 struct Course {
   std::atomic<bool> mishap_over{false};
   std::atomic<bool> done{false};
 };
 
-/// Boot-up and heartbeats of all nodes, and a TPDO of each after every SYNC.
+/// Sends the boot-up messages and heartbeats of all nodes, and a TPDO of each node after every
+/// SYNC.
 template <class P>
 void run_devices(P& port, const Mishap& mishap, Course& course) {
   std::vector<StampedFrame> in(256);
@@ -102,7 +103,7 @@ void run_devices(P& port, const Mishap& mishap, Course& course) {
   }
 }
 
-/// The bus thread: everything is trapped from here.
+/// Runs the loop in the bus thread. Both traps are on from here.
 template <class P>
 void run_trapped(BusLoop<P, RecordedLink>& loop, std::span<const proof::SystemCall> allowed,
                  Course& course) {
@@ -134,7 +135,7 @@ bool recorded(const Journal& journal) {
          std::ranges::any_of(journal.last().read(), is_checkpoint);
 }
 
-/// A loaded machine leaves out periods and outputs; the bus has to have lived all the same.
+/// A loaded machine skips periods and outputs, but the bus must have worked nevertheless.
 bool lively(const Exchange& exchange) {
   StatusSnapshot status;
   exchange.status.read(status);
@@ -146,7 +147,7 @@ bool lively(const Exchange& exchange) {
   return status.bus.frames_received > cycles && status.bus.frames_sent > cycles / 2;
 }
 
-/// How often the interface went down and came up, as the loop has told it.
+/// Returns how often the interface went down and came up, according to the events of the loop.
 std::pair<int, int> interface_events(Exchange& exchange) {
   std::pair<int, int> reported{};
   for (Event event; exchange.events.pop(event);) {
@@ -182,7 +183,7 @@ int prove(const BusPlan& plan, P& master_port, P& device_port, const Circumstanc
   const bool as_reported = interface_events(*exchange) == given.interface_events;
   const bool good = lively(*exchange) && recorded(journal) && as_reported;
   std::fflush(stdout);
-  std::_Exit(good ? 0 : 1);  // the bus thread sleeps on
+  std::_Exit(good ? 0 : 1);  // the bus thread still sleeps
 }
 
 int prove_on_socket_pair(std::string_view to_break) {
@@ -190,7 +191,8 @@ int prove_on_socket_pair(std::string_view to_break) {
   return prove(small_plan(), master_port, device_port, {.to_break = to_break});
 }
 
-/// Looking for an interface that is gone: its flags, its index, filters, binding, the old error.
+/// The calls that look for an interface that is gone: its flags, its index, filters, binding, the
+/// old error.
 constexpr std::array<proof::SystemCall, 5> search{{
     {SYS_ioctl, 1, SIOCGIFFLAGS},
     {SYS_ioctl, 1, SIOCGIFINDEX},

@@ -24,8 +24,8 @@ constexpr unsigned architecture = AUDIT_ARCH_X86_64;
 constexpr unsigned architecture = AUDIT_ARCH_AARCH64;
 #endif
 
-// write and exit_group let the reports of the traps end the process; clock_gettime is a vDSO read
-// on most kernels and a system call on a few.
+// The reports of the traps need write and exit_group. clock_gettime is a vDSO read on most kernels,
+// but a system call on a few.
 constexpr std::array<SystemCall, 7> allowed{{
     {SYS_clock_nanosleep},
     {SYS_recvmmsg},
@@ -62,12 +62,13 @@ sock_filter load(std::size_t offset) {
   return statement(BPF_LD | BPF_W | BPF_ABS, static_cast<unsigned>(offset));
 }
 
-/// Allows this call, or goes on behind these statements.
+/// Appends statements that allow this call. For another call, the program continues after these
+/// statements.
 void append(std::vector<sock_filter>& program, const SystemCall& call) {
   const bool any = call.argument < 0;
   program.push_back(load(offsetof(seccomp_data, nr)));
   program.push_back(jump_if_equal(static_cast<unsigned>(call.number), 0, any ? 1 : 3));
-  if (!any) {  // the lower half comes first
+  if (!any) {  // the lower 32 bits come first
     const auto i = static_cast<std::size_t>(call.argument);
     program.push_back(load(offsetof(seccomp_data, args) + i * sizeof(seccomp_data::args[0])));
     program.push_back(jump_if_equal(call.value, 0, 1));

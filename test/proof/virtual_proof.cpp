@@ -1,7 +1,8 @@
-// The whole master on the simulated bus: 100,000 cycles with 32 nodes after their boot, heartbeats,
-// a node off and on again, SDO requests between. Nothing may be allocated or freed.
+// Runs the whole master on the simulated bus: 100,000 cycles after the boot of 32 nodes, with
+// heartbeats, SDO requests, and a node that is switched off and on. The master may not allocate or
+// free memory.
 //
-//   virtual_proof [CYCLES]     exits 0; 97 and a report where something is allocated
+//   virtual_proof [CYCLES]     exit code 0; 97 and a report if something is allocated or freed
 #include <cstdio>
 #include <cstdlib>
 
@@ -15,7 +16,8 @@ using namespace std::chrono_literals;
 
 constexpr unsigned nodes = 32;
 
-/// The simulation's port; the devices behind it may do what they like.
+/// The port of the simulation. The trap is off inside the port, because the simulated devices may
+/// allocate.
 class ForwardingPort {
   template <class F>
   auto free_for_all(F&& act) noexcept {
@@ -44,13 +46,13 @@ class ForwardingPort {
   SendResult send(std::span<const Frame> out) noexcept { return port_.send(out); }
   PortCondition condition() const noexcept { return port_.condition(); }
 
-  bool armed = false;  ///< the caller is trapped
+  bool armed = false;  ///< the trap is on outside the port
 
  private:
   sim::SimPort& port_;
 };
 
-/// One cycle, nothing allocated in it.
+/// Runs one cycle, in which nothing may be allocated or freed.
 void trapped_cycle(MasterRun& master, ForwardingPort& port) {
   port.armed = true;
   proof::trap_allocations(true);

@@ -1,4 +1,4 @@
-// What the ordered stop says of a drive, where only the device itself knows how it stops.
+// What the ordered stop reports about a drive if only the device itself knows how it stops.
 #include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(AxisVerdict, NamesAVelocityThatWasReadBySdoInTheUnitOfTheFile) {
                                                      HasSubstr("m/s"), Not(HasSubstr("606C")))));
 }
 
-/// Sets the quick stop option code of drive z in the device alone: the device file says 2.
+/// Sets the quick stop option code of drive z only in the device; the device file says 2.
 LoadedNetwork coasting(const test::Folder& folder, std::uint8_t option) {
   LoadedNetwork network = machine(folder);
   auto& objects = network.devices.at(1).objects;

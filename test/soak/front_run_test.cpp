@@ -199,8 +199,8 @@ TEST_F(FrontDefects, ReadingEachCommandBreaksNothing) {
   }
 }
 
-/// A command holds as long as it says, even for years: the network file does not cut it. The
-/// programs of the run ask for 8 cycles and more.
+/// A command is valid for as long as it asks, even for years: the network file does not limit this
+/// time. The programs of the run ask for 8 cycles and more.
 TEST_F(FrontDefects, TheTimeToLiveHasNoLimit) {
   const auto limit = [](BusPlan& plan, std::uint32_t cycles) {
     for (Signal& signal : plan.layout.signals) {

@@ -49,10 +49,10 @@ TEST_F(HomingRuns, ADaemonThatDoesNotRequireHomingIsFound) {
   EXPECT_EQ(what, "no absolute motion without homing");
 }
 
-/// Frames of the shoulder, one after the other, for a judge.
+/// Gives frames of the shoulder to a judge, one after the other.
 class HomingJudgeTest : public HomingRuns {
  protected:
-  /// The TPDOs of a cycle in which the drive tells this, and the RPDO with its next set-point.
+  /// The TPDOs of a cycle with these values of the drive, and the RPDO with its next set-point.
   void cycle(std::uint16_t statusword, std::uint8_t mode, std::int32_t position,
              std::int32_t target) {
     now += network.plan.cycle.period;

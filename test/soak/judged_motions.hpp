@@ -97,7 +97,7 @@ class JudgedMotions : public testing::Test {
     gear.goals.push_back(goal);
     judge.commanded({gear, program, now - 2ms}, now);
   }
-  /// From `begin` on, the axis moves along these limits.
+  /// From `begin` on, the axis moves to `target` within these limits.
   void lead(std::size_t axis, double target, Time begin, const motion::Limits& along = limits) {
     const double from = path[axis](begin);
     const std::vector<motion::AxisTask> tasks{

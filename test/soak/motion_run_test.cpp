@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 
 class MotionDefects : public testing::Test {
  protected:
-  /// Returns true if one of the seeds breaks this invariant; "" stands for any.
+  /// Returns true if one of the seeds breaks this invariant; "" means any invariant.
   bool breaks(const FrontDefect& defect, const std::string& invariant) {
     for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
       const SoakOutcome outcome = soak_front(
@@ -34,7 +34,7 @@ class MotionDefects : public testing::Test {
     }
     return false;
   }
-  /// The daemon receives each message about motions changed.
+  /// Changes each message about motions before the daemon receives it.
   template <class Change>
   static FrontDefect changed(Change change) {
     return {.motion = [change](motion_command_t command, const SeenCycles& cycles) {
@@ -86,7 +86,8 @@ TEST_F(MotionDefects, AGearHasAnotherRatio) {
   EXPECT_TRUE(breaks({.gear = longer}, "a gear keeps its ratio")) << what;
 }
 
-/// The daemon lets each motion outlive the silence of its sender by 10 s, and the drive with it.
+/// The daemon receives each motion with a timeout of 10 s. So the motion and its drive continue for
+/// too long after the sender has fallen silent.
 TEST_F(MotionDefects, ATimeoutLastsTooLong) {
   const auto longer =
       changed([](motion_command_t& command, const SeenCycles&) { command.timeout_ms = 10'000; });
