@@ -15,7 +15,7 @@ def first_identifier(line):
 
 
 def cycles_of(log):
-    """One list of (call, identifier of the first frame) a cycle; those at the ends of the log are not whole."""
+    """Returns a list of (call, identifier of the first frame) for each cycle that the log has completely."""
     cycles = []
     for line in log:
         call = line.split("(")[0]
@@ -28,12 +28,12 @@ def cycles_of(log):
 
 
 def is_service(call, identifier):
-    """SDO, NMT, heartbeat: their frames go out beside those of the cycle."""
+    """Whether the call sends SDO, NMT or heartbeat, whose frames are not those of the cycle."""
     return call == "sendmmsg" and identifier is not None and (identifier == 0 or identifier >= 0x580)
 
 
 def is_troubled(cycle):
-    """A beat was skipped, or SYNC waited for the wire: this machine was too busy."""
+    """Whether a cycle was skipped, or SYNC had to wait for the wire, because this machine was too busy."""
     calls = [call for call, _ in cycle]
     sleeps_again = any(a == b == "clock_nanosleep" for a, b in zip(calls, calls[1:]))
     return sleeps_again or calls[-1] == "recvmmsg" or calls.count("recvmmsg") > 2

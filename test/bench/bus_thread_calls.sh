@@ -1,6 +1,6 @@
 #!/bin/sh
 # bus_thread_calls.sh BIN - strace counts the system calls of the bus thread of a real taktd on a unix: bus, while
-# takt-move moves the axes: the cross-check of what loop_cost counts at the port. Needs strace.
+# takt-move moves the axes. This checks the number that loop_cost counts at the port. Needs strace.
 set -eu
 here=$(cd "$(dirname "$0")/../.." && pwd)
 bin=$(cd "$1" && pwd)

@@ -60,7 +60,7 @@ class Devices(Slaves):
         self.late = self.late or time.time() - message.timestamp > allowed
 
     def await_last(self, command):
-        """Until the thread of the slaves has taken this command of takt."""
+        """Waits until the thread of the slaves has taken this command of takt."""
         until = time.monotonic() + PATIENCE
         while not self.late and time.monotonic() < until:
             if self.commands and self.commands[-1][1][0] == command:
@@ -83,7 +83,7 @@ def bit_rate(interface):
 
 
 def register_bit_rate(interface):
-    """By the bit timing registers BTR0 and BTR1 that the driver wrote last, as it tells in the kernel's log."""
+    """The bit rate by the registers BTR0 and BTR1 that the driver wrote last, according to the kernel's log."""
     log = subprocess.run(["dmesg"], capture_output=True, text=True, check=True).stdout
     btr0, btr1 = (int(number, 16) for number in re.findall(interface + r": setting BTR0=(\w+) BTR1=(\w+)", log)[-1])
     quanta = 1 + (btr1 & 0x0F) + 1 + (btr1 >> 4 & 7) + 1
@@ -100,7 +100,7 @@ def change_to(binaries, kbit, delay, by=()):
 
 
 def judge_rights(binaries):
-    """Who may not change the interface changes no device either."""
+    """If takt may not change the interface, it changes no device either."""
     bus = Devices()
     code, out, said = change_to(binaries, 500, DELAYS[0], without_rights)
     bus.stop()
@@ -109,7 +109,7 @@ def judge_rights(binaries):
 
 
 def judge_change(binaries, kbit):
-    """Where the machine was too slow for the devices, everything is set back, and the delay is longer."""
+    """If the machine was too slow for the devices, the test restores everything and tries a longer delay."""
     begun = bit_rate(MASTER) // 1000
     for delay in DELAYS:
         before, bus = link(MASTER), Devices()
@@ -142,7 +142,7 @@ def judge_change(binaries, kbit):
 
 
 def judge_daemon(binaries):
-    """taktd at the new bit rate, and a device on the other controller."""
+    """taktd boots a device on the other controller at the new bit rate."""
     device = subprocess.Popen([binaries / "takt", "sim", NETWORK, "--bus", DEVICES])
     ear, counts, lock = can.Bus(interface="socketcan", channel=DEVICES), {0x080: 0, 0x185: 0}, threading.Lock()
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""black_box_test.py BIN: a node dies under taktd --black-box; what is written replays, and a changed log does not."""
+"""black_box_test.py BIN: a node dies under taktd --black-box. The recording replays, but not with a changed log."""
 import json
 import pathlib
 import signal
@@ -56,7 +56,7 @@ def record(binaries, folder, network, url):
         check(asked.returncode == 0 and named.exists() and named.parent == box, "takt record names the file", asked)
         if '"recorded"' not in events.read_text():
             sys.exit("recordings are no events")
-        # Both signals wait for it: it is to stop at once, and still writes what it has.
+        # Both signals are pending when taktd continues. It has to stop at once, and still writes its recording.
         daemon.send_signal(signal.SIGSTOP)
         daemon.send_signal(signal.SIGTERM)
         daemon.send_signal(signal.SIGINT)

@@ -5,11 +5,11 @@ test/e2e/dialogues/*.txt were recorded from a taktd with simulated devices (plan
 without --record they are played again and every answer has to be the same. `--record` writes the answers anew.
 
   # ...      comment
-  > line     typed; everything it leads to is waited for before the next line is typed
+  > line     typed; the next line is typed when all answers to this one have come
   ? line     the same, and typed again until the answer is the recorded one: process data and states take some cycles
-  < line     came
-Answers ([n] and #) come in their order, and so do the messages of each node that nobody asked for (1 10 BOOT_UP);
-which of them comes first is not decided by CiA 309-3.
+  < line     received
+Answers ([n] and #) come in their order, and so do the unrequested messages of each node (1 10 BOOT_UP). CiA 309-3
+does not define the order between answers and messages.
 """
 import pathlib
 import socket
@@ -34,7 +34,7 @@ class Client:
         self.socket.sendall(line.encode() + b"\r\n")
 
     def line(self, wait):
-        """None: nothing came in this time."""
+        """Returns the next line, or None if none came in this time."""
         until = time.monotonic() + wait
         while b"\r\n" not in self.unread:
             self.socket.settimeout(max(until - time.monotonic(), 0.001))
@@ -102,7 +102,7 @@ def come(client, count):
 
 
 def apart(lines):
-    """By where they come from: answers, messages of net and node."""
+    """Sorts the lines by their source: answers, or messages of a net and node."""
     out = {}
     for line in lines:
         source = "answers" if line.startswith(("[", "#")) else tuple(line.split()[:2])

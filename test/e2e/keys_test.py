@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""keys_test.py BIN: with `keys`, taktd takes requests of those who have one, whose file may change meanwhile."""
+"""keys_test.py BIN: with `keys`, taktd accepts requests only from programs with a key. The key file may change meanwhile."""
 import pathlib
 import re
 import shutil

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """log_test.py BIN: `takt log` beside a taktd with simulated devices: CSV and MCAP, the end by --for, by a signal and by the end of
-taktd, wrong signals, and what it costs to be wrong."""
+taktd, and wrong arguments."""
 import csv
 import io
 import json

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""memory_test.py BIN: a taktd with sixteen nodes has at most 10 MB of private memory, also where its memory is locked."""
+"""memory_test.py BIN: a taktd with sixteen nodes has at most 10 MB of private memory, even if its memory is locked."""
 import pathlib
 import re
 import subprocess

@@ -2,7 +2,7 @@
 """no_multicast_test.py BIN: on a machine whose only interface is `lo`, taktd and takt find each other without a URL.
 
 LCM's multicast has no route there: taktd says so and serves tcpq on loopback, where takt looks by itself. Runs in
-a network namespace of its own; where none can be had, in one of with-vcan's guest.
+a separate network namespace. If the machine permits none, runs in the guest of with-vcan.
 """
 import json
 import os
@@ -21,7 +21,7 @@ GUEST = [ROOT / "test/support/with-vcan", "-m", "uml", "-t", "180", *NAMESPACES[
 
 
 def enter_namespace(arguments):
-    """Becomes this test, alone with a loopback."""
+    """Starts this test again where the only interface is the loopback. Does not return."""
     again = [sys.executable, os.path.abspath(__file__), *arguments, "--inside"]
     for way in NAMESPACES:
         if subprocess.run([*way, "true"], stderr=subprocess.DEVNULL).returncode == 0:
@@ -30,12 +30,12 @@ def enter_namespace(arguments):
 
 
 def takt_status(binaries):
-    """As somebody types it who knows of no URL."""
+    """Runs `takt status` without a URL, as a user does who knows none."""
     return subprocess.run([binaries / "takt", "status", "--json"], capture_output=True, text=True)
 
 
 def await_status(binaries, daemon):
-    """The first answer; a busy machine may need more than one call."""
+    """Repeats `takt status` until it succeeds: a busy machine may need more than one call."""
     until = time.monotonic() + PATIENCE
     while True:
         status = takt_status(binaries)
@@ -59,7 +59,7 @@ def judge_daemon(said):
 
 
 def judge_taken_port(binaries):
-    """Whoever has the port of the hub may be anybody: taktd does not become a client of his."""
+    """Any program may have the port of the hub, so taktd does not become a client of that program."""
     with socket.create_server(("127.0.0.1", 7700)) as other, tempfile.TemporaryFile("w+") as said:
         daemon = subprocess.Popen([binaries / "taktd", NETWORK, "--bus", "sim", "--rt", "off"], stderr=said)
         try:

@@ -23,7 +23,7 @@ def frames_of(network, takt, folder):
 
 
 def value_of(answer):
-    """Of an expedited upload; None: refused."""
+    """The value of an expedited upload, or None if the device refused it."""
     command = int(answer[:2], 16)
     if command >> 5 != 2:
         return None
@@ -43,8 +43,8 @@ class Boot:
         self.same = True
 
     def take(self, pattern, step):
-        """The next frame, and for SDO its answer, which is returned. NMT enter pre-operational, which a boot sends
-        before its first write, is part of no step."""
+        """Compares the next frame with `pattern`. Returns the answer of an SDO request. NMT enter pre-operational,
+        which a boot sends before its first write, is part of no step."""
         if self.frames[self.at] == self.preoperational and not re.fullmatch(pattern, "000#" + self.preoperational[1]):
             self.at += 1
         cob_id, data = self.frames[self.at]
@@ -60,7 +60,7 @@ class Boot:
         return re.fullmatch(pattern, "{0:03X}#{1}".format(*self.frames[self.at])) is not None
 
     def step(self, step):
-        """Number of the step that follows."""
+        """Follows a step through the frames. Returns the number of the next step."""
         frame, write = step.get("frame"), step.get("write_frame")
         if step["action"] == "skip if same":
             same, self.same = self.same, True

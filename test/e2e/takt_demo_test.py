@@ -15,7 +15,7 @@ from running_daemon import PATIENCE, ROOT, await_text, check, failures
 
 
 def install(binaries, prefix):
-    """As `cmake --install` does. Links would lead the programs back to the tree."""
+    """Copies takt as `cmake --install` does. With links instead of copies, the programs would find the tree."""
     (prefix / "bin").mkdir(parents=True)
     for program in ("takt", "taktd", "takt-move"):
         shutil.copy(pathlib.Path(binaries) / program, prefix / "bin")

@@ -1,5 +1,5 @@
 #!/bin/sh
-# fuzz_one.sh NAME SECONDS OPTION... - test/fuzz/seeds/NAME, and what earlier runs found, go through build/fuzz/bin/NAME_fuzz.
+# fuzz_one.sh NAME SECONDS OPTION... - runs build/fuzz/bin/NAME_fuzz on test/fuzz/seeds/NAME and earlier finds.
 # What this run finds new is kept beside the build, so that the next one goes on from there. Runs beside others of its kind:
 # prints its whole log when it ends.
 set -eu

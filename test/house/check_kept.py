@@ -142,7 +142,7 @@ def keep_bodies(text):
 
 
 def own_keep(body):
-    """keep() of this class, not of a class inside it; None: the class has no keep()."""
+    """The body of keep() of this class, not of a class inside it. None if the class has no keep()."""
     for found in re.finditer(r"\bvoid\s+keep\(Archive& state\)\s*noexcept\s*(\{|;)", body):
         depth = body[:found.start()].count("{") - body[:found.start()].count("}")
         if depth == 0:

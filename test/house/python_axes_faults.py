@@ -247,7 +247,7 @@ def steps(bus):
 
 
 def distance(unit):
-    """How far the targets of the two axes are from their start, in this unit, and whether all went well."""
+    """Returns whether all went well, and how far the targets of the two axes are from their start, in this unit."""
     bus, code, told = run(kind=of_unit(unit))
     far = [max(abs(command[TARGET + axis] - start) for command in bus.commands) for axis, start in enumerate((1000, -500))]
     return code == GOOD, [raw * SCALE[unit] for raw in far]

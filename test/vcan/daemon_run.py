@@ -85,7 +85,7 @@ class DaemonRun:
         self.taktd = self.start([self.binaries / "taktd", self.network, "--events", self.event_file])
 
     def stop_taktd(self):
-        """SIGTERM; the ordered stop ends with 0."""
+        """Sends SIGTERM. The ordered stop must end with exit code 0."""
         self.taktd.send_signal(signal.SIGTERM)
         try:
             code = self.taktd.wait(PATIENCE)
@@ -94,7 +94,7 @@ class DaemonRun:
         check(code == 0, f"taktd ended with exit code {code}")
 
     def dissect(self, least, **known):
-        """Ends the recording; Wireshark's dissector reads it."""
+        """Ends the recording and gives it to Wireshark's dissector."""
         self.candump.terminate()
         self.candump.wait()
         judge_dissector(check, self.log, least, **known)

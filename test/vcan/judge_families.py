@@ -56,7 +56,7 @@ class Device(Bus):
         self.sdo(*self.key, value, self.size)
 
     def poke(self, value):
-        """The same, without a wait for the answer."""
+        """Like change(), but does not wait for the answer."""
         self.send(0x600 + self.node, struct.pack("<BHBI", 0x23 | (4 - self.size) << 2, *self.key, value))
 
     def respond(self):
@@ -74,7 +74,7 @@ ASKED = (0x185, 0x285, 0x186, 0x187, 0x188, 0x289)  # sent on remote request; on
 
 
 def course(devices, letters):
-    """[(unit, action)] of what happens to all these devices."""
+    """[(unit, action)] of the events of all these devices."""
     moments = []
     for device in devices:
         if "E" in letters:
@@ -89,7 +89,7 @@ def course(devices, letters):
 
 
 def run(devices, kind, letters):
-    """When, in units, each device sent its TPDO; devices: {name: Device}."""
+    """Runs the course. Returns the times, in units, at which each device sent its TPDO. devices: {name: Device}."""
     for device in devices.values():
         device.configure(kind, INHIBIT if "I" in letters else 0, TIMER if "T" in letters else 0)
         device.send(0, bytes((0x80, device.node)))
@@ -150,7 +150,7 @@ MASTER_ROWS = [
 
 
 def run_master(binaries):
-    """taktd with all families: its exit code, {identifier: frames} of eight seconds, what `takt param` says."""
+    """Runs taktd with all families. Returns its exit code, {identifier: frames} of 8 s, and the run of `takt param`."""
     taktd = subprocess.Popen([binaries / "taktd", NETWORK, "--for", "14s"])
     time.sleep(3)
     seen = collections.Counter(identifier for _, identifier, _ in Bus().frames(8))

@@ -31,13 +31,13 @@ STATES = (0, 4, 5, 127, 0x80, 0x84, 0x85, 0xFF)
 
 
 def bytes_of(dice, first=None):
-    """Of any length; `first` are the words that mean something."""
+    """Random bytes of any length. `first` has the values of the first byte that have a meaning."""
     data = dice.randbytes(dice.choice((8, 8, 8, dice.randrange(9))))
     return bytes((dice.choice(first),)) + data[1:] if first and data else data
 
 
 def garbage(dice):
-    """(identifier with flags, data): some frames without meaning, and more that are nearly valid."""
+    """Returns a random frame as (identifier with flags, data). Most of these frames are nearly valid."""
     node = dice.choice(NODES)
     kind = dice.randrange(13)
     if kind == 0:
@@ -87,7 +87,7 @@ def states(run):
 
 
 def exchange(run):
-    """The number of the last SYNCs, and the answers of each node to them."""
+    """Returns the number of the last SYNCs, at most ENOUGH, and for each node the number of answers to them."""
     syncs = [frame.number for frame in run.frames() if frame.standard(SYNC)][-ENOUGH:]
     return len(syncs), [run.count(0x180 + node, syncs[0]) for node in NODES] if syncs else []
 

@@ -14,7 +14,7 @@ NETWORK = ROOT / "test/vcan/simulated_axes.yaml"
 NODES = (5, 6)
 PERIOD = 0.010
 ENOUGH = 100  # SYNCs
-LONGER = 1  # s beyond that
+LONGER = 1  # s for which the interface stays down after both nodes are lost
 ROW = 10
 
 

@@ -20,12 +20,12 @@ def writes(frames):
 
 
 def first(frames, identifier, data):
-    """The number of the first such frame, or None."""
+    """The number of the first frame with this identifier and data, or None."""
     return next((f.number for f in frames if f.standard(identifier) and f.data == data), None)
 
 
 def boot(frames):
-    """(boot-up, NMT start) of the node, the first of each."""
+    """The numbers of the first boot-up message of the node and of the first NMT start after it."""
     bootup = first(frames, 0x700 + RIGHT, b"\0")
     start = None if bootup is None else first(frames[bootup - frames[0].number :], NMT, bytes((1, RIGHT)))
     return bootup, start

@@ -30,7 +30,7 @@ def check(good, what):
 
 
 def comes(condition):
-    """Waits generously: the machine that runs this may be busy."""
+    """Waits for the condition, at most 20 s, because the machine may be busy."""
     until = time.monotonic() + 20
     while not condition() and time.monotonic() < until:
         time.sleep(0.02)
@@ -120,7 +120,7 @@ def judge_tool(binaries):
     serials = (0x80000000, 0x7FFFFFFF, 0xFFFFFFFF)
     slaves = [Slave(serial) for serial in serials] + [Slave(7, node_id=9, store_error=2)]
     bus, tool = Slaves("vcan0", slaves), Tool(binaries)
-    slaves[0].configuring = True  # left so by somebody
+    slaves[0].configuring = True  # another LSS master has left it in configuration state
     begun = time.monotonic()
     devices = tool.json("find").get("devices", [])
     took = time.monotonic() - begun

@@ -42,7 +42,7 @@ def abort_of(call, *arguments):
 
 
 def frames_of(network, identifier, seconds, action=lambda: None):
-    """[(time, payload)] of the frames that come after `action`."""
+    """[(time, payload)] of the frames that come within `seconds` after `action`."""
     seen = []
     collect = lambda _, data, stamp: seen.append((stamp, bytes(data)))
     network.subscribe(identifier, collect)

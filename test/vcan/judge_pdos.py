@@ -67,7 +67,7 @@ class Bus:
         return None
 
     def change(self, value):
-        """0x2001:01 comes back in 0x2101:01, the first four bytes of TPDO1."""
+        """Writes 0x2001:01. The device returns the value in 0x2101:01, the first four bytes of TPDO1."""
         self.sdo(0x2001, 1, value, 4)
 
     def configure(self, kind, inhibit=0, timer=0):
@@ -83,7 +83,7 @@ class Bus:
         return abort
 
     def sync(self, count=1):
-        """Frames after so many SYNCs."""
+        """Sends `count` SYNCs and returns the frames of the TPDO that follow them."""
         found = []
         for _ in range(count):
             self.send(0x080)

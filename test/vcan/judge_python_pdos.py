@@ -31,7 +31,7 @@ INPUTS = {"position": 0x6064, "velocity": 0x606C, "count": 0x60FD}
 
 
 class Application:
-    """New set-points with each image; remembers the values that came and the newest state of the PDOs."""
+    """Sends new set-points with each image. Keeps the received values and the newest state of the PDOs."""
 
     def __init__(self, folder):
         subprocess.run(["lcm-gen", "--python", "--ppath", folder, *map(str, (ROOT / "share/lcm").glob("*.lcm"))], check=True)
@@ -86,14 +86,14 @@ def numbers(frames, identifier):
 
 
 def operational(frames):
-    """What was on the bus from the node's start to the end of its last cycle."""
+    """The frames from the NMT start of the node to the next NMT command other than start."""
     begin = next(i for i, f in enumerate(frames) if f[1] == NMT and f[2][0] == START)
     ends = [i for i, f in enumerate(frames) if i > begin and f[1] == NMT and f[2][0] != START]
     return frames[begin:ends[0] if ends else len(frames)]
 
 
 def due(frames, identifier, left_out=()):
-    """[(which time it was due, counted from 1, when it came, value)]"""
+    """[(number of the time at which the PDO was due, from 1; time at which it came; value)]"""
     times = (k for k in itertools.count(1) if k not in left_out)
     return [(k, when, value) for k, (when, value) in zip(times, numbers(frames, identifier))]
 
@@ -145,7 +145,7 @@ def judge_timer(frames, cob_ids):
 
 
 def tardy(frames, cob_ids, key):
-    """How often python, on a busy machine, has sent a TPDO too late. The intended pause does not count."""
+    """How often python-canopen, on a busy machine, has sent a TPDO too late. The intended pause does not count."""
     if key[1] == 1:
         syncs = [f[0] for f in frames if f[1] == SYNC]
         return sum(when - syncs[k * N - 1] > 0.020 for k, when, _ in due(frames, cob_ids[key], LEFT_OUT) if k * N <= len(syncs))

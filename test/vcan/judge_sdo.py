@@ -6,7 +6,7 @@
 2. `takt sim` is the server, python-canopen the client: expedited, segmented and block, both ways.
 3. `taktd` with the simulated device: files through the daemon; python-canopen reads the master's own
    dictionary and asks it for an NMT command.
-`takt dump` and Wireshark's dissector read everything that was said. Runs inside with-vcan. Exit code 1: a check failed.
+`takt dump` and Wireshark's dissector read all frames. Runs inside with-vcan. Exit code 1: a check failed.
 """
 import hashlib
 import pathlib

@@ -14,8 +14,8 @@ COUNT = 0x60FD  # how many set-points came
 
 
 class Device:
-    """`left_out`: at which of the times when a TPDO of type 1 to 240 is due it is not sent, counted from 1.
-    `pause`: (how many SYNCs after the start, seconds) of the PDOs with event timer."""
+    """`left_out`: the numbers, from 1, of the times at which a TPDO of type 1 to 240 is due but not sent.
+    `pause`: PDOs with event timer are not sent after this number of SYNCs, for this number of seconds."""
 
     def __init__(self, network, eds, node_id, left_out=(), pause=(0, 0)):
         self.node = canopen.LocalNode(node_id, eds)
@@ -93,7 +93,7 @@ class Device:
         changed = {ECHO[index] for index in values} | {COUNT}
         for pdo in self.tpdos():
             if pdo.trans_type == 255 and changed & {variable.index for variable in pdo}:
-                self.fill(pdo)  # where its event timer runs, python-canopen sends the new value then
+                self.fill(pdo)  # with an event timer, python-canopen sends the new value when the timer expires
                 if not pdo.event_timer:
                     pdo.transmit()
 

@@ -14,7 +14,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Kind = Obstacle::Kind;
 
-/// Longest time of calls that must end by an obstacle, and of those that must not.
+/// Duration of short waits, and longest time of calls that must end with an obstacle. Other calls
+/// have the default of open().
 constexpr auto short_time = 200ms;
 
 class AxesOnABus : public ::testing::Test {

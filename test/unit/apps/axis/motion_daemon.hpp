@@ -46,7 +46,7 @@ struct MotionDaemon {
   int signs_of_life = 0;
   int releases = 0;
   bool cyclic = true;     ///< false: no further image comes
-  int ignored_stops = 0;  ///< so many stops are lost on their way
+  int ignored_stops = 0;  ///< number of stops that are lost on their way
 };
 
 class MotionDaemonTransport final : public Transport {
@@ -131,7 +131,7 @@ class MotionDaemonTransport final : public Transport {
     }
   }
 
-  /// A gear is a jog whose axes are locked at once.
+  /// This daemon treats a gear as a jog whose axes are locked at once.
   void take(const motion_gear_t& gear) {
     daemon_.gears.push_back(gear);
     motion_command_t command{};

@@ -201,7 +201,7 @@ const Expected expected[] = {
     {"097.eds", 129, 513, 5, 11, 12, "default-outside-limits"},
 };
 
-/// The subject of a case whose subject is another object.
+/// The expected value of a case that is about another object than those in the other files.
 struct ExpectedElsewhere {
   const char* file;
   ObjectKey key;

@@ -335,7 +335,7 @@ TEST_F(StoppedDaemon, BeginsARecordingOnceHoweverOftenItsRequestComes) {
   request_t record = request(5);
   record.service = "record";
   const auto repeat = [&] {
-    for (int i = 0; i < 20; ++i) cycle();  // 80 ms: more than between two ways of one message
+    for (int i = 0; i < 20; ++i) cycle();  // 80 ms: copies of a message are closer to each other
     lcm.arrive(bridge.channels().request, record);
     cycle();
   };

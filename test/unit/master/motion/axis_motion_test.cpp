@@ -26,7 +26,7 @@ TEST(AxisMotion, OfAShortWayHasNoHoldAndLastsTheFourthPartFourTimes) {
 }
 
 TEST(AxisMotion, OfALongWayReachesBothLimits) {
-  // Two ramps of 1 s + 1 s with 1 m, and the rest of 3 m at 1 m/s.
+  // Each of the two ramps takes 1 s + 1 s and covers 1 m. The other 3 m take 3 s at 1 m/s.
   EXPECT_NEAR(shortest({}, {.position = 5.0}), 4.0 + 3.0, 1e-12);
 }
 

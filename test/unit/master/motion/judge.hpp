@@ -7,13 +7,13 @@
 
 namespace takt::motion {
 
-/// What a motion does beside what it should, computed with more digits than the planner has.
+/// The errors of a motion, computed with more digits than the planner has.
 struct Verdict {
   double end_error = 0.0;  ///< of position, velocity and acceleration, relative to their sizes
   double excess = 0.0;     ///< beyond a limit, relative to the limit, once the axis is inside
 };
 
-/// Integrates a motion and looks at it.
+/// Integrates a motion and measures its errors.
 class Judge {
  public:
   Judge(const AxisTask& task, std::span<const Segment> segments) : task_{task} {
@@ -42,7 +42,8 @@ class Judge {
   const Verdict& verdict() const { return verdict_; }
 
  private:
-  /// Less than the excess that is permitted, so that rounding can't make one of a start.
+  /// This is less than the permitted excess, so that the rounding of a start state never counts as
+  /// an excess.
   static constexpr long double tolerance = 1.0L + 5e-10L;
 
   /// Returns true if velocity and acceleration are inside and can stay there.

@@ -278,7 +278,7 @@ TEST(Limits, OfARotaryAxisThatMayNotTurnOverThereAreAWarning) {
   EXPECT_THAT(rotary("", ""), AllOf(HasSubstr("note: "), HasSubstr("does not have this object")));
 }
 
-/// The motions need it, also without any other limit.
+/// Motions need the turn of a rotary axis, even if the output has no other limit.
 TEST(Limits, ATurnBeginsWhereThatOfTheDriveBegins) {
   const std::string range_limit =
       record("607B", "Position range limit", 3) + entry("607Bsub0", "highest", 5, "const", "2") +

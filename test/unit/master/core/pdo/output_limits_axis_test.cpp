@@ -157,8 +157,8 @@ TEST(LimitsAtEnabling, MeasureFromTheLastTargetIfTheActualPositionIsUnknown) {
   EXPECT_EQ(axes.position(), 16);
 }
 
-/// The controlword that is sent when an axis is to be enabled in `mode`, 500 counts away from its
-/// target.
+/// Returns the controlword that is sent when an axis is to be enabled in `mode`, 500 counts away
+/// from its target.
 std::int64_t enabled_in(int mode, int shown) {
   AxisWithModes axis{{.step = 10, .wraps = true}};
   axis.feedback(8, disabled, static_cast<std::int8_t>(shown));

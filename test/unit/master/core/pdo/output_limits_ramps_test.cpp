@@ -20,7 +20,7 @@ constexpr OutputLimit accelerating{
 
 class RampingAxis : public AxisWithModes {
  public:
-  /// The actual velocity stands in place of the actual position.
+  /// In this fixture, the actual velocity is at the place of the actual position.
   explicit RampingAxis(bool measured = true) : AxisWithModes{limit(measured), velocities} {
     set(order_output, enable_operation);
     set(offset_output, 0);

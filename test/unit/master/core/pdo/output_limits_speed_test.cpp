@@ -101,9 +101,9 @@ TEST_F(SpeedLimits, BeginAtStandstillAfterAStop) {
 TEST_F(SpeedLimits, HoldOnAverageForAProgramThatIsNotPunctual) {
   run_up(20, run);
   for (int i = 0; i < 10; ++i) axis_.cycle();
-  cycle(40, run);  // what ten cycles allow, at once
+  cycle(40, run);  // at once what ten cycles allow
   cycle(42, run);
-  cycle(46, run);  // of two cycles, and 50 counts were left
+  cycle(46, run);  // the change of two cycles; 50 counts were left
   EXPECT_EQ(axis_.refusals(), 0U);
   std::int64_t speed = 46;
   for (int i = 0; i < 40 && axis_.controlword() == run; ++i) cycle(speed += 4, run);

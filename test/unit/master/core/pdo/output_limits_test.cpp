@@ -267,7 +267,8 @@ TEST(OutputLimits, SeeTheSecondDifference) {
   EXPECT_EQ(axes.refusals(), 1U);
 }
 
-// What an acceleration of 2 counts per cycle and cycle allows in 50 ms, which are 25 cycles.
+// An acceleration of 2 counts per cycle and cycle allows 2 * 25 * 25 counts in 50 ms, which are 25
+// cycles.
 TEST(OutputLimits, OfTheAccelerationAloneHoldTheFirstCommandToo) {
   LimitedAxes axes{1, {.bend = 2, .wraps = true}};
   axes.cycle_with(0, 2 * 25 * 25 + 1);

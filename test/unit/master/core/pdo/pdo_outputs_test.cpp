@@ -180,7 +180,7 @@ TEST(PdoOutputs, ReleasedOutputsTakeTheirFallbackWithoutAWarning) {
   EXPECT_TRUE(out.reported().empty());
 }
 
-/// The axis moves for nobody any more, and has to come to rest before it is disabled.
+/// After the release, nobody commands the axis. It has to come to rest before it is disabled.
 TEST(PdoOutputs, AReleaseWaitsUntilTheMotionOfItsNodeHasEnded) {
   BusPlan plan = one_axis();
   for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 10;

@@ -38,7 +38,7 @@ class CommandsTest : public testing::Test {
   bool take(const command_t& message, std::uint64_t cycle = 100) {
     return commands.take(message, {.cycle = cycle, .now = now, .nodes = nodes});
   }
-  /// A release that was computed from this cycle.
+  /// Makes a release that was computed from this cycle.
   command_t release(std::int64_t cycle) {
     command_t message = command({}, {});
     message.release = 1;

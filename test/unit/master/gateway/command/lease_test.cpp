@@ -74,14 +74,15 @@ TEST(Freshness, TimeInAQueueIsTimeLived) {
 constexpr Sender a_sender{.instance = 1, .name = "a"};
 constexpr Sender b_sender{.instance = 2, .name = "b"};
 
-/// A command computed from the present cycle. Returns true if the sender holds the node now.
+/// Takes the node by a command computed from the present cycle. Returns true if the sender then
+/// holds the node.
 bool take(LeaseTable& leases, std::size_t node, const Sender& sender, std::uint64_t now,
           std::uint32_t cycles) {
   return leases.take(node, sender, {.now = now, .cycles = cycles, .computed_from = now}) ==
          LeaseVerdict::taken;
 }
 
-/// A command of `a_sender` for node 0 in cycle 110, with a time to live of 50 cycles.
+/// Takes node 0 by a command of `a_sender` in cycle 110, with a time to live of 50 cycles.
 LeaseVerdict take_from(LeaseTable& leases, std::uint64_t computed_from) {
   return leases.take(0, a_sender, {.now = 110, .cycles = 50, .computed_from = computed_from});
 }
@@ -181,7 +182,8 @@ TEST(Lease, AnEarlierCommandDoesNotTakeANodeThatWasReleased) {
   EXPECT_EQ(take_from(leases, 106), LeaseVerdict::taken);
 }
 
-/// A release is an order. A sign of life that is read before it is none.
+/// A sign of life is no order. A release from an earlier cycle takes effect although a later sign
+/// of life was read first.
 TEST(Lease, ASignOfLifeThatHasOvertakenAReleaseChangesNothing) {
   LeaseTable leases{1, 500};
   const auto sign_from = [&](std::uint64_t cycle) {

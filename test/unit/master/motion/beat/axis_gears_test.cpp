@@ -53,7 +53,8 @@ TEST(AxisGears, AGearWithAPhaseCatchesUpItsPosition) {
   EXPECT_NEAR(plant.last[1].commanded.position, plant.last[0].commanded.position + 0.7, 1e-9);
 }
 
-/// Turns of 1: the leader has made three of them, and the axis stands in its own second one.
+/// A turn is 1 unit. The leader has made three turns, and the axis is at standstill in its own
+/// second turn.
 TEST(AxisGears, APhaseOfRotaryAxesIsTheNearestOne) {
   Plant plant{2};
   plant.inputs[1].set_point = 1.2;

@@ -89,7 +89,7 @@ TEST(GearServo, KeepsItsLimitsBehindAnyTargetAndFollowsOneInsideThem) {
   double farthest = 0.0;
   for (int i = 0; i < 400; ++i) {
     const Limits limits = random.limits();
-    const double part = random.between(0.3, 2.0);  // of the limits, of the target
+    const double part = random.between(0.3, 2.0);  // limits of the target by those of the servo
     const GearServo servo{limits};
     const Limits of_target{.max_velocity = part * limits.max_velocity,
                            .min_velocity = part * limits.min_velocity,

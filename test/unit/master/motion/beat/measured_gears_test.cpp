@@ -50,7 +50,7 @@ TEST(MeasuredGears, AnOrderThatIsRefusedDoesNotTakeTheSampleOfTheGearThatRuns) {
   plant.ids = 3;
   task.signal = 8;
   MotionOrder other = gear_order(plant, 0, task);
-  other.axes = 2;  // the other one is missing
+  other.axes = 2;  // the order of the second axis is missing
   ASSERT_TRUE(plant.take(other));
   const LeaderSignals signals = plant.motions.leader_signals(0, plant.cycle + 1);
   EXPECT_EQ(signals[0], 7);
@@ -73,8 +73,8 @@ TEST(MeasuredGears, AnOrderThatIsRefusedDoesNotTakeTheSampleOfTheGearThatRuns) {
   EXPECT_EQ(plant.last[0].state, AxisState::moving) << "it has the sample of its new leader";
 }
 
-/// The leader has moved on for two periods, and the axis for one: it catches up the other one soon,
-/// although the filter is slow.
+/// The leader has moved for two periods, and the axis for one. The axis soon catches up with the
+/// leader, although the filter is slow.
 TEST(MeasuredGears, AMissingSyncDoesNotDisturbTheEstimateOfAMeasuredLeader) {
   Plant plant{1};
   Encoder encoder{plant, 32};

@@ -9,7 +9,7 @@
 
 namespace takt::motion::test {
 
-/// Axes whose drives follow at once, and a judge of each beat.
+/// Axes whose drives follow at once. The plant checks each beat.
 class Plant {
  public:
   static constexpr double period = 0.001;
@@ -90,7 +90,7 @@ class Plant {
   bool follows = true;
 
  private:
-  /// No jump: what changes in one beat keeps the limit of the jerk, and all limits hold.
+  /// Expects no jump: the change in one beat keeps the limit of the jerk, and all limits hold.
   static void judge(const State& before, const State& now) {
     constexpr double tolerance = 1e-9;
     ASSERT_LE(now.velocity, limits.max_velocity + tolerance);

@@ -7,8 +7,8 @@ namespace {
 using motion::AxisState;
 using test::Bench;
 
-/// Homing changes the coordinates of the drive, so that a target of an application from before it
-/// is somewhere else.
+/// Homing changes the coordinates of the drive. A target that an application has commanded before
+/// is then another position.
 TEST(DrivenAxis, InHomingModeTheTargetFollowsWhoeverHasCommandedIt) {
   Bench bench{{.commands_controlword = true, .mode = true}};
   bench.hear(0x0027, 0);
@@ -45,7 +45,7 @@ TEST(DrivenAxis, SeesAHomingRunOfTheEnabledDriveInHomingMode) {
   EXPECT_EQ(bench.axis.read(bench.pdos, false, bench.last).homing, HomingState::none);
 }
 
-/// The node was away only while there was no SYNC, so that no beat has seen it away.
+/// The node was away only while there was no SYNC, so that it was present in each beat.
 TEST(DrivenAxis, LosesItsHomeBetweenBeats) {
   using motion::HomingState;
   Bench bench{{.commands_controlword = true, .mode = true}};

@@ -77,7 +77,7 @@ TEST(DrivenAxisTorque, KeepsTheLimitOfTorqueAndTheWidthOfItsObject) {
   EXPECT_EQ(narrow.torque(), -150);
 }
 
-/// The application may command it.
+/// The application may command the torque offset.
 TEST(DrivenAxisTorque, IsLeftAloneWithoutAFeedForward) {
   BusPlan plan = plan_with_torque({});
   plan.nodes[0].axes[0].feed_forward.reset();

@@ -38,7 +38,7 @@ TEST(DrivenAxis, TheTargetFollowsTheActualPositionWhileADriveObeysAHalt) {
   EXPECT_EQ(bench.target(), 75);
 }
 
-/// A drive that nobody hears may still follow its target position.
+/// A drive whose TPDOs do not arrive may still follow its target position.
 TEST(DrivenAxis, TheTargetFollowsTheActualPositionOnlyWhileTheStatuswordSaysThatItHasNoEffect) {
   Bench bench;
   bench.hear(0x0027, 100);
