@@ -1,4 +1,5 @@
-// Nanoseconds for the envelope of a command of eight outputs: what a sender and the daemon spend.
+// Measures in nanoseconds the cost of the envelope of a command of eight outputs, for the sender
+// and for the daemon.
 #include <benchmark/benchmark.h>
 #include <chrono>
 #include <vector>

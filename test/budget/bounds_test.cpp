@@ -125,7 +125,7 @@ TEST(Budget, NoFrameIsLaterThanItsBoundBehindServiceFramesInOneQueue) {
   std::printf("%u of %u networks have all bounds\n", bounded, networks());
 }
 
-/// The turns in which the longest frames meet are rare, so these networks run for more cycles.
+/// The cycles in which the longest frames meet are rare, so these networks run for more cycles.
 SeenBus seen_on(const BusPlan& plan, const BusBudget& budget, sim::Random& random, double most) {
   auto seen = run_worst_phase(plan, budget, {.device_time = 30us, .cycles = 600}, random);
   for (std::uint64_t more = 1; more <= 30 && widest_of_each(budget, seen) > most; ++more) {

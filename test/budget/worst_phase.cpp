@@ -58,7 +58,7 @@ class WorstPhase {
     std::optional<std::size_t> row;
     unsigned left = 0;        ///< number of frames of the present burst that are not queued yet
     Time next{};              ///< earliest time of the next frame
-    std::deque<Time> queued;  ///< times from which the frames that are not sent yet count
+    std::deque<Time> queued;  ///< queueing times of the frames that are not sent yet
   };
 
   /// Returns the sender of a frame. All devices that use one identifier are one sender, because

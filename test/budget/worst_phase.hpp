@@ -20,7 +20,7 @@ struct PhaseOptions {
 /// The measured times of one row of the budget.
 struct SeenRow {
   std::size_t frames = 0;
-  Time worst{};  ///< counts as BudgetRow::worst: from SYNC, or from being queued
+  Time worst{};  ///< as BudgetRow::worst: from SYNC, or from the moment of queueing
 };
 
 /// The measured times of a bus.

@@ -24,7 +24,7 @@ constexpr motion::Limits limits{.max_velocity = 3.0,
                                 .min_acceleration = -20.0,
                                 .jerk = 400.0};
 
-/// TAKT_CYCLES=1000000 makes the long tests as long as the requirement wants them.
+/// With TAKT_CYCLES=1000000, the long tests are as long as the requirement demands.
 int cycles_of_test() {
   const char* const wanted = std::getenv("TAKT_CYCLES");
   return wanted == nullptr ? 50'000 : std::atoi(wanted);
@@ -66,7 +66,7 @@ class SetPoints {
     if (!started_ && target == counts_at(0)) return;
     started_ = true;
     const double exact = position_at(cycle_++) / MotionBus::scale;
-    // A count that lies between two may be rounded either way.
+    // A position halfway between two counts may be rounded up or down.
     if (std::abs(static_cast<double>(target) - exact) > 0.5 + 1e-6) ++wrong_;
     ++compared_;
   }
@@ -183,7 +183,8 @@ TEST(BusyProgram, ItsStreamHasNoDuplicatedAndNoSkippedSetPoint) {
   EXPECT_GT(program.stalls(), cycles_of_test() / 1000);
 }
 
-/// Standard deviation of the velocity of a drive by its mean, in the middle of a long motion.
+/// Returns the standard deviation of the velocity of a drive, divided by its mean, in the middle of
+/// a long motion.
 double ripple(const std::vector<double>& positions) {
   std::vector<double> steps;
   const std::size_t begin = positions.size() / 2 - 300;

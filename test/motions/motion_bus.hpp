@@ -83,8 +83,8 @@ class MotionBus final : public AxesInVirtualTime {
     begin();
   }
 
-  /// Boots both drives, and leads them to Operation enabled by command_t of `instance`. The time to
-  /// live of the commands is the configured one, 500 cycles.
+  /// Boots both drives, and commands them to Operation enabled by command_t of `instance`. The time
+  /// to live of the commands is the configured one, 500 cycles.
   void enable(std::int64_t instance = 5) {
     each_cycle = [this, instance] { send_enable(instance); };
     ASSERT_TRUE(run_until([&] { return enabled(0) && enabled(1); }));

@@ -144,7 +144,7 @@ TEST(MotionHolder, AReleaseStopsTheAxisAlsoIfASignOfLifeFollowsInTheSameRound) {
   }
 }
 
-/// The second motion is on its way to the bus thread, or waits to be planned.
+/// The motion is on its way to the bus thread, or waits to be planned.
 TEST(MotionHolder, AReleaseEndsAMotionThatHasNotBegunAlthoughASignOfLifeFollows) {
   MotionBus bus;
   bus.enable();

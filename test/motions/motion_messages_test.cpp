@@ -53,8 +53,8 @@ TEST(MotionMessages, ACopyOfTheOlderOfTwoMovesOfOneImageDoesNotLeadTheAxisBack) 
   EXPECT_EQ(bus.axis(0).id, 2);
 }
 
-/// A program may leave utime at 0. Then a motion that only one of two orders of arrival would make
-/// right can't be told from a copy.
+/// A program may leave utime at 0. Then the gateway can't distinguish a copy from a motion that
+/// arrives out of order, and refuses the motion.
 TEST(MotionMessages, ACopyOfAMoveByIsKnownAlsoBehindAnotherMotionOfItsImage) {
   MotionBus bus;
   bus.enable();

@@ -93,8 +93,8 @@ class TestPrograms:
             yield from sorted(programs.values(), key=lambda found: sum(test.ms for test in found))
 
     def first_that_fails(self, number, tests):
-        """(test, text) of the first test that fails with the mutant; test is None if only the time is over or all end
-        together."""
+        """(test, text) of the first test that fails with the mutant. test is None if the program ends badly, or takes too
+        long, although each test that has begun has passed."""
         by_name = {test.name: test for test in tests}
         limit = self.least_limit + sum(test.ms for test in tests) / 100
         code, output = self.start(tests[0].program, list(by_name), number, limit)

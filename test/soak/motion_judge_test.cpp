@@ -123,7 +123,7 @@ TEST_F(JudgedMotions, OfAJogEndIfItsAxisIsNotNamed) {
   EXPECT_EQ(broken(), "an axis moves only while its sender commands it");
 }
 
-/// A gear stands while its leader stands, and moves when its leader does.
+/// The axis of a gear is at standstill while its leader is, and moves when the leader moves.
 TEST_F(JudgedMotions, OfAGearLastAsLongAsTheirProgramIsAlive) {
   follow();
   run(10s, [&] { alive(); });

@@ -75,7 +75,7 @@ class Application {
   std::set<std::uint64_t> answered_;
 };
 
-/// Checks the rules that every image must obey.
+/// Checks the rules for every image.
 class ImageJudge {
  public:
   void operator()(const ImageView& image) {

@@ -15,8 +15,8 @@
 
 namespace takt::test {
 
-/// A taktd of one inverter, in the place of LCM. Each time that the application looks for messages,
-/// a cycle of 2 ms passes. The frequency goes `step` counts further in each cycle.
+/// Imitates a taktd of one inverter, and replaces LCM. Each time that the application looks for
+/// messages, a cycle of 2 ms passes. The frequency goes `step` counts further in each cycle.
 struct InverterDaemon {
   static constexpr std::int64_t step = 100;
 

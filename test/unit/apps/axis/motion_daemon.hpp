@@ -17,8 +17,8 @@
 
 namespace takt::test {
 
-/// A taktd of two simple drives, in the place of LCM. Each time that the application looks for
-/// messages, a cycle passes. Its motions go `step` further in each cycle.
+/// Imitates a taktd of two simple drives, and replaces LCM. Each time that the application looks
+/// for messages, a cycle passes. Its motions go `step` further in each cycle.
 struct MotionDaemon {
   static constexpr double step = 0.5;
 

@@ -28,7 +28,7 @@ void boot(Master& master) {
   ASSERT_TRUE(master.all_ready());
 }
 
-/// Leads the only axis to Operation enabled; it keeps its position.
+/// Commands the only axis to Operation enabled, at its present position.
 void enable(Master& master) {
   const NetworkFile& network = master.network();
   DriveSequence drive;

@@ -30,7 +30,7 @@ class Judge {
     // A moving axis counts as at its target if the difference is small beside its position.
     const bool rests = task.to.velocity == 0 && task.to.acceleration == 0;
     const long double size = rests ? path_ + 1e-4L * positions : std::max(path_, positions);
-    // What the rounding of an acceleration in its 18th digit changes until the end is no error.
+    // The rounding of an acceleration in its 18th digit moves the end. This distance is no error.
     const long double miss =
         std::max(std::abs(way - (to - from)) - 1e-18L * steepest_ * time_ * time_, 0.0L);
     verdict_.end_error = static_cast<double>(std::max(

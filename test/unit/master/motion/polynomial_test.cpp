@@ -35,7 +35,7 @@ TEST(Polynomial, AQuinticHasBothStatesAndACubicBothPositionsAndVelocities) {
   }
 }
 
-/// Compared with the values at many times, which the extremes may exceed a little.
+/// Compares the extremes with the values at many times. They may exceed these values a little.
 TEST(Polynomial, ExtremesContainAllValuesAndAreReached) {
   std::mt19937_64 random{2};
   std::uniform_real_distribution<double> any{-5.0, 5.0};

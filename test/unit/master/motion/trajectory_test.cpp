@@ -142,7 +142,7 @@ TEST(Trajectory, OfSixRandomAxesArrivesAtOnce) {
 }
 
 TEST(Trajectory, StaysInsideTheRangeOfPositionsOnItsWholeWay) {
-  // The axis moves towards its limit and needs 0.2 + something to stop.
+  // The axis moves towards its limit and needs a distance of 0.1 to 0.3 to stop.
   AxisTask task{.from = {.position = 0.0, .velocity = 1.0}, .to = {}, .limits = unit};
   std::array<PlannedAxis, 1> planned;
   const auto plan = [&](double limit) {

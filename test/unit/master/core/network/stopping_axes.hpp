@@ -24,7 +24,7 @@ class Stop {
     words = {word, word};
     machine.begin(now, nodes);
   }
-  /// Begins again; the axes were seen disabled, and nothing could enable them since.
+  /// Begins again, after the axes were seen disabled and nothing could have enabled them.
   void begin_with_memory() {
     std::array<AxisMemory, 2> memory;
     for (AxisMemory& axis : memory) {

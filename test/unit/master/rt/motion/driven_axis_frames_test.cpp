@@ -8,7 +8,7 @@ using motion::AxisCondition;
 using motion::AxisState;
 using test::Bench;
 
-/// The set-points of a motion would be held back, and then be sent as one step.
+/// Otherwise the set-points of a motion would be held back, and then be sent as one step.
 TEST(DrivenAxis, AnAxisWhoseRpdoIsNotReadyIsNotEnabled) {
   Bench bench{{.commands_controlword = false, .mode = false}};
   bench.hear(0x0027, 100);

@@ -84,7 +84,7 @@ class Wheel {
   double way = 0.0;   ///< since the last command
 };
 
-/// A turn of the drive that begins at 0 or below, an odd one, and the whole counter.
+/// Turns of the drive: one that begins at 0, one that begins below 0, and the whole counter.
 constexpr std::array turns{Turn{.length = 628.0, .lowest = 0.0},
                            Turn{.length = 3600.0, .lowest = -1800.0},
                            Turn{.length = 0x1p32, .lowest = -0x1p31}};

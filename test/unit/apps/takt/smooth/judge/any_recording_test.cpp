@@ -1,4 +1,4 @@
-// A recording may have anything in it: it is judged without a fault of the program.
+// A recording may contain anything. `takt smooth` must judge it without a crash.
 #include <gtest/gtest.h>
 #include <random>
 
