@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """judge_bit_rate.py BIN: `takt lss set-bitrate --activate` changes a bus of two real controllers.
 
-takt has can0; on can1 are LSS slaves written from the standard, which change can1 when they are told to. What the
-controllers run at is read back from the kernel: its netlink attributes, and the registers that the driver wrote.
+takt has can0. On can1 are LSS slaves written from the standard, which change can1 when takt commands it. The bit
+rates of the controllers are read back from the kernel: its netlink attributes, and the registers that the driver wrote.
 Then taktd boots a device at the new bit rate. Runs inside with-rt-can, with the interpreter of the judges' environment.
 Exit code 1: a check failed.
 """
@@ -40,7 +40,7 @@ def check(good, what):
 
 
 class Devices(Slaves):
-    """Slaves that change the bit rate of their controller one delay after they are told to. `late`: on this machine
+    """Slaves that change the bit rate of their controller one delay after the command. `late`: on this machine
     they took longer for an answer or for the change than a device may, so nothing can be said about takt."""
 
     def __init__(self):

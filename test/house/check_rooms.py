@@ -273,13 +273,13 @@ def is_in(room, rooms):
 
 
 def room_of(path):
-    """The folder; None where it is no room."""
+    """The folder, or None if it is no room."""
     folder = path.rsplit("/", 1)[0]
     return folder if folder in ROOMS else None
 
 
 def arrow(path, target):
-    """Why `path` may not include the project's header `target`; None where it may."""
+    """Why `path` may not include the project's header `target`, or None if it may."""
     here, there = room_of(path), room_of(target)
     if there is None:
         return f'"{target}" is in no room: includes start at the top of the tree'
@@ -290,7 +290,7 @@ def arrow(path, target):
 
 
 def foreign(path, header):
-    """Why `path` may not include the foreign header; None where it may."""
+    """Why `path` may not include the foreign header, or None if it may."""
     here = room_of(path)
     if here == PUBLIC and "/" in header and not header.startswith(("takt/", "Eigen/")):
         return f"<{header}>: a public header needs only C++, Eigen, the LCM types and other public headers"

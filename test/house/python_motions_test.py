@@ -83,7 +83,7 @@ def loses_first(number, kind):
 
 
 def stays(axes, after=0.0):
-    """Whether the axes are at standstill after so many seconds, and stay there."""
+    """Whether the axes are at standstill `after` this number of seconds, and stay there."""
     axes.run(after)
     before = axes.positions
     axes.run(2.0)

@@ -7,7 +7,7 @@ of the stdout of that command; `$ taktd FILE --check` too. A block that begins w
 that file. A line of three points matches any number of lines. --update corrects the blocks in which only numbers have
 changed. The commands of the tutorial run in a folder that has the files of the tutorial.
 
-Each relative link must lead to a file that exists, and to a heading where it has an anchor. The index must name every
+Each relative link must lead to a file that exists; a link with an anchor also to a heading. The index must name every
 page. README.md must not be longer than LONGEST_README lines.
 """
 import pathlib

@@ -3,7 +3,7 @@
 
 Each task is one axis. The tasks of eight classes are divided equally; --class chooses one of them, or `wide limits`, a class in
 which a task may be refused because a number has too few digits. Each motion is integrated with more digits than the planner has:
-it must end at its target to 1e-8 of its size and keep its limits to 1e-9. Where ruckig has a result that does this, the motion
+it must end at its target to 1e-8 of its size and keep its limits to 1e-9. If ruckig has a result that does this, the motion
 must not be slower. Both planners are timed in the same process. A failure is printed as a request of `takt trajectory`.
 Exit code 1: a motion is wrong. The tasks depend only on --seed. Compiles the planner and, from its source package, ruckig.
 """

@@ -1,4 +1,4 @@
-// Which signals can lead a gear.
+// Which signals can be the leader of a gear.
 #include <gtest/gtest.h>
 
 #include "eds_parser/network_file/load_network.hpp"

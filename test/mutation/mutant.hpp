@@ -17,8 +17,8 @@ inline std::atomic<bool> reached[most];
 
 }  // namespace takt_mutation
 
-/// Returns true where the place has to behave as mutant `number`. Constant expressions are never
-/// mutated.
+/// Returns true if the code at this place has to behave as mutant `number`. Constant expressions
+/// are never mutated.
 constexpr bool takt_mutant(int number) noexcept {
   if consteval {
     return false;

@@ -1,4 +1,5 @@
-// Programs that home axes under faults: nothing breaks, and the judge finds what a test breaks.
+// Programs that home axes under faults: no invariant is broken, and the judge finds the one that a
+// test breaks.
 #include "apps/takt/soak/homing_run.hpp"
 
 #include <algorithm>

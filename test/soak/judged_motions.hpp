@@ -86,7 +86,7 @@ class JudgedMotions : public testing::Test {
     }
     judge.commanded({command, sender, now - 2ms}, now);
   }
-  /// A program lets the shoulder follow an axis that stands.
+  /// A program lets the shoulder follow an axis at standstill.
   void follow() {
     motion_command_t gear = message("gear");
     motion_goal_t goal{};

@@ -1,5 +1,5 @@
-// Runs of the front thread in which programs command motions: a judge has to find what a test
-// breaks.
+// Runs of the front thread in which programs command motions: a judge has to find the invariant
+// that a test breaks.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <string>
@@ -119,7 +119,7 @@ TEST_F(MotionDefects, AGearIsFasterThanItsCommandAllows) {
   EXPECT_TRUE(breaks({.gear = faster}, "a motion keeps its limits")) << what;
 }
 
-/// A program of the same name is the first program.
+/// A second program with the same name counts as the first one.
 TEST_F(MotionDefects, ASenderIsAName) {
   const auto same = [](unsigned program, std::int64_t own) {
     return program == 7 || program == 0 ? 1 : own;

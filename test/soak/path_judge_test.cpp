@@ -57,8 +57,8 @@ class JudgedPaths : public JudgedMotions {
                      .stream = &stream},
                     now);
   }
-  /// The shoulder follows the elbow, which stands. Then the elbow moves, and the shoulder by
-  /// `followed` of its way.
+  /// The shoulder follows the elbow, which is at standstill. Then the elbow moves, and the shoulder
+  /// by `followed` of its way.
   void follow_elbow(double followed) {
     motion_command_t command = message("gear");
     command.goals.push_back(goal());

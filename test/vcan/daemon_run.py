@@ -127,7 +127,7 @@ class DaemonRun:
         return sum(frame.standard(identifier) for frame in self.frames()[begin:end])
 
     def await_frames(self, identifier, count, begin):
-        """Waits until there are so many such frames from `begin` on. Returns False if taktd has ended, or if the frames
-        do not come."""
+        """Waits until `count` frames with this identifier have come from `begin` on. Returns False if taktd has ended,
+        or if the frames do not come."""
         soon(lambda: self.count(identifier, begin) >= count or self.taktd.poll() is not None)
         return self.count(identifier, begin) >= count

@@ -45,7 +45,7 @@ def without(log, foreign, rest):
 
 
 def judge_dissector(check, log, least, remote=(), foreign=(), unread=()):
-    """Each of at least so many frames is CANopen, well formed, and of a kind that the dissector knows. The dissector
+    """At least `least` frames came, and each is well-formed CANopen of a kind that the dissector knows. The dissector
     treats a remote request as plain CAN: only requests for the identifiers in `remote` are right. `foreign`: the
     frames, as frame_of() has them, that the judge sent itself and that may be anything. `unread`: the words of the
     dissector for frames that are right but unknown to it."""

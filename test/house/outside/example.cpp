@@ -12,7 +12,7 @@ int main() {
   }
   takt::AxisControl& axes = group.axes();
   axes.set_goal(takt::DriveGoal::enabled);
-  while (group.wait(1s) == takt::Input::fresh) {  // the newest image; none in 1 s, or stale: ends
+  while (group.wait(1s) == takt::Input::fresh) {  // until it is stale, or none comes in 1 s
     const Eigen::VectorXd next = axes.target_positions().array() + 1e-4;  // rad
     if (axes.all_enabled()) axes.set_positions(next);
     group.send();  // acts at the next SYNC

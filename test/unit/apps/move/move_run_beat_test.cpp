@@ -100,7 +100,7 @@ TEST_F(MoveByTaktd, BeginsAgainAfterAPause) {
               AllOf(HasSubstr("periods: the move begins again"), HasSubstr("held 1 time")));
 }
 
-/// taktd discards what comes in the first 20 ms after a pause of its own.
+/// taktd discards what comes in the first 20 ms after a pause in which taktd did not run.
 TEST_F(MoveByTaktd, WaitsBeforeItBeginsAgain) {
   stop_at(2.0, words(StopCause::no_sync), 1);
   run();

@@ -364,7 +364,7 @@ TEST(Check, LooksAtEachModuleOfADeviceOfSeveral) {
 }
 
 // The objects of the third module are higher by 0x1000, so object 0x1000, which every device has,
-// is none of its channels.
+// is not one of its channels.
 TEST(Check, TheDeviceTypeIsNoChannelOfTheThirdModule) {
   EXPECT_EQ(missing("0xFFFF0191", entry("77FF", "7", "0x00030191")), (Indices{"7000", "7200"}));
 }

@@ -1,4 +1,4 @@
-// Who hosts a bus: at its start, when the host ends, and where the path is taken.
+// Which process hosts a bus: at the start, after the host has ended, and if the path is in use.
 #include <filesystem>
 #include <fstream>
 #include <sys/socket.h>

@@ -183,7 +183,7 @@ TEST(AxisGears, UsesAsMuchOfTheJerkOfTheMotionBeforeAsItNeeds) {
   ASSERT_TRUE(plant.take(gear));
   plant.step();
   EXPECT_EQ(plant.last[0].running, 2U);
-  plant.steps(2000);  // the plant judges whether the axis becomes too fast
+  plant.steps(2000);  // the plant checks whether the axis becomes too fast
   EXPECT_NEAR(plant.last[0].commanded.velocity, 0.0, 1e-3);
 }
 

@@ -56,7 +56,7 @@ TEST(MotionStops, AMotionStopsWhenItsSenderMayNotCommandTheAxisAnyLonger) {
   EXPECT_EQ(plant.last[0].stop.cause, StopCause::sender_left);
 }
 
-/// The plant judges each step as one of a single period.
+/// The plant checks each step as if it took one period.
 TEST(MotionStops, WhereBeatsAreMissingTheMotionAndItsStopAreDelayedByTheirPeriods) {
   Plant plant{1};
   plant.step();
@@ -84,7 +84,7 @@ TEST(MotionStops, AMotionWaitsForASetPointThatWasNotSent) {
   const State before = plant.last[0].commanded;
   const CycleNumber left = plant.last[0].cycles_left;
   plant.inputs[0].is_unsent = true;
-  plant.inputs[0].set_point = before.position;  // so that the plant does not judge the step
+  plant.inputs[0].set_point = before.position;  // so that the plant does not check the step
   plant.step();
   EXPECT_EQ(plant.last[0].commanded.position, before.position);
   EXPECT_EQ(plant.last[0].cycles_left, left);
@@ -103,7 +103,7 @@ TEST(MotionStops, AnAxisWhoseSetPointsAreNotSentStandsAtOnceAndItsGroupStops) {
   plant.start_groups();
   const double before = plant.last[1].commanded.position;
   plant.inputs[1].condition = AxisCondition::unsent;
-  plant.inputs[1].set_point = before;  // so that the plant does not judge the step of the velocity
+  plant.inputs[1].set_point = before;  // so that the plant does not check the step of the velocity
   plant.step();
   EXPECT_EQ(plant.last[1].state, AxisState::standing);
   EXPECT_EQ(plant.last[1].commanded.position, before);
@@ -222,7 +222,7 @@ TEST(MotionStops, AnAbandonedAxisStopsNoLaterMotionOfItsGroup) {
   Plant plant{3};
   plant.start_groups();
   plant.motions.abandon(0, StopCause::limit);
-  plant.inputs[0].set_point = plant.last[0].commanded.position;  // no judgement of the jump
+  plant.inputs[0].set_point = plant.last[0].commanded.position;  // no check of the jump
   plant.steps(1000);
   EXPECT_EQ(plant.last[0].state, AxisState::standing);
   EXPECT_FALSE(plant.last[0].kept_alive);
@@ -244,7 +244,7 @@ TEST(MotionStops, AxesWhoseMotionsEndAtOnceAreKeptAliveWhileTheirSenderIsAlive) 
   ASSERT_EQ(plant.last[0].state, AxisState::standing);
   ASSERT_EQ(plant.last[1].state, AxisState::moving);
   plant.motions.abandon_all(StopCause::no_sync);
-  plant.inputs[1].set_point = plant.last[1].commanded.position;  // no judgement of the jump
+  plant.inputs[1].set_point = plant.last[1].commanded.position;  // no check of the jump
   plant.step();
   for (const AxisReport& report : plant.last) {
     EXPECT_EQ(report.state, AxisState::standing);
@@ -268,7 +268,7 @@ TEST(MotionStops, TheReportKeepsTheFirstCauseOfAStop) {
   EXPECT_EQ(plant.last[0].stop.axis, 0);
 }
 
-/// The axis stands, and an older motion of it has ended by another cause.
+/// The axis is at standstill, and an older motion of it has ended by another cause.
 TEST(MotionStops, TheReportHasTheCauseThatEndsAnOrderWhichWaits) {
   Plant plant{2};
   plant.step();

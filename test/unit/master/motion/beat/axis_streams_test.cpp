@@ -151,7 +151,8 @@ TEST(AxisStreams, ACubicCurveThatEndsWithoutVelocityEndsTheMotionAtItsPoint) {
   EXPECT_NEAR(plant.last[0].commanded.position, 0.01, 1e-12);
 }
 
-/// The next points of a group have come to one axis in time, and to the other one cycle too late.
+/// The next points of a group have come to one axis in time, and to the other axis one cycle too
+/// late.
 TEST(AxisStreams, AnAxisThatIsDoneWhileItsGroupGoesOnStopsTheGroup) {
   Plant plant{3};
   plant.step();
@@ -224,8 +225,8 @@ TEST(AxisStreams, AStreamBeginsOnlyAtRest) {
   EXPECT_EQ(plant.last[0].running, 1U);
 }
 
-/// The promise of the check: whatever it accepts keeps all limits, also during a stop that may come
-/// in any beat, and stays inside the range of positions. The plant judges the limits.
+/// Whatever the check accepts must keep all limits, also during a stop that may begin in any beat,
+/// and must stay inside the range of positions. The plant checks the limits.
 TEST(AxisStreams, EachAcceptedStreamKeepsItsLimitsAndItsRangeAlsoInAStop) {
   std::mt19937_64 random{5};
   const auto any = [&](double low, double high) {

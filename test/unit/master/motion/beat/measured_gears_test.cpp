@@ -14,7 +14,7 @@ using test::Plant;
 
 constexpr double period = Plant::period;
 
-/// The coordinates of the leader jump at the end of its homing run, although it stands then.
+/// The coordinates of the leader jump at the end of its homing run, although it does not move then.
 TEST(MeasuredGears, AHomingRunOfAMeasuredLeaderStopsTheAxis) {
   Plant plant{2};
   plant.step();
@@ -33,8 +33,8 @@ TEST(MeasuredGears, AHomingRunOfAMeasuredLeaderStopsTheAxis) {
   EXPECT_EQ(plant.last[0].stop.cause, StopCause::leader_lost);
 }
 
-/// An order for another leader is refused in the cycle in which it was due: the gear that runs
-/// needs the sample of its own leader, and the new one would need that of the other.
+/// An order for another leader is refused in the cycle in which it is due. The running gear needs
+/// the sample of its own leader, but the new gear would need the sample of the other leader.
 TEST(MeasuredGears, AnOrderThatIsRefusedDoesNotTakeTheSampleOfTheGearThatRuns) {
   Plant plant{1};
   Encoder encoder{plant, 32};
