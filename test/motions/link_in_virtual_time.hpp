@@ -13,8 +13,8 @@
 
 namespace takt::test {
 
-/// The end of a link on which an application listens. A cycle passes each time that it looks for
-/// messages.
+/// The end of a link at which an application receives. A cycle passes each time that the
+/// application looks for messages.
 class LinkInVirtualTime final : public Transport {
  public:
   explicit LinkInVirtualTime(MotionBus& bus) : bus_{bus} {

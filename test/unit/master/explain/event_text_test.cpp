@@ -1,4 +1,4 @@
-// The numbers of events in their lines. The sentences around them may change.
+// The texts of events contain the right numbers. The words around the numbers may change.
 #include "master/explain/event_text.hpp"
 
 #include <gmock/gmock.h>

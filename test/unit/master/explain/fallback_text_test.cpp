@@ -1,4 +1,4 @@
-// The sentence of an output that takes its fallback.
+// The sentence about an output that takes its fallback.
 #include <gtest/gtest.h>
 
 #include "master/core/command_limit.hpp"

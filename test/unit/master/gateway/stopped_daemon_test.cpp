@@ -1,4 +1,4 @@
-// What a front thread does that did not run for a while.
+// What the front thread does after a time in which it did not run.
 #include <algorithm>
 #include <deque>
 #include <gtest/gtest.h>
@@ -150,7 +150,7 @@ TEST_F(StoppedDaemon, RefusesARequestFromBeforeTheEndOfALongGapWheneverItArrives
   EXPECT_EQ(lcm.replies[1], "");
 }
 
-/// A bus whose commands last for 4 s.
+/// A bus on which commands are valid for 4 s.
 class LongLived : public StoppedDaemon {
  protected:
   LongLived() : StoppedDaemon{1000} {}
@@ -193,7 +193,7 @@ TEST_F(LongLived, TheWarningNamesTheTimeToLiveOfTheCommandIfItWasTheShorterOne) 
       << fallback;
 }
 
-/// A bus on which nothing limits how long commands last.
+/// A bus on which the validity of commands has no limit.
 class Unlimited : public StoppedDaemon {
  protected:
   Unlimited() : StoppedDaemon{0} {}

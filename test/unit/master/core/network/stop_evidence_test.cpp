@@ -1,4 +1,4 @@
-// What shows the ordered stop that an axis stands still: which values count, and which do not.
+// Which values show the ordered stop that an axis is at standstill, and which values do not.
 #include "test/unit/master/core/network/stopping_axes.hpp"
 
 namespace takt::test {

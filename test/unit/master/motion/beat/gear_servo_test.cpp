@@ -128,7 +128,7 @@ TEST(GearServo, KeepsItsLimitsBehindAnyTargetAndFollowsOneInsideThem) {
   EXPECT_LE(farthest, 1.0);
 }
 
-/// Two axes with the same limits are usual, and a move of the first one uses them.
+/// Leader and follower often have the same limits, and a move of the leader uses them completely.
 TEST(GearServo, StaysCloseToATargetThatUsesAllItsLimits) {
   const Limits limits{.max_velocity = 3.0,
                       .min_velocity = -2.0,

@@ -76,7 +76,7 @@ TEST(Journal, GivesTheRunningTapeAwayAtTheNextCycleAndGoesOnWithTheOther) {
   EXPECT_EQ(journal.wanted(), nullptr);
 }
 
-/// For the thread sanitizer: words that were read are not overwritten.
+/// The thread sanitizer checks here that words are not overwritten while they are read.
 TEST(Journal, IsReadByOneThreadWhileTheOtherRecords) {
   Journal journal{8192};
   std::atomic<bool> done{false};

@@ -157,7 +157,7 @@ TEST(Plant, IsStableForAllParametersThatAreAccepted) {
     const double given = energy(table, plant);
     for (int step = 0; step < 4000; ++step) {
       plant.advance(0, 0);
-      // The energy of a semi-implicit step swings around its mean by the angle of the step.
+      // With semi-implicit steps, the energy oscillates around its mean by the angle of the step.
       ASSERT_LE(energy(table, plant), 2 * given + 1e-12) << i << " after " << step;
     }
   }

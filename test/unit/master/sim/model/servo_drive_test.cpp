@@ -58,7 +58,7 @@ TEST_F(ServoDrive, FollowsThemWithoutErrorIfTheirVelocityIsFedForward) {
   EXPECT_LT(largest, 200);  // 2 ms at full speed are 126 counts
 }
 
-// What a careless set-point does to a drive.
+// The reaction of a drive to unsuitable set-points.
 
 TEST_F(ServoDrive, SaturatesItsTorqueAndFaultsAtAStepOfTheTarget) {
   set(0x6065, 2000);

@@ -33,7 +33,7 @@ struct Sent {
   double value = 0;
 };
 
-/// What an axis and its sender do, before it becomes frames.
+/// The actions of an axis and of its sender, from which the frames are made.
 struct GeneratedAxis {
   std::function<double(Time)> path;   ///< position at a time, increments
   std::vector<Sent> sent;             ///< one for each cycle, until a defect changes it
@@ -42,7 +42,7 @@ struct GeneratedAxis {
   std::function<double(Time)> shake;  ///< added to the actual position; may be empty
 };
 
-/// A recording before it becomes frames. A defect changes it.
+/// A recording before its frames are made. A defect changes it.
 struct Generated {
   Recipe recipe;
   std::mt19937 random;
