@@ -89,8 +89,8 @@ if [ "$moved" -eq 0 ] && [ "$stopped" -eq 0 ]; then
   exit 0
 fi
 say "The demo failed: exit code $moved of takt-move, $stopped of taktd (exit codes: share/doc/command_line.md)."
-stood_still=$(sed -n 's/.*: \([0-9][0-9]*\) cycles missed: .*/\1/p' "$tmp/log" | sort -n | tail -n 1)
-if [ "${stood_still:-0}" -ge 100 ]; then
-  echo "This computer missed $stood_still cycles in a row, which stops every motion. End other programs and try again."
+missed=$(sed -n 's/.*: \([0-9][0-9]*\) cycles missed: .*/\1/p' "$tmp/log" | sort -n | tail -n 1)
+if [ "${missed:-0}" -ge 100 ]; then
+  echo "This computer missed $missed cycles in a row, which stops every motion. End other programs and try again."
 fi
 exit 1

@@ -39,10 +39,13 @@ struct Axes::State::SetPoints {
 
 /// Returns the reason if these axes do not take set-points of this kind now.
 Done Axes::State::check_set_points(const Values& values, const SetPoints& kind) {
-  if (values.size() != size() || !values.allFinite()) {
+  if (values.size() != size()) {
     return obstacle(Obstacle::Kind::wrong_use,
-                    fmt::format("expected one finite value for each of {} axes, got {} values",
-                                size(), values.size()));
+                    fmt::format("expected one value for each of {} axes, got {} values", size(),
+                                values.size()));
+  }
+  if (!values.allFinite()) {
+    return obstacle(Obstacle::Kind::wrong_use, "a value is not a finite number");
   }
   if (!is_current()) return restarted();
   if (readiness_ == Readiness::not_enabled) return not_enabled();

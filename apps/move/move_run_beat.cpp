@@ -19,8 +19,8 @@ constexpr int reason_images = 20;
 /// nearer to the target.
 constexpr int most_new_begins = 10;
 constexpr int most_vain_begins = 3;
-/// A move has come nearer to its target if it has covered at least this part of its first distance
-/// since it began.
+/// A move has come nearer to its target if the distance to the target has become shorter since the
+/// newest begin by at least this part of the distance at the first begin.
 constexpr double nearer = 0.01;
 /// Time before a move begins again, seconds. If taktd itself was paused, it discards the commands
 /// that come in the first 20 ms after the pause, and does not answer them.

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Parts = KeyRows (*)();
 
-// takt reads the text of a scalar, whether it is in quotes or not.
+// takt accepts a number in quotes, too. For YAML that is a string, so these patterns check it.
 constexpr std::string_view whole_number = "^[-+]?(0|[1-9][0-9]*|0[xX][0-9A-Fa-f]+)$";
 constexpr std::string_view real_number =
     "^[-+]?(0[xX][0-9A-Fa-f]+|0|[1-9][0-9]*|([0-9]+\\.[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?|"

@@ -48,9 +48,10 @@ struct BudgetRow {
 /// The result of the check whether the frames of a network fit its bus.
 struct BusBudget {
   BusLoad load{};
-  std::vector<BudgetRow> rows;     ///< rows in order of priority
-  unsigned service_dialogues = 0;  ///< SDO requests with answers in one `service_round`
-  Time service_round{};
+  std::vector<BudgetRow> rows;  ///< rows in order of priority
+  /// Largest number of SDO requests with their answers in one `service_round`.
+  unsigned service_dialogues = 0;
+  Time service_round{};  ///< one cycle, or a few cycles that have room for a request
   std::vector<std::string> assumptions{};  ///< one sentence each
   bool refused = false;                    ///< `taktd` refuses this plan, see fits_period()
 

@@ -95,8 +95,9 @@ Time CycleFrames::services_in(int cycles) const noexcept {
   return (cycles + cycles_to_relief - 1) / cycles_to_relief * longest_service_;
 }
 
-/// A frame whose period is at least one cycle comes at most once in each cycle. Over several
-/// cycles, it comes once at any time and then once in each period.
+/// A frame whose period is at least one cycle counts at most once in each cycle: it comes once at
+/// any time, and then once in each period. A frame with a shorter period counts several times in a
+/// cycle.
 Time CycleFrames::services_due(int cycles) const noexcept {
   Time sum{};
   for (const auto& frame : frames_) {

@@ -77,8 +77,8 @@ struct TrafficFrame {
 /// The frames of a bus in order of priority, the highest first.
 struct BusTraffic {
   std::vector<TrafficFrame> frames;
-  unsigned service_dialogues = 0;  ///< requests with their answers in one `service_round`
-  Time service_round{};
+  unsigned service_dialogues = 0;          ///< as in BusBudget
+  Time service_round{};                    ///< as in BusBudget
   std::vector<std::string> assumptions{};  ///< one sentence each
 };
 

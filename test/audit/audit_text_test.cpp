@@ -24,7 +24,7 @@ TEST(Audit, ReportsAMachineBuilderWhatEachDeviceDoes) {
   EXPECT_EQ(
       text_of(audit_of(network)),
       "bus 'lift' without its master (node 127, heartbeat every 100 ms): 1 safe "
-      "without the master, 1 held at the last set-points\n"
+      "without the master, 1 that keep their last set-points\n"
       "values after the boot, by EDS and network file\n"
       "\n"
       "node 5 axis (drive): KEEPS ITS LAST SET-POINTS: it does not notice the loss of the "

@@ -33,7 +33,7 @@ def replay(binaries, file, *more):
     return subprocess.run([f"{binaries}/takt", "replay", file, *more], capture_output=True, text=True)
 
 
-def check(condition, what, result):
+def demand(condition, what, result):
     if not condition:
         sys.exit(f"{what}: exit {result.returncode}\n{result.stdout}{result.stderr}")
 
@@ -53,7 +53,7 @@ def record(binaries, folder, network, url):
         await_true("recording on request", lambda: recordings_with(box, "requested by SIGUSR1"))
         asked = subprocess.run([f"{binaries}/takt", "record", "--lcm-url", url], capture_output=True, text=True, timeout=PATIENCE)
         named = pathlib.Path(asked.stdout.strip())
-        check(asked.returncode == 0 and named.exists() and named.parent == box, "takt record names the file", asked)
+        demand(asked.returncode == 0 and named.exists() and named.parent == box, "takt record names the file", asked)
         if '"recorded"' not in events.read_text():
             sys.exit("recordings are no events")
         # Both signals are pending when taktd continues. It has to stop at once, and still writes its recording.
@@ -102,32 +102,32 @@ def main(binaries):
         network.write_text(NETWORK.replace("PORT", port))
         first, last_one = record(binaries, folder, network, f"tcpq://127.0.0.1:{port}")
         last = replay(binaries, last_one, "--quiet")
-        check(last.returncode == 0 and "the ordered stop did not end" in last.stdout, "the end replays", last)
+        demand(last.returncode == 0 and "the ordered stop did not end" in last.stdout, "the end replays", last)
 
         good = replay(binaries, first)
-        check(good.returncode == 0 and "heartbeat" in good.stdout, "the same decisions", good)
+        demand(good.returncode == 0 and "heartbeat" in good.stdout, "the same decisions", good)
         events = json.loads(first.with_suffix(".events.json").read_text())
         wanted = f"{len(events['events'])} of {len(events['events'])} decisions as recorded"
-        check(wanted in good.stdout, wanted, good)
+        demand(wanted in good.stdout, wanted, good)
 
         dump = subprocess.run([f"{binaries}/takt", "dump", network, first], capture_output=True, text=True)
-        check(dump.returncode == 0 and dump.stdout.count("\n") == events["frames"], "takt dump reads the log", dump)
+        demand(dump.returncode == 0 and dump.stdout.count("\n") == events["frames"], "takt dump reads the log", dump)
 
         check_foreign_texts(binaries, folder, first)
 
         text = first.read_text()
         vendor = " 58A#43181001CDAB0000"
-        check(vendor in text, "the log has the vendor id", good)
+        demand(vendor in text, "the log has the vendor id", good)
         first.write_text(text.replace(vendor, " 58A#43181001CEAB0000"))
         changed = replay(binaries, first, "--quiet")
-        check(changed.returncode == 1, "a changed log differs", changed)
-        check("first difference: cycle " in changed.stdout and "vendor id" in changed.stdout, "named", changed)
+        demand(changed.returncode == 1, "a changed log differs", changed)
+        demand("first difference: cycle " in changed.stdout and "vendor id" in changed.stdout, "named", changed)
 
         first.write_text(text[:1000])
         cut = replay(binaries, first)
-        check(cut.returncode == 2 and ".log" in cut.stderr, "a log that was cut is refused", cut)
+        demand(cut.returncode == 2 and ".log" in cut.stderr, "a log that was cut is refused", cut)
         none = replay(binaries, folder / "none.log")
-        check(none.returncode == 2 and "none.events.json: cannot be read" in none.stderr, "no file", none)
+        demand(none.returncode == 2 and "none.events.json: cannot be read" in none.stderr, "no file", none)
 
 
 if __name__ == "__main__":

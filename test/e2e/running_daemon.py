@@ -22,10 +22,13 @@ def check(what, good, told=""):
 def await_true(what, condition, process=None, told=lambda: ""):
     """Ends the test if the condition does not become true, or if the process ends before."""
     until = time.monotonic() + PATIENCE
-    while not condition():
+    while True:
+        ended = process and process.poll() is not None  # before the condition, which may come with the end
+        if condition():
+            return
         if time.monotonic() > until:
             sys.exit(f"not in {PATIENCE} s: {what}\n{told()}")
-        if process and process.poll() is not None:
+        if ended:
             sys.exit(f"ended with {process.returncode} before: {what}\n{told()}")
         time.sleep(0.05)
 
@@ -58,7 +61,11 @@ class Bus:
     def start_daemon(self, network=NETWORK, *words):
         """Returns when all nodes have booted."""
         self.daemon = self.start("taktd", network, "--bus", "sim", *words)
-        await_text(self.log_of("taktd"), "the network is ready", self.daemon)
+        try:
+            await_text(self.log_of("taktd"), "the network is ready", self.daemon)
+        except SystemExit:
+            self.daemon.kill()
+            raise
 
     def end_daemon(self):
         """Returns the exit code."""

@@ -32,8 +32,9 @@ def main(binaries):
     with tempfile.TemporaryDirectory() as folder:
         bus = Bus(binaries, folder)
         # A move that takt-move computes itself outlives the cycles that a busy machine misses.
-        bus.start_daemon(slow_network(bus.folder), "--no-motions")
         try:
+            # The tools have to wait for a daemon that is still booting.
+            bus.daemon = bus.start("taktd", slow_network(bus.folder), "--bus", "sim", "--no-motions")
             status = await_good(bus, "status")
             check("takt status names the axis and shows its statusword", "shoulder" in status and "stat " in status, status)
             for page in ("axes", "words", "io", "pdos", "timing", "nodes"):

@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
-"""instruction_bound.py PROGRAM SOURCES MOST - a bound on the instructions that planning the motion of one axis takes. Exit
-code 1: the bound is above MOST, or there is none.
+"""instruction_bound.py PROGRAM SOURCES MOST MOST_IN_RANGE - a bound on the instructions that planning the motion of one axis
+takes, without and with a range of positions. Exit code 1: a bound is above its limit, or there is none.
 
-The bound follows from the machine code of PROGRAM, which is compiled as in a release: the longest path through each
-function, where each loop has as many passes as PASSES permits. A loop of the sources in the folder SOURCES that is not
-in PASSES is an error, and so are recursion, a jump through a table, and a call of an unknown function.
+The bound follows from the machine code of PROGRAM, which is compiled with the options of a release: the longest path
+through each function, where each loop has as many passes as PASSES permits. A loop of the sources in the folder SOURCES
+that is not in PASSES is an error, and so are recursion, a jump through a table, and a call of an unknown function.
 """
 import functools
+import math
 import pathlib
 import re
 import sys
 
 from machine_code import functions_of
 
+TRIES = 50  # most_tries in trajectory.cpp
 # Passes of each loop of the planner: the file, the begin of the loop, and its greatest number of passes.
 PASSES = {
     ("axis_motion.cpp", "for (int i = 0; i < 60; ++i) {"): 60,
@@ -28,11 +30,18 @@ PASSES = {
     ("position_range.cpp", "for (const double time : turning_times("): 2,
     ("precision.cpp", "for (const Segment& segment : profile.segments())"): 16,
     ("profile.hpp", "for (const Segment& segment : segments())"): 16,
+    ("trajectory.cpp", "for (int i = 0; i < most_tries; ++i)"): TRIES,
     ("transfer_times.cpp", "for (const TimeRange& block : blocked)"): 2,
 }
 # Functions of the C library, with more instructions than they have.
 LIBRARY = {"sqrt@plt": 200, "__stack_chk_fail@plt": 0}
-TRIES = 50  # most_tries in trajectory.cpp
+# What the passes rest on. The sources must have these lines.
+ASSUMED = (("trajectory.cpp", f"most_tries = {TRIES};"), ("profile.hpp", "capacity = 2 + 14;"),
+           ("farthest_motion.hpp", "using Phases = std::array<double, 7>;"), ("farthest_motion.hpp", "std::array<double, 4> bends()"),
+           ("farthest_motion.cpp", "std::array<std::array<std::size_t, 2>, 5> pairs{"),
+           ("transfer_times.hpp", "std::array<TimeRange, 3> ranges_{};"),
+           ("transfer_times.cpp", "std::array blocked{too_slow(transfer), too_slow(mirrored(transfer))};"),
+           ("position_range.cpp", "std::array<double, 2> turning_times("))
 LOOP = re.compile(r"^\s*(?:\}\s*)?(for|while|do)\b")
 
 
@@ -182,7 +191,9 @@ class Bound:
             sources = {s: p for s, p in sources.items() if s not in inner} or sources
             if not sources:
                 raise Unbounded(f"{function.name}: a loop at {header:x} that is none of the sources")
-            passes = max(sources.values())
+            # Two loops of the sources, of which one contains the other, may begin in the same block. Each has its jump back.
+            jumps_back = sum(1 for _, to in back if to == header)
+            passes = math.prod(p + 1 for p in sources.values()) if jumps_back > 1 else max(sources.values())
             once = longest(header, body, follow, back, cost)
             for block in body:
                 cost[block] = 0
@@ -215,11 +226,12 @@ def function_named(functions, part):
     return found[0]
 
 
-def main(program, sources, most):
-    functions = functions_of(program)
-    if f"most_tries = {TRIES};" not in (pathlib.Path(sources) / "trajectory.cpp").read_text():
-        raise Unbounded(f"trajectory.cpp does not have {TRIES} tries")
-    bound = Bound(functions, SourceLoops(pathlib.Path(sources), PASSES))
+def main(program, sources, most, most_in_range):
+    functions, folder = functions_of(program), pathlib.Path(sources)
+    for file, line in ASSUMED:
+        if line not in (folder / file).read_text():
+            raise Unbounded(f"{file} does not have `{line}`: PASSES may be wrong")
+    bound = Bound(functions, SourceLoops(folder, PASSES))
 
     def of(part):
         value = bound.of(function_named(functions, part + "$"))
@@ -228,14 +240,16 @@ def main(program, sources, most):
 
     of(r"takt::motion::FarthestMotion::reach\(double\) const")
     begin = of(r"takt::motion::AxisMotion::AxisMotion\(.*\)")
-    plan = of(r"takt::motion::AxisMotion::possible\(double\) const") + of(r"takt::motion::AxisMotion::profile\(double\) const")
-    check = of(r"takt::motion::is_precise\(.*\)")
-    stay = of(r"takt::motion::stays_inside\(.*\)")
-    once = begin + plan + check
-    print(f"{once:12,}  one axis, planned and checked")
-    print(f"{begin + TRIES * (plan + stay) + check:12,}  the same with a range of positions, in {TRIES} tries")
-    if once > int(most):
-        raise Unbounded(f"planning an axis may take more than {int(most):,} instructions")
+    possible = of(r"takt::motion::AxisMotion::possible\(double\) const")
+    profile = of(r"takt::motion::AxisMotion::profile\(double\) const")
+    ends = of(r"takt::motion::defect_of\(.*\)") + of(r"takt::motion::is_precise\(.*\)")
+    once = begin + possible + profile + ends
+    tries = of(r"takt::motion::\(anonymous namespace\)::plan_axis\(.*\)") + ends
+    print(f"{once:12,}  one axis without a range of positions: begin, possible, profile and the checks")
+    print(f"{tries:12,}  one axis with a range of positions, in {TRIES} tries")
+    for value, limit in ((once, most), (tries, most_in_range)):
+        if value > int(limit):
+            raise Unbounded(f"planning an axis may take {value:,} instructions, more than {int(limit):,}")
 
 
 if __name__ == "__main__":

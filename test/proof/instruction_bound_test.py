@@ -28,6 +28,22 @@ int nested(volatile int* a) {
   }
   return sum;
 }
+int same_begin(volatile int* a) {
+  int sum = 0;
+  for (int i = 0; i < 20; sum += i++) {
+    while (*a > 5) sum += *a;
+  }
+  return sum;
+}
+void seldom(volatile int* a);
+int with_cold_part(volatile int* a) {
+  if (*a == 7) {
+    seldom(a); seldom(a); seldom(a); seldom(a); seldom(a); seldom(a); seldom(a); seldom(a); seldom(a); seldom(a);
+    seldom(a + *a / 3); seldom(a + *a / 5); seldom(a + *a / 7);
+  }
+  return *a + 1;
+}
+__attribute__((cold)) void seldom(volatile int* a) { *a = 1; }
 int calls(volatile int* a) { return ten(a) + 1; }
 int recursive(volatile int* a) { return *a == 0 ? 0 : recursive(a) + *a; }
 int unknown(int a) { return outside(a) + 1; }
@@ -52,7 +68,8 @@ int table(int a, volatile int* b) {
 int outside(int a) { return a; }
 int main(int count, char**) { return straight(count, 2); }
 """
-PASSES = {("code.cpp", "i < 10"): 10, ("code.cpp", "i < 20"): 20, ("code.cpp", "k < 30"): 30}
+PASSES = {("code.cpp", "i < 10"): 10, ("code.cpp", "i < 20"): 20, ("code.cpp", "k < 30"): 30,
+          ("code.cpp", "*a > 5"): 7}
 failures = []
 
 
@@ -65,7 +82,7 @@ def main(compiler):
     with tempfile.TemporaryDirectory() as folder:
         source, program = pathlib.Path(folder) / "code.cpp", pathlib.Path(folder) / "code"
         source.write_text(SOURCE)
-        subprocess.run([compiler, "-O1", "-g1", "-fno-inline", "-fjump-tables", source, "-o", program], check=True)
+        subprocess.run([compiler, "-O1", "-g1", "-fno-inline", "-fjump-tables", "-freorder-blocks-and-partition", source, "-o", program], check=True)
         functions = functions_of(str(program))
         loops = SourceLoops(source.parent, PASSES)
 
@@ -84,6 +101,11 @@ def main(compiler):
         check("the longer branch counts", 10 < longer < len(functions["longer_branch"].code), longer)
         check("a loop has its passes", 10 * 3 <= of("ten") <= 11 * 6 + 10, of("ten"))
         check("an inner loop has those of both", 600 * 3 <= of("nested") <= 21 * (31 * 6 + 10) + 10, of("nested"))
+        check("loops with one begin have the product", 20 * 7 * 3 <= of("same_begin"), of("same_begin"))
+        cold = functions["with_cold_part"]
+        first = [address for address in cold.code if address >= cold.entry][0]
+        check("a function begins at its symbol, not in a longer cold part", first == cold.entry != min(cold.code), hex(cold.entry))
+        check("the cold part counts", of("with_cold_part") > 13 * 3, of("with_cold_part"))
         check("a call counts", of("ten") < of("calls") <= of("ten") + 10, of("calls"))
         for name, why in (("recursive", "calls itself"), ("unknown", "bound is not known"), ("computed", "computed address"),
                           ("open_end", "PASSES does not have"), ("table", "jump through a table")):

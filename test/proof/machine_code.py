@@ -1,4 +1,4 @@
-"""The functions of a program as they are in its machine code: instructions with their source lines, blocks and loops.
+"""The functions of a program as they are in its machine code: instructions with their source lines.
 
 Only what `objdump` prints is read. The program needs line numbers (`-g1`), which change no instruction.
 """
@@ -7,6 +7,7 @@ import re
 import subprocess
 
 ENDS = ("ret", "ud2", "hlt", "repz ret")
+COLD = r" \[clone \.cold\]|\.cold$"  # the part of a function that GCC expects to run seldom
 
 
 @dataclasses.dataclass
@@ -39,10 +40,7 @@ class Instruction:
 class Function:
     name: str
     code: dict[int, Instruction]  # by address, in ascending order
-
-    @property
-    def entry(self):
-        return next(iter(self.code))
+    entry: int = 0
 
 
 def functions_of(program):
@@ -50,9 +48,11 @@ def functions_of(program):
     command = ["objdump", "--disassemble", "--demangle", "--no-show-raw-insn", "--line-numbers", program]
     found, function, line = {}, None, ("", 0)
     for text in subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines():
-        if head := re.match(r"^[0-9a-f]+ <(.*)>:$", text):
-            name = re.sub(r" \[clone \.cold\]| \[clone \.localalias\]|\.cold$", "", head[1])
+        if head := re.match(r"^([0-9a-f]+) <(.*)>:$", text):
+            name = re.sub(COLD + r"| \[clone \.localalias\]", "", head[2])
             function, line = found.setdefault(name, Function(name, {})), ("", 0)
+            if not re.search(COLD, head[2]):
+                function.entry = int(head[1], 16)
         elif place := re.match(r"^(/.*):(\d+)( \(discriminator \d+\))?$", text):
             line = (place[1], int(place[2]))
         elif function and (found_code := re.match(r"^\s*([0-9a-f]+):\t(.*)$", text)):
@@ -61,21 +61,4 @@ def functions_of(program):
             if goal := re.match(r"^(?:call|j\w+)\s+([0-9a-f]+) <(.*?)>$", words):
                 instruction.target, instruction.target_name = int(goal[1], 16), goal[2]
             function.code[instruction.address] = instruction
-    for function in found.values():  # the cold part comes first in the file, but is not the entry
-        if len(function.code) > 1:
-            function.code = with_entry_first(function.code)
     return found
-
-
-def with_entry_first(code):
-    """Puts the longest part without a gap first. The other part is the cold one."""
-    addresses = sorted(code)
-    parts, part = [], [addresses[0]]
-    for before, address in zip(addresses, addresses[1:]):
-        if address - before > 15:  # no instruction is longer
-            parts.append(part)
-            part = []
-        part.append(address)
-    parts.append(part)
-    parts.sort(key=len, reverse=True)
-    return {address: code[address] for part in parts for address in part}

@@ -80,14 +80,14 @@ Json json_of(const NodeAudit& node) {
   return json;
 }
 
-/// Returns how many devices have each verdict, for example "2 safe by themselves, 1 with their last
-/// set-points for ever".
+/// Returns how many devices have each verdict, for example "2 safe without the master, 1 that keep
+/// their last set-points".
 std::string summary(const Audit& audit) {
   std::array<unsigned, 4> count{};
   for (const NodeAudit& node : audit.nodes) ++count[std::to_underlying(node.verdict)];
   constexpr std::array<const char*, 4> texts{"without outputs", "safe without the master",
                                              "with a reaction that only the manual describes",
-                                             "held at the last set-points"};
+                                             "that keep their last set-points"};
   std::string text;
   for (std::size_t i = 0; i < count.size(); ++i) {
     if (count[i] == 0) continue;

@@ -71,7 +71,8 @@ void add_searches(Verbs& verbs) {
   find.add_flag("--first", options.first, "end after the first device");
   verbs.add("scan", "lists all devices of a product, also those with a node id", Takes::ranges,
             lss_scan);
-  verbs.add("unconfigured", "tests for a missing node id", Takes::nothing, lss_unconfigured);
+  verbs.add("unconfigured", "tests whether a device has no node id", Takes::nothing,
+            lss_unconfigured);
   verbs.add("inquire", "prints the LSS address and the node id of one device", Takes::one_device,
             lss_inquire);
 }

@@ -22,8 +22,8 @@ struct SimulationOptions {
   std::uint64_t seed = 1;
   sim::Faults faults{};
   bool move = false;  ///< built-in sine set-points, see SineMotion
-  /// Number of programs that command the axes over LCM, through the whole taktd, 0 ..
-  /// most_applications. 0 means that only the bus thread runs. Excludes `move`.
+  /// Number of programs (0 .. most_applications) that command the axes over LCM. With programs or
+  /// `motions`, all of taktd is simulated, otherwise only the bus thread. Excludes `move`.
   std::size_t applications = 0;
   ProgramFaults programs{};  ///< faults of the programs and of taktd
   /// Programs that command motions over LCM, through the whole taktd. Applications leave the nodes

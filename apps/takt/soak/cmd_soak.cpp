@@ -107,11 +107,11 @@ int run(const SoakArguments& arguments) {
             << " boots, " << total.requests << " requests, " << total.events << " events, "
             << total.commands << " commands (" << total.forged << " forged), " << total.moves
             << " moves, " << total.motions << " motions (" << total.arrivals << " arrived, "
-            << total.groups << " groups seen to begin, " << total.gears << " gears, "
-            << total.streams << " streams, of these " << total.judged_gears << " and "
-            << total.judged_streams << " compared with leader and path), " << total.homings
-            << " homings, " << total.program_faults << " program faults; " << sum.bad
-            << (sum.bad == 1 ? " violation" : " violations") << std::endl;
+            << total.groups << " groups seen to begin, " << total.gears << " gears ("
+            << total.judged_gears << " compared with their leaders), " << total.streams
+            << " streams (" << total.judged_streams << " compared with their paths)), "
+            << total.homings << " homings, " << total.program_faults << " program faults; "
+            << sum.bad << (sum.bad == 1 ? " violation" : " violations") << std::endl;
   std::cerr << static_cast<long>(hours * 3600 / elapsed()) << " times real time\n";
   return sum.bad == 0 ? 0 : 1;
 }

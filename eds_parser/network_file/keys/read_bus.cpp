@@ -117,10 +117,11 @@ constexpr Key<NetworkSpec> realtime_keys[] = {
 };
 
 constexpr Key<NetworkSpec> options_keys[] = {
-    key<&NetworkSpec::dcf_path>("dcf_path", "none",
-                                "A second folder for device files. `@...@` placeholders are "
-                                "ignored with a note.",
-                                bus_yml),
+    key<&NetworkSpec::dcf_path>(
+        "dcf_path", "none",
+        "A folder in which takt looks for device files that are not beside this "
+        "file. `@...@` placeholders are ignored with a note.",
+        bus_yml),
     key<with<read_multiplier, &NetworkSpec::heartbeat_multiplier>>(
         "heartbeat_multiplier", multiplier_value, "3.0",
         "The accepted silence, in heartbeat periods; at least 1.5.", bus_yml),

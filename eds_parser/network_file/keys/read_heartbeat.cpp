@@ -40,7 +40,7 @@ void read_multiplier(const KeyInput& in, Sourced<double>& multiplier) {
   if (!multiplier.given || in.key.value.numbers.contains(*multiplier)) return;
   in.error("out-of-range",
            "`heartbeat_multiplier` has to be at least 1.5, otherwise one late heartbeat counts as "
-           "the loss of the node");
+           "a loss");
 }
 
 }  // namespace takt

@@ -61,7 +61,8 @@ constexpr Key<AxisLimitsSpec> axis_keys[] = {
     magnitude_key<&AxisLimitsSpec::torque>("torque",
                                            "Applies to 0x6071 plus the torque offset 0x60B2."),
     magnitude_key<&AxisLimitsSpec::modulo>(
-        "modulo", "The length after which a rotary axis wraps around. Otherwise 0x607B of `sdo`."),
+        "modulo",
+        "The length after which a rotary axis wraps around. Without it, 0x607B in `sdo` counts."),
 };
 
 void check_object_limit(const KeyInput& in, std::vector<ObjectLimitSpec>& objects,

@@ -183,8 +183,9 @@ constexpr Key<NodeSpec> node_keys[] = {
                         "EDS or DCF, relative to this file, then to `dcf_path`. It is read when "
                         "taktd starts: there is no build step.",
                         bus_yml),
-    key<&NodeSpec::dcf_path>("dcf_path", "from `options`", "A second folder for device files.",
-                             bus_yml),
+    key<&NodeSpec::dcf_path>(
+        "dcf_path", "from `options`",
+        "A folder in which takt looks for device files that are not beside this file.", bus_yml),
     key<&NodeSpec::device_type>("device_type", "from the EDS",
                                 "The expected value of 0x1000. 0: not checked."),
     key<&NodeSpec::vendor_id>("vendor_id", "from the EDS",

@@ -207,8 +207,8 @@ class CobIdAssigner {
       const User& owner = other->second;
       report_.error(owner.pdo->cob_id_pos, "cob-id-clash", "`cob_id` ", own, " of ", owner,
                     " is the predefined COB-ID of ", user,
-                    ", for which the file states no `cob_id`: write `cob_id: ", hex(free, 3),
-                    "` for ", user, ", or another `cob_id` for ", owner);
+                    ", which has no fixed `cob_id`: write `cob_id: ", hex(free, 3), "` for ", user,
+                    ", or another `cob_id` for ", owner);
       return;
     }
     report_.note(user.pdo->cob_id_pos, "cob-id-moved", "the predefined COB-ID ", own, " of ", user,

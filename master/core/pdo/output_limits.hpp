@@ -127,10 +127,10 @@ class OutputLimits {
     double rate = OutputLimit::none;
     double bend = OutputLimit::none;
     bool bounded = false;  ///< there is a limit in the file or from the device
-    double value = 0;      ///< the value that was sent last
+    double value = 0;      ///< the value of this output alone that was sent last
     double offset = 0;     ///< the offset that was sent last, in counts of the value
     std::optional<double>
-        set_point{};   ///< the set-point that was sent last, in the mode of that time
+        set_point{};   ///< what was sent last to the drive: in some modes `value` plus `offset`
     double speed = 0;  ///< speed of the last step, per cycle
     double gap = 1;    ///< duration of the last step in cycles
     double allowed =

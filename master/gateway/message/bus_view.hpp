@@ -28,10 +28,11 @@ class BusView {
   void take(const motion_t& motions);
   void take(event_t event);
 
-  /// Returns all nodes of one status_t round; empty before the first complete round.
+  /// Returns the newest status with all nodes, joined from its parts; empty until all parts of one
+  /// status have arrived.
   const std::optional<status_t>& status() const noexcept { return status_; }
   const std::optional<timing_t>& timing() const noexcept { return timing_; }
-  /// Returns all PDOs of one round; empty before the first complete round.
+  /// Returns the newest state of all PDOs, joined in the same way.
   const std::optional<pdo_status_t>& pdos() const noexcept { return pdos_; }
   const std::optional<sync_status_t>& sync() const noexcept { return sync_; }
   /// Returns the state of the motions of all axes; empty while the daemon runs no motions.

@@ -82,8 +82,8 @@ Task measured_leader(const motion_gear_t& gear, std::size_t node, std::span<cons
     return refused(fmt::format("the input '{:.64}' of its leader is no integer of at least 8 bits",
                                gear.signal));
   }
-  const auto leads_itself = [&](std::size_t axis) { return is_of(*found, known.axes[axis]); };
-  if (std::ranges::any_of(axes, leads_itself)) return refused("an axis can't follow itself");
+  const auto follows_itself = [&](std::size_t axis) { return is_of(*found, known.axes[axis]); };
+  if (std::ranges::any_of(axes, follows_itself)) return refused("an axis can't follow itself");
   const auto signal = static_cast<SignalIndex>(found - inputs.begin());
   motion::GearTask task{
       .kind = motion::LeaderKind::measured,

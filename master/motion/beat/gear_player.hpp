@@ -69,8 +69,8 @@ class GearPlayer {
   double error_ = 0.0;
   GearPhase phase_ = GearPhase::none;
   bool matched_ = false;  ///< the offset is known
-  bool started_ = false;  ///< the last target is known
-  bool locked_ = false;   ///< the axis was locked since the start
+  bool started_ = false;  ///< follow() has run since begin()
+  bool locked_ = false;   ///< the axis has been locked since begin()
   bool lost_ = false;
   std::uint8_t released_ = 0;  ///< steps since the release
 };

@@ -30,7 +30,7 @@ constexpr std::uint64_t shows_ready = 0x0300;
 constexpr std::uint64_t shows_switched_on = 0x0400;
 constexpr std::uint64_t shows_operation = 0x0500;
 constexpr std::uint64_t shows_fault = 0x0800;
-constexpr std::int64_t counts_a_second = 16384;  // from standstill to nominal speed in one second
+constexpr std::int64_t counts_a_second = 16384;  // slope of the ramp: the nominal speed in 1 s
 
 constexpr Firmware newest{{16, 0, 0}};
 constexpr Firmware obeys_itself{{16, 0, 0}};

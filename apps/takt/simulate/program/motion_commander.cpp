@@ -15,7 +15,7 @@ constexpr Time message_period = 20ms;
 constexpr Time message_jitter = 10ms;
 constexpr Time busy_pause = 800ms;  // longest pause between two motions
 constexpr Time calm_pause = 2s;     // minimum; a motion comes to rest in this pause
-constexpr double quick = 20'000;    // counts/s; of all axes without a lower limit
+constexpr double quick = 20'000;    // counts/s; for axes whose limit is not lower
 constexpr double quick_rise = 0.1;  // s until the velocity is reached
 constexpr double jerk_rise = 0.05;  // s until the acceleration is reached
 constexpr double reach_time = 3.0;  // duration in s of a quick motion to the farthest target
@@ -229,8 +229,8 @@ motion_gear_t MotionCommander::gear(const motion_command_t& command) const {
   return gear;
 }
 
-/// Chooses an axis for a stream. Most streams begin when their axis has come to rest; the others,
-/// which begin while it moves, are refused.
+/// Chooses an axis for a stream. Most streams begin when their axis has come to rest. The others
+/// begin with the next message; takt refuses them if the axis moves.
 void MotionCommander::choose_stream(Time now) {
   const std::size_t axis = gear_random_.below(static_cast<std::uint32_t>(axes_.size()));
   streaming_ = Streaming{.axis = axis, .until = now};
@@ -284,6 +284,11 @@ motion_command_t MotionCommander::stop_all() const {
   return command;
 }
 
+/// Returns the time from the begin of a motion to the next one.
+Time MotionCommander::pause() {
+  return calm_ ? calm_pause + random_.up_to(calm_pause) : random_.up_to(busy_pause);
+}
+
 std::optional<motion_command_t> MotionCommander::next(Time now) {
   if (axes_.empty() || now < due_) return std::nullopt;
   due_ = now + message_period + random_.up_to(message_jitter);
@@ -298,12 +303,11 @@ std::optional<motion_command_t> MotionCommander::next(Time now) {
     const Axis& axis = axes_[streaming_->axis];
     if (now >= axis.moved + rest_time || now >= streaming_->until) {
       streaming_.reset();
-      motion_due_ = now + random_.up_to(busy_pause);
+      motion_due_ = now + pause();
       if (auto stream = begin_stream(axis, now)) command = std::move(*stream);
     }
   } else if (now >= motion_due_) {
-    motion_due_ =
-        now + (calm_ ? calm_pause + random_.up_to(calm_pause) : random_.up_to(busy_pause));
+    motion_due_ = now + pause();
     if (leading_) {
       command = lead();
       motion_due_ = now + time_to_lead;

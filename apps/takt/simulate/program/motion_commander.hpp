@@ -16,9 +16,9 @@ namespace takt {
 
 /// Chooses the motions that a program commands. It sends a message every 20 ms, which may come 10
 /// ms late; now and then it is silent for 300 ms, seldom for 2 s. Each process has its own limits
-/// and timeout. A target in counts has the number of the program in its low four bits. Some
-/// processes also let an axis follow another axis, which any program may command, or move an axis
-/// along the points of a stream.
+/// and timeout. The target of a move, in counts, has the number of the program in its low four
+/// bits. Some processes also let an axis follow another axis, which any program may command, or
+/// move an axis along the points of a stream.
 class MotionCommander {
  public:
   /// `nodes` are those of the program, in the order of BusPlan::nodes.
@@ -84,6 +84,7 @@ class MotionCommander {
   std::optional<motion_command_t> begin_stream(const Axis& axis, Time now);
   motion_command_t next_points(Time now);
   motion_command_t stop_all() const;
+  Time pause();
   void add_goals(motion_command_t& command, bool all);
   double share(double least) { return least + (1 - least) * 1e-6 * random_.below(1'000'001); }
 

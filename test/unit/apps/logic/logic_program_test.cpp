@@ -28,7 +28,7 @@ signal_t signal(const char* node, std::int16_t id, const char* name, std::int32_
   return made;
 }
 
-/// The rules of a text on a bus of an axis and an I/O module, cycle by cycle.
+/// Reads rules from a text and runs them cycle by cycle, on a bus with an axis and an I/O module.
 class Logic : public ::testing::Test {
  protected:
   Logic() {

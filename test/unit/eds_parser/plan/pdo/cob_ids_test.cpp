@@ -168,11 +168,10 @@ TEST(CobIds, AnIdOfATpdoThatIsThePredefinedOneOfAnAutomaticTpdoIsAnError) {
       "b: {node_id: 2, dcf: x, tpdo: {1: {cob_id: 0x181}}}\n");
 
   EXPECT_THAT(net.complaints(), ElementsAre("3:44 error [cob-id-clash]"));
-  EXPECT_THAT(
-      net.declared("cob-id-clash"),
-      HasSubstr("`cob_id` 0x181 of TPDO1 of node `b` is the predefined COB-ID of TPDO1 of "
-                "node `a`, for which the file states no `cob_id`: write `cob_id: 0x183` for "
-                "TPDO1 of node `a`, or another `cob_id` for TPDO1 of node `b`"));
+  EXPECT_THAT(net.declared("cob-id-clash"),
+              HasSubstr("`cob_id` 0x181 of TPDO1 of node `b` is the predefined COB-ID of TPDO1 of "
+                        "node `a`, which has no fixed `cob_id`: write `cob_id: 0x183` for "
+                        "TPDO1 of node `a`, or another `cob_id` for TPDO1 of node `b`"));
 }
 
 TEST(CobIds, AnIdOfAnRpdoThatIsThePredefinedOneOfAnAutomaticTpdoMakesALink) {

@@ -29,8 +29,8 @@ struct AxisPair {
 };
 
 /// One axis with 6041, 6064 and 6061 in TPDO1, with 6040, 607A and 6060 in RPDO1, and with 60B0 in
-/// RPDO2. Positions are 1 mrad per count. Another pair may take the place of 607A and 60B0; each of
-/// its outputs then has the limit.
+/// RPDO2. Positions are 1 mrad per count. `pair` may name another target and its offset. The limit
+/// applies to both.
 class AxisWithModes {
  public:
   explicit AxisWithModes(OutputLimit limit, AxisPair pair = {})
